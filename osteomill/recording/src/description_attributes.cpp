@@ -111,38 +111,6 @@ std::vector<Label> read_labels(const fs::path& path, hid_t file) {
   return labels;
 }
 
-// What a description says by attributes, each with its name and place, in the order in which they are
-// written.
-template <typename Run, typename Visit>
-void visit_attributes(Run& run, const Visit& visit) {
-  visit("program_version", run.program_version);
-  visit("date_utc", run.made.date_utc);
-  visit("host", run.made.host);
-  visit("system", run.made.system);
-  visit("processor", run.made.processor);
-  visit("compiler", run.made.compiler);
-  visit("build", run.made.build);
-  visit("scan_name", run.scan_name);
-  visit("dims", run.dims);
-  visit("spacing_mm", run.spacing_mm);
-  visit("origin_mm", run.origin_mm);
-  visit("axis_i", run.direction.col(0));
-  visit("axis_j", run.direction.col(1));
-  visit("axis_k", run.direction.col(2));
-  visit("scan_hash", run.scan_hash);
-  visit("label_map_hash", run.label_map_hash);
-  visit("isovalue", run.isovalue);
-  visit("burr_radius_mm", run.tool.burr_radius_mm);
-  visit("shaft_radius_mm", run.tool.shaft_radius_mm);
-  visit("shaft_length_mm", run.tool.shaft_length_mm);
-  visit("algorithm", run.algorithm.name);
-  visit("algorithm_label", run.algorithm.label);
-  visit("algorithm_colour", run.algorithm.colour);
-  visit("phase", run.phase);
-  visit("seed", run.seed);
-  visit("tick_period_s", run.tick_period_s);
-}
-
 // A scan that can be, milled with a tool that can be.
 void require_sound(const fs::path& path, const RunDescription& run) {
   constexpr double kMaxVoxels = 1e12;
@@ -169,7 +137,8 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
                                 "': an algorithm or a phase that cannot be recorded by that name");
   }
   const Attributes write(path, file);
-  visit_attributes(description, [&](const char* name, const auto& value) { write.put(name, value); });
+  visit_attributes(description,
+                   [&](const RunAttribute& of, const auto& value) { write.put(of.name, value); });
   write_settings(path, file, description.settings);
   write_labels(path, file, description.labels);
 }
@@ -183,7 +152,7 @@ void add_setting(const fs::path& path, hid_t file, const RunSetting& setting) {
 RunDescription read_description(const fs::path& path, hid_t file) {
   const Attributes read(path, file);
   RunDescription run;
-  visit_attributes(run, [&](const char* name, auto&& value) { read.get(name, value); });
+  visit_attributes(run, [&](const RunAttribute& of, auto&& value) { read.get(of.name, value); });
   if (!is_usable(run.algorithm))
     throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
   if (!is_plain_name(run.phase)) throw InputError(path.string(), "the attribute 'phase' is not a plain name");

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -28,16 +29,15 @@ static auto members_of(RunSetting& setting) {
 static auto members_of(Label& label) {
   return std::tie(label.value, label.name, label.colour, label.no_go);
 }
-static auto members_of(Origin& made) {
-  return std::tie(made.date_utc, made.host, made.system, made.processor, made.compiler, made.build);
-}
-static auto members_of(AlgorithmId& id) {
-  return std::tie(id.name, id.label, id.colour);
-}
-static auto members_of(RunDescription& run) {
-  return std::tie(run.program_version, run.made, run.scan_name, run.dims, run.spacing_mm, run.origin_mm,
-                  run.direction, run.scan_hash, run.label_map_hash, run.isovalue, run.tool, run.algorithm,
-                  run.phase, run.seed, run.tick_period_s, run.settings, run.labels);
+static void pass(PipeEnd& pipe, RunDescription& run) {
+  visit_attributes(run, [&](const RunAttribute&, auto&& value) {
+    // A column of a matrix has no place of its own.
+    std::conditional_t<std::is_lvalue_reference_v<decltype(value)>, decltype(value), Vec3> held = value;
+    pass(pipe, held);
+    value = held;
+  });
+  pass(pipe, run.settings);
+  pass(pipe, run.labels);
 }
 static auto members_of(SessionStart& start) {
   return std::tie(start.run, start.taken_over.X_WT, start.taken_over.sent, start.taken_over.held_back,

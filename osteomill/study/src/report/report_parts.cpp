@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <type_traits>
 
 #include <fmt/format.h>
 
 #include "osteomill/base/input_error.h"
 #include "osteomill/session/tick_counts.h"
+#include "osteomill/study/metric_table.h"
 #include "osteomill/visual/image.h"
 
 namespace osteomill {
@@ -222,27 +224,27 @@ std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesy
 
 namespace {
 
-std::string text_of(const RunSetting& setting) {
-  if (const double* number = std::get_if<double>(&setting.value)) return fmt::format("{}", *number);
-  return std::get<std::string>(setting.value);
+std::string text_of(const std::string& text) {
+  return text;
+}
+template <typename Value>
+std::string text_of(const Value& value) {
+  if constexpr (std::is_arithmetic_v<Value>)
+    return fmt::format("{}", value);
+  else
+    return fmt::format("{}, {}, {}", value[0], value[1], value[2]);
 }
 
 // The description's own fields and the further settings, alike.
 std::vector<RunSetting> all_settings(const RunDescription& d) {
-  std::vector<RunSetting> settings{
-      {"program_version", d.program_version, ""},
-      {"scan", d.scan_name, ""},
-      {"scan_fingerprint", fmt::format("{:016x}", d.scan_hash), ""},
-      {"voxels", fmt::format("{} × {} × {}", d.dims[0], d.dims[1], d.dims[2]), ""},
-      {"spacing", fmt::format("{} × {} × {}", d.spacing_mm.x(), d.spacing_mm.y(), d.spacing_mm.z()), "mm"},
-      {"isovalue", d.isovalue, ""},
-      {"burr_radius", d.tool.burr_radius_mm, "mm"},
-      {"shaft_radius", d.tool.shaft_radius_mm, "mm"},
-      {"shaft_length", d.tool.shaft_length_mm, "mm"},
-      {"seed", fmt::format("{}", d.seed), ""},
-      {"tick_period", d.tick_period_s, "s"}};
+  std::vector<RunSetting> settings;
+  visit_attributes(d, [&](const RunAttribute& of, const auto& value) {
+    if (of.is_setting) settings.push_back({of.name, text_of(value), ""});
+  });
   for (const RunSetting& setting : d.settings) {
-    if (setting.key != kCommandLineKey && setting.key != kNotReachedKey) settings.push_back(setting);
+    if (setting.key == kCommandLineKey || setting.key == kNotReachedKey) continue;
+    settings.push_back(setting);
+    settings.back().value = std::visit([](const auto& value) { return text_of(value); }, setting.value);
   }
   return settings;
 }
@@ -273,7 +275,7 @@ std::vector<SettingLine> collect(const std::vector<const Recording*>& recordings
         lines.back().values.resize(recordings.size());
         line = lines.end() - 1;
       }
-      line->values[n] = text_of(setting);
+      line->values[n] = std::get<std::string>(setting.value);
     }
   }
   return lines;
@@ -340,8 +342,7 @@ Table differences_table(const std::vector<const Recording*>& recordings) {
   std::vector<SettingLine> lines = collect(recordings);
   std::erase_if(lines, [&](const SettingLine& line) { return !differs(line, recordings); });
   for (const SettingLine& line : lines) {
-    const std::string unit = line.unit.empty() ? "" : fmt::format(" ({})", raised(line.unit));
-    table.header.push_back(line.key + unit);
+    table.header.push_back(with_unit(line.key, raised(line.unit)));
   }
   if (lines.empty()) return table;
   for (std::size_t n = 0; n < recordings.size(); ++n) {

@@ -49,8 +49,8 @@ TEST(DifferencesTable, HasAColumnForWhateverIsNotTheSameInAll) {
     if (setting.key == "push" || setting.key == "hand_stiffness") setting.value = 7.0;
   last.settings.push_back({"script.entry", std::string("1,2,3"), "mm"});
   EXPECT_EQ(differing(runs),
-            std::vector<std::string>({"scan_fingerprint", "burr_radius (mm)", "seed", "tick_period (s)",
-                                      "push (N)", "hand_stiffness (N/m)", "script.entry (mm)"}));
+            std::vector<std::string>({"scan_hash", "burr_radius_mm", "seed", "tick_period_s", "push (N)",
+                                      "hand_stiffness (N/m)", "script.entry (mm)"}));
 }
 
 TEST(DifferencesTable, AnAlgorithmsSettingsAreComparedWithItsOwn) {

@@ -157,7 +157,7 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
   const std::string html = bytes_of(write_comparison_report(runs, out_));
   EXPECT_NE(html.find("line-proxy-holding.h5 is unfinished"), std::string::npos);
   EXPECT_NE(html.find("surface-points-holding.h5 lacks 7 ticks"), std::string::npos);
-  EXPECT_NE(html.find("These recordings differ in scan."), std::string::npos);
+  EXPECT_NE(html.find("These recordings differ in scan_name."), std::string::npos);
   EXPECT_NE(html.find("&lt;script&gt;another"), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
 }
@@ -174,7 +174,7 @@ TEST_F(ReportTest, NothingIsConcludedFromRecordingsThatDoNotBelongTogether) {
   for (RunSetting& setting : other.settings)
     if (setting.key == "push") setting.value = 3.5;
   const std::string mix = bytes_of(write_comparison_report(runs, out_));
-  EXPECT_NE(mix.find("These recordings differ in burr_radius (mm), seed, push (N)."), std::string::npos);
+  EXPECT_NE(mix.find("These recordings differ in burr_radius_mm, seed, push (N)."), std::string::npos);
   EXPECT_NE(mix.find("<td>2.25</td><td>7</td><td>3.5</td>"), std::string::npos);
   for (const char* untrue : {"the same bone", "one simulated hand", "agrees</span>", "Tool: a burr of"})
     EXPECT_EQ(mix.find(untrue), std::string::npos) << untrue;

@@ -83,6 +83,45 @@ struct RunDescription {
   std::vector<Label> labels;
 };
 
+/// What a recording calls a part of a run's description.
+struct RunAttribute {
+  std::string name;
+  /// It is part of what was run, by which runs can be compared, and not when, where or which of them it was.
+  bool is_setting = true;
+};
+
+/// Calls `visit(RunAttribute, value)` for all that a description has but its settings and labels, in the
+/// order in which recordings have it.
+template <typename Run, typename Visit>
+void visit_attributes(Run& run, const Visit& visit) {
+  visit(RunAttribute{"program_version"}, run.program_version);
+  visit(RunAttribute{"date_utc", false}, run.made.date_utc);
+  visit(RunAttribute{"host", false}, run.made.host);
+  visit(RunAttribute{"system", false}, run.made.system);
+  visit(RunAttribute{"processor", false}, run.made.processor);
+  visit(RunAttribute{"compiler", false}, run.made.compiler);
+  visit(RunAttribute{"build", false}, run.made.build);
+  visit(RunAttribute{"scan_name"}, run.scan_name);
+  visit(RunAttribute{"dims"}, run.dims);
+  visit(RunAttribute{"spacing_mm"}, run.spacing_mm);
+  visit(RunAttribute{"origin_mm"}, run.origin_mm);
+  visit(RunAttribute{"axis_i"}, run.direction.col(0));
+  visit(RunAttribute{"axis_j"}, run.direction.col(1));
+  visit(RunAttribute{"axis_k"}, run.direction.col(2));
+  visit(RunAttribute{"scan_hash"}, run.scan_hash);
+  visit(RunAttribute{"label_map_hash"}, run.label_map_hash);
+  visit(RunAttribute{"isovalue"}, run.isovalue);
+  visit(RunAttribute{"burr_radius_mm"}, run.tool.burr_radius_mm);
+  visit(RunAttribute{"shaft_radius_mm"}, run.tool.shaft_radius_mm);
+  visit(RunAttribute{"shaft_length_mm"}, run.tool.shaft_length_mm);
+  visit(RunAttribute{"algorithm", false}, run.algorithm.name);
+  visit(RunAttribute{"algorithm_label", false}, run.algorithm.label);
+  visit(RunAttribute{"algorithm_colour", false}, run.algorithm.colour);
+  visit(RunAttribute{"phase", false}, run.phase);
+  visit(RunAttribute{"seed"}, run.seed);
+  visit(RunAttribute{"tick_period_s"}, run.tick_period_s);
+}
+
 /// The value of a further setting; null where there is none of this key, or of another type.
 template <typename Value>
 const Value* find_setting(const RunDescription& run, std::string_view key) {
