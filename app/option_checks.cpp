@@ -8,7 +8,7 @@
 #include <utility>
 
 #include <CLI/Error.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "osteomill/base/parse_number.h"
 
@@ -95,13 +95,14 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   return fmt::format("; there {} {}", known.size() == 1 ? "is" : "are", with_and(known));
 }
 
+std::string word_fault(const std::string& kind, const std::string& word,
+                       const std::vector<std::string>& names) {
+  if (std::ranges::find(names, word) != names.end()) return "";
+  return fmt::format("there is no {} {}{}", kind, word, did_you_mean(word, names));
+}
+
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names) {
-  return CLI::Validator(
-      [=](std::string& word) {
-        if (std::find(names.begin(), names.end(), word) != names.end()) return std::string();
-        return fmt::format("there is no {} {}{}", kind, word, did_you_mean(word, names));
-      },
-      "");
+  return CLI::Validator([=](std::string& word) { return word_fault(kind, word, names); }, "");
 }
 
 std::vector<std::string> option_names(const CLI::App& command) {
@@ -188,6 +189,29 @@ void add_number(CLI::App& command, const FieldDescription& field, const std::str
                             ->check(number_of(field.range))
                             ->type_name(field.range.whole ? "COUNT" : help_unit(field.unit));
   if (!shown_default.empty()) option->default_str(shown_default);
+}
+
+void add_text(CLI::App& command, const FieldDescription& field,
+              const std::function<void(const std::string&)>& take) {
+  const std::string name = "--" + field.option;
+  const auto take_checked = [take, name](const std::string& text) {
+    try {
+      take(text);
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError(name, error.what());
+    }
+  };
+  CLI::Option* option = nullptr;
+  if (field.range.whole) {
+    const auto take_all = [take_checked](const std::vector<std::string>& texts) {
+      take_checked(fmt::format("{}", fmt::join(texts, ",")));
+    };
+    option = command.add_option_function<std::vector<std::string>>(name, take_all, field.doc)->delimiter(',');
+    if (field.range.max == field.range.min) option->expected(static_cast<int>(field.range.max));
+  } else {
+    option = command.add_option_function<std::string>(name, take_checked, field.doc);
+  }
+  option->check(not_empty())->type_name(field.unit);
 }
 
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {

@@ -18,6 +18,9 @@ namespace osteomill::app {
 /// known words is near and they are few, "; there are milling and wall", else nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
+/// Returns "there is no algorithm x; did you mean ..." where `word` is none of `names`, else nothing.
+std::string word_fault(const std::string& kind, const std::string& word,
+                       const std::vector<std::string>& names);
 /// Refuses what is none of `names`; `kind` says what they are ("algorithm").
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names);
 
@@ -52,6 +55,17 @@ void add_fields(CLI::App& command, Struct& s, unsigned flags = 0, unsigned witho
     add_number(command, field, field.has(without_default) ? "" : number_text(field.get(s)),
                [&s, &field](double value) { field.set(s, value); });
   }
+}
+/// Adds an option for a text that is not empty, or a list of them, which may repeat. `take` gets a list with
+/// commas, and throws std::invalid_argument for what cannot be.
+void add_text(CLI::App& command, const FieldDescription& field,
+              const std::function<void(const std::string&)>& take);
+/// Adds every text of `s`, or those with one of `flags` (0: any).
+template <typename Struct>
+void add_texts(CLI::App& command, Struct& s, unsigned flags = 0) {
+  for (const Field<Struct, std::string>& field : fields_of<Struct, std::string>())
+    if (flags == 0 || field.has(flags))
+      add_text(command, field, [&s, &field](const std::string& text) { field.set(s, text); });
 }
 /// Refuses what is not a whole number within these bounds.
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max);

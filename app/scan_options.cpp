@@ -1,9 +1,12 @@
 #include "app/scan_options.h"
 
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include "osteomill/base/csv_field.h"
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
@@ -13,23 +16,80 @@
 #include "app/option_checks.h"
 #include "app/progress.h"
 
-namespace osteomill::app {
+namespace osteomill {
 
-namespace {
-
-template <typename Value>
-void add_text(CLI::App& command, const char* name, Value& value, const char* type, const char* what) {
-  command.add_option(name, value, what)->check(not_empty())->type_name(type);
+template <>
+const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>() {
+  using S = app::ScanOptions;
+  static const std::vector<Field<S>> all{
+      {{"", "density", NumberRange::finite(), "Isovalue: bone where the density is greater",
+        app::kOfWhatIsBone | app::kOfTheBone, "iso"},
+       [](const S& s) { return s.isovalue.value_or(std::numeric_limits<double>::quiet_NaN()); },
+       [](S& s, double value) { s.isovalue = value; }}};
+  return all;
 }
 
-}  // namespace
+template <>
+const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOptions, std::string>() {
+  using S = app::ScanOptions;
+  static const std::vector<Field<S, std::string>> all{
+      field<S>(
+          {"",
+           "SERIES",
+           {},
+           "Which DICOM series, where there are several: its number in what info lists, or the "
+           "beginning of its UID; else the largest CT",
+           app::kOfTheSource | app::kOfTheBone,
+           "series"},
+          [](auto& s) -> auto& { return s.read.series; }),
+      {{"",
+        "scan|labels",
+        {},
+        "Take its values for densities, or for labels, all of which are bone; else as it says or looks, and "
+        "with --iso for densities",
+        app::kOfTheSource | app::kOfTheBone,
+        "as"},
+       [](const S& s) { return !s.as_labels   ? ""
+                               : *s.as_labels ? "labels"
+                                              : "scan"; },
+       [](S& s, const std::string& kind) {
+         if (const std::string fault = app::word_fault("kind", kind, {"scan", "labels"}); !fault.empty())
+           throw std::invalid_argument(fault);
+         s.as_labels = kind == "labels";
+       }},
+      field<S>(
+          {"",
+           "FILE",
+           {},
+           "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid",
+           app::kOfWhatIsBone | app::kOfTheBone,
+           "labels"},
+          [](auto& s) -> auto& { return s.labels.map; }),
+      field<S>(
+          {"",
+           "FILE",
+           {},
+           "Names and colours of labels: a colour table of 3D Slicer's",
+           app::kOfWhatIsBone | app::kOfTheBone,
+           "label-table"},
+          [](auto& s) -> auto& { return s.labels.table; }),
+      {{"", "LABEL,...", NumberRange::count(1), "Labels that the burr must not touch, by name or value",
+        app::kOfNoGo | app::kOfTheBone, "no-go"},
+       [](const S& s) { return fmt::format("{}", fmt::join(s.labels.no_go, ",")); },
+       [](S& s, const std::string& labels) {
+         const auto names = csv_fields(labels);
+         s.labels.no_go.assign(names.begin(), names.end());
+       }}};
+  return all;
+}
+
+}  // namespace osteomill
+
+namespace osteomill::app {
 
 void add_bone_options(CLI::App& command, ScanOptions& options) {
-  add_text(command, "--iso", options.isovalue, "DENSITY", "Isovalue: bone where the density is greater");
-  add_text(command, "--labels", options.labels.map, "FILE",
-           "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid");
-  add_text(command, "--label-table", options.labels.table, "FILE",
-           "Names and colours of labels: a colour table of 3D Slicer's");
+  add_fields(command, options, kOfWhatIsBone, kOfWhatIsBone);
+  add_texts(command, options, kOfWhatIsBone);
 }
 
 void add_scan_source(CLI::App& command, ScanOptions& options) {
@@ -39,16 +99,7 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
                   "the built-in "
                   "tooth")
       ->check(not_empty());
-  add_text(command, "--series", options.read.series, "SERIES",
-           "Which DICOM series, where there are several: its number in what info lists, or the beginning of "
-           "its UID; else the largest CT");
-  command
-      .add_option_function<std::string>(
-          "--as", [&options](const std::string& kind) { options.as_labels = kind == "labels"; },
-          "Take its values for densities, or for labels, all of which are bone; else as it says or looks, "
-          "and with --iso for densities")
-      ->check(one_of("kind", {"scan", "labels"}))
-      ->type_name("scan|labels");
+  add_texts(command, options, kOfTheSource);
   command
       .add_option_function<double>(
           "--max-memory",
@@ -65,12 +116,7 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
   command.option_defaults()->group("Scan");
   add_scan_source(command, options);
   add_bone_options(command, options);
-  const auto take = [&labels = options.labels](const std::vector<std::string>& said) { labels.no_go = said; };
-  command
-      .add_option_function<std::vector<std::string>>("--no-go", take,
-                                                     "Labels that the burr must not touch, by name or value")
-      ->delimiter(',')
-      ->type_name("LABEL,...");
+  add_texts(command, options, kOfNoGo);
 }
 
 namespace {

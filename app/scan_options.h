@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 
+#include "osteomill/base/field.h"
 #include "osteomill/ct/read_labels.h"
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/volume/isovalue.h"
@@ -31,6 +32,25 @@ struct ScanOptions {
   /// Of the built-in tooth (builtin_tooth).
   double refinement = 1;
 };
+
+/// Flags of the fields of a ScanOptions and of what has one: how the scan is read; what of it is bone;
+/// what the burr must not touch; another value makes another bone.
+inline constexpr unsigned kOfTheSource = 1u << 8, kOfWhatIsBone = 1u << 9, kOfNoGo = 1u << 10,
+                          kOfTheBone = 1u << 11;
+
+}  // namespace osteomill::app
+
+namespace osteomill {
+
+/// Returns the numbers and the texts of a scan's options but the scan itself.
+template <>
+const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>();
+template <>
+const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOptions, std::string>();
+
+}  // namespace osteomill
+
+namespace osteomill::app {
 
 /// The bone's name where no scan is named.
 inline constexpr const char* kBuiltinTooth = "built-in tooth";

@@ -1,15 +1,11 @@
 #include "app/study_trials.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
-#include "osteomill/base/csv_field.h"
 #include "osteomill/base/input_error.h"
-#include "osteomill/base/parse_number.h"
 #include "osteomill/study/match_stiffness.h"
 #include "osteomill/study/study_slices.h"
 
@@ -48,69 +44,30 @@ std::vector<std::string> doubts_of(StudyTest test, const TrialPlan& trial) {
   return doubts_about(settings, trial.bone.geometry());
 }
 
-// As the command line would have it: "0,0,-1".
-std::vector<double> three_numbers(const std::string& text) {
-  std::vector<double> numbers;
-  for (const std::string_view part : csv_fields(text)) {
-    const auto number = parsed_number<double>(part);
-    if (!number || !std::isfinite(*number)) break;
-    numbers.push_back(*number);
-  }
-  if (numbers.size() != 3) throw std::invalid_argument(text + " is not three numbers, X,Y,Z");
-  return numbers;
-}
-
-std::string joined(const auto& values) {
-  return fmt::format("{}", fmt::join(values, ","));
-}
-
 std::vector<Text> trial_texts() {
   using A = AskedTrial;
-  const auto text = [](const char* option, std::string A::*place, unsigned flags = 0) -> Text {
-    return {{"", "", {}, "", flags, option},
-            [place](const A& a) { return a.*place; },
-            [place](A& a, const std::string& said) { a.*place = said; }};
-  };
-  return {text("scan", &A::scan_name, kOfTheBone),
-          text("series", &A::series, kOfTheBone),
-          text("as", &A::as, kOfTheBone),
-          text("labels", &A::labels, kOfTheBone),
-          text("label-table", &A::label_table, kOfTheBone),
-          text("no-go", &A::no_go, kOfTheBone),
-          text("algorithm", &A::algorithm),
-          text("entry", &A::entry),
-          text("direction", &A::direction)};
-}
-
-void require_one_of(const std::string& kind, const std::string& name, const std::vector<std::string>& names) {
-  if (std::ranges::find(names, name) == names.end())
-    throw std::invalid_argument(fmt::format("there is no {} {}{}", kind, name, did_you_mean(name, names)));
-}
-
-void take_texts(AskedTrial& asked) {
-  if (asked.scan_name != kBuiltIn) asked.scan.scan = asked.scan_name;
-  asked.scan.read.series = asked.series;
-  asked.scan.labels = {asked.labels, asked.label_table, {}};
-  if (!asked.no_go.empty())
-    for (const std::string_view label : csv_fields(asked.no_go)) asked.scan.labels.no_go.emplace_back(label);
-  if (!asked.as.empty()) {
-    require_one_of("kind", asked.as, {"scan", "labels"});
-    asked.scan.as_labels = asked.as == "labels";
-  }
-  require_one_of("algorithm", asked.algorithm, algorithm_names());
-  asked.trial.milling.setup.algorithm = algorithm_named(asked.algorithm);
-  if (!asked.entry.empty()) asked.trial.entry_mm = three_numbers(asked.entry);
-  if (!asked.direction.empty()) asked.trial.direction = three_numbers(asked.direction);
+  const Text scan{{"", "", {}, "", kOfTheBone, "scan"},
+                  [](const A& a) { return a.scan.scan.empty() ? kBuiltIn : a.scan.scan; },
+                  [](A& a, const std::string& name) { a.scan.scan = name == kBuiltIn ? "" : name; }};
+  const Text algorithm{{"", "", {}, "", 0, "algorithm"},
+                       [](const A& a) { return a.trial.milling.setup.algorithm.id.name; },
+                       [](A& a, const std::string& name) {
+                         if (const std::string fault = word_fault("algorithm", name, algorithm_names());
+                             !fault.empty())
+                           throw std::invalid_argument(fault);
+                         a.trial.milling.setup.algorithm = algorithm_named(name);
+                       }};
+  return joined<A, std::string>({{scan},
+                                 fields_within<A>(&A::scan, fields_of<ScanOptions, std::string>()),
+                                 {algorithm},
+                                 fields_within<A>(&A::trial, fields_of<TrialOptions, std::string>())});
 }
 
 std::vector<Field<AskedTrial>> trial_numbers() {
   // Whole numbers beyond this are not numbers of their own in a double.
   constexpr double kMaxSeed = 1ull << 53;
   using A = AskedTrial;
-  std::vector<Field<A>> all{
-      {{"", "", NumberRange::finite(), "", kOfTheBone, "iso"},
-       [](const A& a) { return a.scan.isovalue.value_or(std::numeric_limits<double>::quiet_NaN()); },
-       [](A& a, double value) { a.scan.isovalue = value; }},
+  const std::vector<Field<A>> own{
       field<A>({"", "mm", {0.03, 1}, "Of the built-in tooth", kOfTheBone, "voxel"}, &A::voxel_mm),
       field<A>({"", "Hz", {100, 20000}, "Of the haptic loop", 0, "rate"}, &A::rate_hz),
       field<A>({"", "N s/mm", NumberRange::positive(), "Of the device, on a wall", 0, "device-damping"},
@@ -121,14 +78,13 @@ std::vector<Field<AskedTrial>> trial_numbers() {
       field<A>(
           {"", "", {0, kMaxSeed, true}, "Of the hand's tremor", 0, "seed"},
           [](auto& a) -> auto& { return a.trial.milling.seed; })};
-  const auto add = [&](std::vector<Field<A>> fields) {
-    for (Field<A>& one : fields)
-      if (!one.option.empty()) all.push_back(std::move(one));
-  };
-  add(fields_within<A>(
-      [](auto& a) -> auto& { return a.trial.milling.setup; }, fields_of<MillingSetup>()));
-  add(fields_within<A>(
-      [](auto& a) -> auto& { return a.trial.hand; }, fields_of<OperatorSettings>()));
+  std::vector<Field<A>> all =
+      joined<A>({fields_within<A>(&A::scan, fields_of<ScanOptions>()), own,
+                 fields_within<A>(
+                     [](auto& a) -> auto& { return a.trial.milling.setup; }, fields_of<MillingSetup>()),
+                 fields_within<A>(
+                     [](auto& a) -> auto& { return a.trial.hand; }, fields_of<OperatorSettings>())});
+  std::erase_if(all, [](const Field<A>& one) { return one.option.empty(); });
   return all;
 }
 
@@ -187,7 +143,6 @@ AskedTrial asked_trial(const StudySettings& settings) {
   AskedTrial asked;
   asked.trial.hand.script.until_leant = true;
   for (const auto& [key, text] : settings) set_one(asked, key, text);
-  take_texts(asked);
   for (const auto& [key, text] : settings)
     if (asked.draw_hand && key.starts_with("hand-"))
       throw std::invalid_argument("draw-hand draws what " + key + " sets");
@@ -238,8 +193,8 @@ TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
   set.device_damping_Ns_per_mm = asked.device_damping_Ns_per_mm;
   if (design_.test != StudyTest::milling) return {wall_of(set.tool), "a wall", {}, {}, set, ""};
   Bone& bone = bone_of(asked);
-  const std::string place =
-      tool_text(set.tool) + " " + joined(asked.trial.entry_mm) + " " + joined(asked.trial.direction);
+  std::string place = tool_text(set.tool);
+  for (const auto& text : fields_of<TrialOptions, std::string>()) place += " " + text.get(asked.trial);
   auto entry = bone.entries.find(place);
   if (entry == bone.entries.end())
     entry = bone.entries.emplace(place, entry_into(bone.volume, asked.trial)).first;

@@ -27,13 +27,7 @@ struct AskedTrial {
   double device_damping_Ns_per_mm = 0.005;
   double grip = 1;
   bool draw_hand = false;
-  /// As a study's file says them, from which `scan` and `trial` are made; empty for nothing.
-  std::string scan_name = "built-in", series, as, labels, label_table, no_go, entry, direction;
-  std::string algorithm = default_algorithm().id.name;
 };
-
-/// A flag of the fields of an AskedTrial: another value makes another bone.
-inline constexpr unsigned kOfTheBone = 1u << 8;
 
 /// Returns the numbers and the texts of a trial, each under its option.
 const std::vector<Field<AskedTrial>>& numbers_of_a_trial();

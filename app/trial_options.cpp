@@ -1,34 +1,62 @@
 #include "app/trial_options.h"
 
-#include <optional>
-#include <string>
+#include <stdexcept>
+#include <string_view>
 
-#include <CLI/Option.hpp>
+#include <fmt/format.h>
+
+#include "osteomill/base/csv_field.h"
+#include "osteomill/base/parse_number.h"
 
 #include "app/option_checks.h"
 #include "app/progress.h"
 
-namespace osteomill::app {
+namespace osteomill {
+
+using app::TrialOptions;
 
 namespace {
 
-void add_vector(CLI::App& command, const std::string& name, std::vector<double>& value,
-                const std::string& what) {
-  command.add_option(name, value, what)->delimiter(',')->expected(3)->type_name("X,Y,Z");
+// As the command line has it: "0,0,-1".
+Vec3 three_numbers(const std::string& text) {
+  const std::vector<std::string_view> parts = csv_fields(text);
+  Vec3 numbers;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto number = n < parts.size() ? parsed_finite(parts[n]) : std::nullopt;
+    if (!number || parts.size() != 3) throw std::invalid_argument(text + " is not three numbers, X,Y,Z");
+    numbers[static_cast<Eigen::Index>(n)] = *number;
+  }
+  return numbers;
 }
 
-std::optional<Vec3> as_vector(const std::vector<double>& numbers) {
-  if (numbers.empty()) return std::nullopt;
-  return Vec3(numbers[0], numbers[1], numbers[2]);
+Field<TrialOptions, std::string> vector_field(const char* option, std::optional<Vec3> TrialOptions::*place,
+                                              const char* doc) {
+  return {{"", "X,Y,Z", NumberRange::count(3, 3), doc, 0, option},
+          [place](const TrialOptions& s) {
+            const auto& v = s.*place;
+            return v ? fmt::format("{},{},{}", v->x(), v->y(), v->z()) : "";
+          },
+          [place](TrialOptions& s, const std::string& text) { s.*place = three_numbers(text); }};
 }
 
 }  // namespace
 
+template <>
+const std::vector<Field<TrialOptions, std::string>>& fields_of<TrialOptions, std::string>() {
+  static const std::vector<Field<TrialOptions, std::string>> all{
+      vector_field("entry", &TrialOptions::entry_W_mm,
+                   "From where the tool enters, in mm; else the top of the bone"),
+      vector_field("direction", &TrialOptions::direction_W, "Which way it enters; else 0,0,-1")};
+  return all;
+}
+
+}  // namespace osteomill
+
+namespace osteomill::app {
+
 void add_trial_options(CLI::App& command, TrialOptions& options) {
   command.option_defaults()->group("The hand and its device");
-  add_vector(command, "--entry", options.entry_mm,
-             "From where the tool enters, in mm; else the top of the bone");
-  add_vector(command, "--direction", options.direction, "Which way it enters; else 0,0,-1");
+  add_texts(command, options);
   add_fields(command, options.hand);
   add_milling_options(command, options.milling);
 }
@@ -41,8 +69,7 @@ TrialSettings trial_settings(const TrialOptions& options) {
 }
 
 MillingEntry entry_into(const Volume& bone, const TrialOptions& options) {
-  return osteomill::place_entry(bone, options.milling.setup.tool, as_vector(options.entry_mm),
-                                as_vector(options.direction));
+  return osteomill::place_entry(bone, options.milling.setup.tool, options.entry_W_mm, options.direction_W);
 }
 
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {

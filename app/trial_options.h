@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,21 @@ namespace osteomill::app {
 struct TrialOptions {
   MillingOptions milling;
   OperatorSettings hand;
-  /// Three numbers each, or none.
-  std::vector<double> entry_mm;
-  std::vector<double> direction;
+  std::optional<Vec3> entry_W_mm;
+  std::optional<Vec3> direction_W;
 };
+
+}  // namespace osteomill::app
+
+namespace osteomill {
+
+/// Returns the texts of a trial's options: where the tool enters.
+template <>
+const std::vector<Field<app::TrialOptions, std::string>>& fields_of<app::TrialOptions, std::string>();
+
+}  // namespace osteomill
+
+namespace osteomill::app {
 
 /// Adds --seconds, --push, --entry, --direction, the settings of hand and device, and all milling options.
 void add_trial_options(CLI::App& command, TrialOptions& options);

@@ -48,9 +48,9 @@ std::string range_text(const NumberRange& range);
 struct FieldDescription {
   /// In files; empty if they do not have it.
   std::string name;
-  /// Of ASCII in files of settings ("mm^3"); empty for a pure number.
+  /// Of ASCII in files of settings ("mm^3"); empty for a pure number; of a text what it holds ("FILE").
   std::string unit;
-  /// Of a number; a switch is 0 or 1.
+  /// Of a number; a switch is 0 or 1. Of a text that is a list, how many it holds.
   NumberRange range;
   /// One line.
   std::string doc;
@@ -72,45 +72,48 @@ struct Field : FieldDescription {
   std::function<void(Struct&, const Value&)> set;
 };
 
-/// Returns every field of a struct, in the order in which people should read them; specialised beside each
-/// struct that has any. The list is made at the first call and stays.
-template <typename Struct>
-const std::vector<Field<Struct>>& fields_of();
+/// Returns every field of a struct that is a number, or a text, in the order in which people should read
+/// them; specialised beside each struct that has any. The list is made at the first call and stays.
+template <typename Struct, typename Value = double>
+const std::vector<Field<Struct, Value>>& fields_of();
 
-/// Makes the field of a number, a switch or an enumeration. `place` gives a reference to it: a pointer to the
-/// member, or a function that takes the struct, constant or not.
+/// Makes the field of a number, a switch, an enumeration or a text or path. `place` gives a reference to it:
+/// a pointer to the member, or a function that takes the struct, constant or not.
 template <typename Struct, typename Place>
-Field<Struct> field(FieldDescription description, Place place) {
+auto field(FieldDescription description, Place place) {
   using Value = std::remove_cvref_t<std::invoke_result_t<Place, Struct&>>;
-  return {std::move(description),
-          [place](const Struct& s) { return static_cast<double>(std::invoke(place, s)); },
-          [place](Struct& s, double value) {
-            if constexpr (std::is_same_v<Value, bool>) {
-              std::invoke(place, s) = value != 0;
-            } else {
-              std::invoke(place, s) = static_cast<Value>(value);
-            }
-          }};
+  using Shown = std::conditional_t<std::is_arithmetic_v<Value> || std::is_enum_v<Value>, double, std::string>;
+  return Field<Struct, Shown>{std::move(description),
+                              [place](const Struct& s) { return static_cast<Shown>(std::invoke(place, s)); },
+                              [place](Struct& s, const Shown& value) {
+                                if constexpr (std::is_same_v<Value, bool>) {
+                                  std::invoke(place, s) = value != 0;
+                                } else {
+                                  std::invoke(place, s) = static_cast<Value>(value);
+                                }
+                              }};
 }
 
 /// Returns the fields of a part of `Outer` as fields of the whole. `place` gives a reference to the part.
-template <typename Outer, typename Place,
+template <typename Outer, typename Place, typename Value,
           typename Inner = std::remove_cvref_t<std::invoke_result_t<Place, Outer&>>>
-std::vector<Field<Outer>> fields_within(Place place, const std::vector<Field<Inner>>& inner) {
-  std::vector<Field<Outer>> fields;
-  for (const Field<Inner>& one : inner) {
-    fields.push_back(
-        {one, [place, get = one.get](const Outer& outer) { return get(std::invoke(place, outer)); },
-         [place, set = one.set](Outer& outer, double value) { set(std::invoke(place, outer), value); }});
+std::vector<Field<Outer, Value>> fields_within(Place place, const std::vector<Field<Inner, Value>>& inner) {
+  std::vector<Field<Outer, Value>> fields;
+  for (const Field<Inner, Value>& one : inner) {
+    fields.push_back({one,
+                      [place, get = one.get](const Outer& outer) { return get(std::invoke(place, outer)); },
+                      [place, set = one.set](Outer& outer, const Value& value) {
+                        set(std::invoke(place, outer), value);
+                      }});
   }
   return fields;
 }
 
 /// Returns the fields of several lists as one.
-template <typename Struct>
-std::vector<Field<Struct>> joined(std::vector<std::vector<Field<Struct>>> lists) {
-  std::vector<Field<Struct>> all;
-  for (std::vector<Field<Struct>>& list : lists) std::ranges::move(list, std::back_inserter(all));
+template <typename Struct, typename Value = double>
+std::vector<Field<Struct, Value>> joined(std::vector<std::vector<Field<Struct, Value>>> lists) {
+  std::vector<Field<Struct, Value>> all;
+  for (std::vector<Field<Struct, Value>>& list : lists) std::ranges::move(list, std::back_inserter(all));
   return all;
 }
 
