@@ -36,7 +36,7 @@ ids=$(strings -n 16 c/*.h5 | grep -cE '^[0-9a-f]{16}$') || true
 
 "$osteomill" compare --seconds 0.3 --algorithm line-proxy --no-stability --quiet --push 2 --out d >out
 "$osteomill" report c/*.h5 d/*.h5 --quiet --out e >out
-grep -q "These recordings differ in burr_radius (mm)" e/report.html || fault "the mix is not told"
+grep -q "These recordings differ in burr_radius_mm" e/report.html || fault "the mix is not told"
 grep -q "<th>[^<]*seed" e/report.html && grep -q "<th>[^<]*hand.push (N)" e/report.html || fault "what differs is no column"
 grep -q "the same bone" e/report.html && fault "the mix is said to be of the same bone"
 exit 0
