@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include <CLI/Error.hpp>
@@ -95,14 +96,22 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   return fmt::format("; there {} {}", known.size() == 1 ? "is" : "are", with_and(known));
 }
 
-std::string word_fault(const std::string& kind, const std::string& word,
-                       const std::vector<std::string>& names) {
-  if (std::ranges::find(names, word) != names.end()) return "";
-  return fmt::format("there is no {} {}{}", kind, word, did_you_mean(word, names));
+void require_word(const std::string& kind, const std::string& word, const std::vector<std::string>& names) {
+  if (std::ranges::find(names, word) == names.end())
+    throw std::invalid_argument(fmt::format("there is no {} {}{}", kind, word, did_you_mean(word, names)));
 }
 
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names) {
-  return CLI::Validator([=](std::string& word) { return word_fault(kind, word, names); }, "");
+  return CLI::Validator(
+      [=](std::string& word) {
+        try {
+          require_word(kind, word, names);
+          return std::string();
+        } catch (const std::invalid_argument& fault) {
+          return std::string(fault.what());
+        }
+      },
+      "");
 }
 
 std::vector<std::string> option_names(const CLI::App& command) {

@@ -18,9 +18,9 @@ namespace osteomill::app {
 /// known words is near and they are few, "; there are milling and wall", else nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
-/// Returns "there is no algorithm x; did you mean ..." where `word` is none of `names`, else nothing.
-std::string word_fault(const std::string& kind, const std::string& word,
-                       const std::vector<std::string>& names);
+/// Throws std::invalid_argument, "there is no algorithm x; did you mean ...", where `word` is none of
+/// `names`.
+void require_word(const std::string& kind, const std::string& word, const std::vector<std::string>& names);
 /// Refuses what is none of `names`; `kind` says what they are ("algorithm").
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names);
 

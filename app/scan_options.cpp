@@ -1,7 +1,6 @@
 #include "app/scan_options.h"
 
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,50 +31,35 @@ const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>() {
 template <>
 const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOptions, std::string>() {
   using S = app::ScanOptions;
+  const auto text = [](const char* option, const char* type, unsigned of, const char* doc) {
+    return FieldDescription{"", type, {}, doc, of | app::kOfTheBone, option};
+  };
+  FieldDescription no_go =
+      text("no-go", "LABEL,...", app::kOfNoGo, "Labels that the burr must not touch, by name or value");
+  no_go.range = NumberRange::count(1);
   static const std::vector<Field<S, std::string>> all{
       field<S>(
-          {"",
-           "SERIES",
-           {},
-           "Which DICOM series, where there are several: its number in what info lists, or the "
-           "beginning of its UID; else the largest CT",
-           app::kOfTheSource | app::kOfTheBone,
-           "series"},
+          text("series", "SERIES", app::kOfTheSource,
+               "Which DICOM series, where there are several: its number in what info lists, or the "
+               "beginning of its UID; else the largest CT"),
           [](auto& s) -> auto& { return s.read.series; }),
-      {{"",
-        "scan|labels",
-        {},
-        "Take its values for densities, or for labels, all of which are bone; else as it says or looks, and "
-        "with --iso for densities",
-        app::kOfTheSource | app::kOfTheBone,
-        "as"},
-       [](const S& s) { return !s.as_labels   ? ""
-                               : *s.as_labels ? "labels"
-                                              : "scan"; },
+      {text("as", "scan|labels", app::kOfTheSource,
+            "Take its values for densities, or for labels, all of which are bone; else as it says or looks, "
+            "and with --iso for densities"),
+       [](const S& s) { return s.as_labels ? *s.as_labels ? "labels" : "scan" : ""; },
        [](S& s, const std::string& kind) {
-         if (const std::string fault = app::word_fault("kind", kind, {"scan", "labels"}); !fault.empty())
-           throw std::invalid_argument(fault);
+         app::require_word("kind", kind, {"scan", "labels"});
          s.as_labels = kind == "labels";
        }},
       field<S>(
-          {"",
-           "FILE",
-           {},
-           "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid",
-           app::kOfWhatIsBone | app::kOfTheBone,
-           "labels"},
+          text("labels", "FILE", app::kOfWhatIsBone,
+               "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid"),
           [](auto& s) -> auto& { return s.labels.map; }),
       field<S>(
-          {"",
-           "FILE",
-           {},
-           "Names and colours of labels: a colour table of 3D Slicer's",
-           app::kOfWhatIsBone | app::kOfTheBone,
-           "label-table"},
+          text("label-table", "FILE", app::kOfWhatIsBone,
+               "Names and colours of labels: a colour table of 3D Slicer's"),
           [](auto& s) -> auto& { return s.labels.table; }),
-      {{"", "LABEL,...", NumberRange::count(1), "Labels that the burr must not touch, by name or value",
-        app::kOfNoGo | app::kOfTheBone, "no-go"},
-       [](const S& s) { return fmt::format("{}", fmt::join(s.labels.no_go, ",")); },
+      {no_go, [](const S& s) { return fmt::format("{}", fmt::join(s.labels.no_go, ",")); },
        [](S& s, const std::string& labels) {
          const auto names = csv_fields(labels);
          s.labels.no_go.assign(names.begin(), names.end());

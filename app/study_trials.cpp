@@ -52,9 +52,7 @@ std::vector<Text> trial_texts() {
   const Text algorithm{{"", "", {}, "", 0, "algorithm"},
                        [](const A& a) { return a.trial.milling.setup.algorithm.id.name; },
                        [](A& a, const std::string& name) {
-                         if (const std::string fault = word_fault("algorithm", name, algorithm_names());
-                             !fault.empty())
-                           throw std::invalid_argument(fault);
+                         require_word("algorithm", name, algorithm_names());
                          a.trial.milling.setup.algorithm = algorithm_named(name);
                        }};
   return joined<A, std::string>({{scan},
