@@ -90,8 +90,8 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
 }
 
 // How far beyond the cylinder's nearer end, negative within.
-HWY_INLINE V beyond_end(const Cores& cores, V z) {
-  return hn::Max(hn::Neg(z), hn::Sub(z, constant(cores.cylinder_length_mm)));
+HWY_INLINE V beyond_end(V z, V length) {
+  return hn::Max(hn::Neg(z), hn::Sub(z, length));
 }
 
 void GatherNearBall(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
@@ -104,16 +104,17 @@ void GatherNearBall(const BrickPoints& points, std::uint32_t first_chunk, const 
 
 void GatherNearCylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
                         const Reach& reach, NearPoints& near) {
+  const V near_mm = constant(reach.near_mm), per_lever = constant(reach.per_lever);
+  const V radius = constant(reach.cores.cylinder_radius_mm),
+          length = constant(reach.cores.cylinder_length_mm);
   gather(
       points, first_chunk, frame,
       [&](const Vector& at) HWY_ATTR {
         const V rho2 = hn::Add(squared(at.x), squared(at.y));
         const V lever = hn::Sqrt(hn::Add(rho2, squared(at.z)));
-        const V within = hn::Add(constant(reach.near_mm), hn::Mul(constant(reach.per_lever), lever));
-        const M beside = hn::Lt(rho2, squared(hn::Add(constant(reach.cores.cylinder_radius_mm), within)));
-        return hn::And(beside,
-                       hn::And(hn::Gt(at.z, hn::Neg(within)),
-                               hn::Lt(at.z, hn::Add(constant(reach.cores.cylinder_length_mm), within))));
+        const V within = hn::Add(near_mm, hn::Mul(per_lever, lever));
+        const M beside = hn::Lt(rho2, squared(hn::Add(radius, within)));
+        return hn::And(beside, hn::And(hn::Gt(at.z, hn::Neg(within)), hn::Lt(at.z, hn::Add(length, within))));
       },
       near);
 }
@@ -173,6 +174,7 @@ void SumBall(const NearPoints& near, const Frame& moved, const Cores& cores, con
              Lanes<BallSum>& lanes, MeasuredPoints& measured) {
   using S = BallSum;
   const BarrierLaw law(barrier);
+  const V ball_radius = constant(cores.ball_radius_mm);
   std::size_t touching = 0;
   measured.count = near.count;
   for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
@@ -184,7 +186,7 @@ void SumBall(const NearPoints& near, const Frame& moved, const Cores& cores, con
       const V r = hn::Sqrt(dot(at, at));
       const V inverse = hn::Div(constant(1), hn::Max(r, constant(kTiny_mm)));
       const Vector out{hn::Mul(at.x, inverse), hn::Mul(at.y, inverse), hn::Mul(at.z, inverse)};
-      const V distance = hn::Sub(r, constant(cores.ball_radius_mm));
+      const V distance = hn::Sub(r, ball_radius);
       hn::StoreU(distance, d, &measured.distance[n]);
       store_rows(out, measured.out_x, measured.out_y, measured.out_z, n);
       nearest = hn::Min(nearest, distance);
@@ -222,6 +224,7 @@ void SumSide(const NearPoints& near, const Frame& moved, const Cores& cores, con
              Lanes<SideSum>& lanes, MeasuredPoints& measured) {
   using S = SideSum;
   const BarrierLaw law(barrier);
+  const V radius = constant(cores.cylinder_radius_mm), length = constant(cores.cylinder_length_mm);
   std::size_t touching = 0;
   measured.count = near.count;
   measured.at_end_count = 0;
@@ -234,8 +237,8 @@ void SumSide(const NearPoints& near, const Frame& moved, const Cores& cores, con
       const V rho = hn::Sqrt(hn::Add(squared(at.x), squared(at.y)));
       const V inverse = hn::Div(constant(1), hn::Max(rho, constant(kTiny_mm)));
       const Vector out{hn::Mul(at.x, inverse), hn::Mul(at.y, inverse), hn::Zero(d)};
-      const V beyond_side = hn::Sub(rho, constant(cores.cylinder_radius_mm));
-      const M at_end = hn::Gt(beyond_end(cores, at.z), hn::Min(hn::Zero(d), beyond_side));
+      const V beyond_side = hn::Sub(rho, radius);
+      const M at_end = hn::Gt(beyond_end(at.z, length), hn::Min(hn::Zero(d), beyond_side));
       const V distance = hn::IfThenElse(at_end, constant(PointChunk::kFarAway_mm), beyond_side);
       store_rows(at, measured.x, measured.y, measured.z, n);
       hn::StoreU(distance, d, &measured.distance[n]);
