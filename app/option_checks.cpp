@@ -167,7 +167,7 @@ CLI::Validator number_of(const NumberRange& range) {
   return CLI::Validator(
       [range](std::string& text) {
         double value = 0;
-        return number_fault(text, range, value);
+        return text.empty() ? "is empty" : number_fault(text, range, value);
       },
       "");
 }
