@@ -6,7 +6,8 @@
 
 namespace osteomill {
 
-/// Free text as a field of a CSV file (RFC 4180): in quotes where it holds what separates fields or rows.
+/// Returns free text as a field of a CSV file (RFC 4180): in quotes if it holds what separates fields or
+/// rows.
 inline std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -14,7 +15,7 @@ inline std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-/// The fields of a row in which none stands in quotes, without the blanks about them.
+/// Splits a row in which no field stands in quotes into its fields, without the blanks about them.
 inline std::vector<std::string_view> csv_fields(std::string_view row) {
   if (row.ends_with('\r')) row.remove_suffix(1);
   std::vector<std::string_view> fields;

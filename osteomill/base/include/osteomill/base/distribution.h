@@ -16,7 +16,8 @@ struct PercentileRanks {
 };
 PercentileRanks percentile_ranks(double share, std::size_t count);
 
-/// 0 for no values. Not for the haptic tick: it sorts a copy.
+/// Returns the percentile of the values for this share; 0 if there are no values. Not for the haptic tick: it
+/// sorts a copy.
 double percentile(std::vector<double> values, double share);
 
 /// Median, 99th percentile and greatest of values. Zeros for no values.
@@ -27,9 +28,9 @@ struct Distribution {
 };
 Distribution distribution_of(std::vector<double> values);
 
-/// What `rate_hz` means wherever osteomill writes it: the rate that a loop with the period `period_us`
-/// reaches when its ticks are busy for the times that were added. A tick that is done early waits for the
-/// end of its period, so the rate is at most the loop's own. Adding is safe in the haptic tick.
+/// Computes what `rate_hz` means wherever osteomill writes it: the rate that a loop with the period
+/// `period_us` reaches when its ticks are busy for the times that were added. A tick that is done early waits
+/// for the end of its period, so the rate is at most the loop's own. Adding is safe in the haptic tick.
 class HeldRate {
  public:
   explicit HeldRate(double period_us = 1000) : period_us_(period_us) {}
@@ -37,7 +38,7 @@ class HeldRate {
     sum_us_ += std::max(period_us_, busy_us);
     count_ += 1;
   }
-  /// 0 where nothing was added.
+  /// Returns 0 if nothing was added.
   double rate_hz() const { return count_ > 0 ? 1e6 * count_ / sum_us_ : 0; }
 
  private:

@@ -19,7 +19,7 @@ namespace osteomill {
 struct NumberRange {
   double min = std::numeric_limits<double>::lowest();
   double max = std::numeric_limits<double>::max();
-  /// A switch (0 or 1), a count or a choice.
+  /// True if only whole numbers are allowed: a switch (0 or 1), a count or a choice.
   bool whole = false;
 
   friend bool operator==(const NumberRange&, const NumberRange&) = default;
@@ -46,17 +46,20 @@ std::string range_text(const NumberRange& range);
 /// All there is to say of one value, for everything that names, checks, shows, reads or writes it: the
 /// command line, files, tables.
 struct FieldDescription {
-  /// In files; empty if they do not have it.
+  /// The name in files; empty if files do not have the value.
   std::string name;
-  /// Of ASCII in files of settings ("mm^3"); empty for a pure number; of a text what it holds ("FILE").
+  /// The unit, in ASCII as files of settings write it ("mm^3"); empty for a pure number. For a text, a word
+  /// for what it holds ("FILE").
   std::string unit;
-  /// Of a number; a switch is 0 or 1. Of a text that is a list, how many it holds.
+  /// The allowed values of a number; a switch is 0 or 1. For a text that is a list, the allowed number of its
+  /// entries.
   NumberRange range;
-  /// One line.
+  /// A description in one line.
   std::string doc;
-  /// What else holds of it, as the struct's header defines.
+  /// Bits for further properties, which the struct's header defines.
   unsigned flags = 0;
-  /// On the command line, as a key of files for --config and of studies; empty if there is none.
+  /// The name of the option on the command line, which is also its key in files for --config and in studies;
+  /// empty if there is none.
   std::string option = {};
 
   bool has(unsigned flag) const { return (flags & flag) != 0; }

@@ -10,13 +10,12 @@ namespace osteomill {
 
 /// Holds a file or a folder for this object alone, among all programs that ask the same way, until it is
 /// destroyed or its program ends, however that ends. A file system without such locks (folders on NFS) locks
-/// nothing: there everyone gets one.
+/// nothing: there every program gets the lock.
 class FileLock {
  public:
-  /// Returns nothing where another one holds `path`, or nothing is there any longer.
+  /// Returns nothing if another one holds `path`, or if the file is no longer there.
   static std::optional<FileLock> of(const std::filesystem::path& path);
-  /// Creates an empty file and holds it. Throws InputError where there is one already, or none can be
-  /// created.
+  /// Creates an empty file and holds it. Throws InputError if there is one already, or none can be created.
   static FileLock of_new_file(const std::filesystem::path& path);
 
   ~FileLock();
@@ -40,14 +39,14 @@ class FileLock {
 bool is_locked(const std::filesystem::path& path);
 
 /// Renames a file that an earlier program left ("r.part.h5") to the first name that is free ("r.part-1.h5"),
-/// which is returned; nothing where there is none. Throws InputError where a FileLock holds it, or it cannot
-/// be renamed.
+/// which is returned; nothing if there is no file. Throws InputError if a FileLock holds it, or it cannot be
+/// renamed.
 std::optional<std::filesystem::path> set_aside(const std::filesystem::path& path);
 
 /// A folder for output, held by this object alone: a second program that wants it is refused at once.
 class OutputFolder {
  public:
-  /// Creates it, and its parents, if it is not there. Throws InputError where that is impossible, or another
+  /// Creates it, and its parents, if it is not there. Throws InputError if that is impossible, or another
   /// program holds it.
   explicit OutputFolder(std::filesystem::path folder);
   /// Removes what was created here and is still empty.

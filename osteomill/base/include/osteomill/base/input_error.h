@@ -17,7 +17,8 @@ inline std::string in_one_line(std::string_view text) {
   return line;
 }
 
-/// What the user handed us is at fault: a file, a folder, a row of it, or an option's value.
+/// Reports that something the user handed in is at fault: a file, a folder, a row of it, or an option's
+/// value.
 /// The command line prints `what()` as its one line and exits with code 1.
 /// Never thrown inside a haptic tick.
 class InputError : public std::runtime_error {

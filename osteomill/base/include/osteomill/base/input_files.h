@@ -15,12 +15,12 @@ class KeepInputs {
   KeepInputs& operator=(const KeepInputs&) = delete;
 };
 
-/// To be called by whatever opens a file as input, whether the user named it or it was found in a folder,
-/// behind a header or beside a recording. From any thread.
+/// Notes a file that is read as input. All code that opens one calls this, whether the user named the file or
+/// it was found in a folder, behind a header or beside a recording. From any thread.
 void note_input(const std::filesystem::path& path);
 
-/// Whether this file was noted, compared by device and inode. Always false where no KeepInputs lives. From
-/// any thread.
+/// Returns whether this file was noted, compared by device and inode; always false while no KeepInputs lives.
+/// From any thread.
 bool is_input(const std::filesystem::path& path);
 
 }  // namespace osteomill

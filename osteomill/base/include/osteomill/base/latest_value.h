@@ -8,7 +8,7 @@ namespace osteomill {
 
 /// The newest of the values that one thread writes, for one other thread to read whole: three buffers, of
 /// which each thread owns one and the third changes hands. Neither side ever waits; both are safe in the
-/// haptic tick where copying a T is.
+/// haptic tick if copying a T is.
 template <typename T>
 class LatestValue {
  public:
@@ -16,7 +16,7 @@ class LatestValue {
     buffers_[writing_] = value;
     writing_ = shared_.exchange(writing_ | kNew, std::memory_order_acq_rel) & kPlace;
   }
-  /// The newest value written, or a default one before the first. Valid until the next call.
+  /// Returns the newest value written, or a default one before the first. Valid until the next call.
   const T& read() noexcept {
     if ((shared_.load(std::memory_order_relaxed) & kNew) != 0) {
       reading_ = shared_.exchange(reading_, std::memory_order_acq_rel) & kPlace;

@@ -25,30 +25,32 @@ struct Pose {
     const Quat back = orientation.conjugate();
     return {-(back * position_mm), back};
   }
-  /// The same to the last bit.
+  /// Returns whether both are the same to the last bit.
   friend bool operator==(const Pose& a, const Pose& b) {
     return a.position_mm == b.position_mm && a.orientation.coeffs() == b.orientation.coeffs();
   }
 };
 
-/// The rotation vector (axis times angle, rad, angle at most pi) of a unit quaternion.
+/// Returns the rotation vector (axis times angle, rad, angle at most pi) of a unit quaternion.
 Vec3 rotation_vector(const Quat& rotation) noexcept;
 
-/// The unit quaternion that turns by `rotation_vector` (axis times angle, rad); the inverse of the above.
+/// Returns the unit quaternion that turns by `rotation_vector` (axis times angle, rad); the inverse of the
+/// above.
 Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) noexcept;
 
-/// The smallest rotation that turns the direction of `from` into that of `to` (neither of them zero).
+/// Returns the smallest rotation that turns the direction of `from` into that of `to` (neither of them zero).
 Quat smallest_rotation(const Vec3& from, const Vec3& to) noexcept;
 
-/// Returns the rotation that a matrix is within 0.01, else a quaternion that is not finite.
+/// Returns the rotation that a matrix represents within 0.01; a quaternion that is not finite if it
+/// represents none.
 Quat rotation_of(const Mat3& matrix) noexcept;
 
-/// The tool's or device's shaft direction in the outer frame: where the pose's +z axis points.
+/// Returns the tool's or device's shaft direction in the outer frame: the direction of the pose's +z axis.
 inline Vec3 shaft_direction(const Pose& X_WT) noexcept {
   return X_WT.orientation * Vec3::UnitZ();
 }
 
-/// True where every number of the pose is finite.
+/// Returns whether every number of the pose is finite.
 bool is_finite(const Pose& pose) noexcept;
 
 /// The velocity of a frame: of its origin in mm/s, and its angular velocity in rad/s, both in the outer

@@ -6,12 +6,12 @@
 namespace osteomill {
 
 /// Asks the system to run the calling thread before all ordinary ones (SCHED_FIFO) and to keep the program's
-/// memory as it is now in RAM (mlockall). Returns an empty text, or in one line what was refused and why.
-/// What is refused is done without. Makes system calls: before the first tick, not in it.
+/// memory as it is now in RAM (mlockall). Returns an empty text, or in one line what was refused and why; the
+/// program goes on without it. Makes system calls: before the first tick, not in it.
 std::string request_real_time();
 
-/// While one lives the calling thread, and any that it starts, is handed no signal but of its own faults:
-/// whoever handles one (CrashStop) waits for the threads that drive a device.
+/// While one lives, the calling thread and any that it starts receive no signals except those of their own
+/// faults: the code that handles one (CrashStop) waits for the threads that drive a device.
 class SignalsForOthers {
  public:
   SignalsForOthers();

@@ -4,13 +4,13 @@
 
 namespace osteomill {
 
-/// How many a second there were in the last second that was completed, 0 before. Reads no clock itself. Safe
-/// in the haptic tick.
+/// Counts events, and gives how many there were in the last completed second, 0 before. Reads no clock
+/// itself. Safe in the haptic tick.
 class RecentRate {
  public:
   void count() noexcept { ++count_; }
-  /// To be called more often than once a second. `now_s` never goes back; the first second begins with the
-  /// first call.
+  /// Returns that rate. Has to be called more often than once a second. `now_s` never goes back; the first
+  /// second begins with the first call.
   double per_s(double now_s) noexcept {
     const double passed_s = now_s - began_s_;
     if (passed_s >= 1) {

@@ -6,19 +6,19 @@
 
 namespace osteomill {
 
-/// The word as it would be typed into a shell.
+/// Returns the word as it would be typed into a shell.
 std::string quoted(const std::string& word);
 
-/// What another program said, on both its outputs, and how it ended.
+/// The text that another program printed, on both its outputs, and its exit code.
 struct Said {
-  /// Of a shell for programs that are not there.
+  /// The exit code of a shell when there is no such program.
   static constexpr int kNoProgram = 127;
   int exit_code = 0;
   std::string text;
 };
-/// Runs a program, found as a shell finds it, with no input and to its end; of what it prints the first
-/// 16 MB are kept. Throws InputError if it cannot be started, or does not end within `limit`: it is ended
-/// then, with what it has started.
+/// Runs a program, found as a shell finds it, with no input and to its end; keeps the first 16 MB of what it
+/// prints. Throws InputError if it cannot be started, or does not end within `limit`; it is ended then, with
+/// all that it has started.
 Said run_program(const std::vector<std::string>& words,
                  std::chrono::duration<double> limit = std::chrono::minutes(5));
 

@@ -12,9 +12,9 @@ extern "C" void __tsan_ignore_thread_end();
 
 namespace osteomill {
 
-/// A queue of fixed capacity from one thread to one other (moodycamel's, made known to the thread sanitizer).
-/// Both ends are safe in the haptic tick (no allocation, lock or system call) where making and
-/// moving a T is. Made and destroyed while neither thread uses it.
+/// A queue of fixed capacity from one thread to one other (single producer, single consumer; moodycamel's,
+/// made known to the thread sanitizer). Both ends are safe in the haptic tick (no allocation, lock or system
+/// call) if making and moving a T is. It is made and destroyed while neither thread uses it.
 template <typename T>
 class SpscQueue {
  public:
@@ -26,20 +26,20 @@ class SpscQueue {
     }
   }
 
-  /// For the sending thread: makes a value at its place in the queue; false, and nothing made or moved from,
-  /// where the queue is full.
+  /// Makes a value at its place in the queue. Returns false, with nothing made or moved from, if the queue is
+  /// full. For the sending thread.
   template <typename... From>
   bool try_push(From&&... from) {
     const Access access(&queue_);
     return queue_.try_emplace(std::forward<From>(from)...);
   }
-  /// For the receiving thread: the oldest value; false where there is none.
+  /// Takes out the oldest value; returns false if there is none. For the receiving thread.
   bool try_pop(T& value) {
     const Access access(&queue_);
     return queue_.try_dequeue(value);
   }
-  /// For the receiving thread: the oldest value at its place, which stays valid until `pop`; null where there
-  /// is none.
+  /// Returns the oldest value at its place, valid until `pop`; null if there is none. For the receiving
+  /// thread.
   T* front() {
     const Access access(&queue_);
     return queue_.peek();

@@ -11,7 +11,7 @@ namespace osteomill {
 /// asked to end (leftovers.h).
 class TemporaryFolder {
  public:
-  /// Throws InputError where none can be made.
+  /// Throws InputError if none can be made.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

@@ -11,9 +11,10 @@ struct WorkStopped : std::exception {
   const char* what() const noexcept override { return "stopped, since it is no longer wanted"; }
 };
 
-/// While one lives, its listener hears how far the long work of this thread is: reading a scan, meshing it,
-/// preparing an algorithm. The haptic tick reports nothing. The work reports at least about every tenth of a
-/// second; to stop it, throw WorkStopped from the listener, which ends the work and frees its memory.
+/// While an object of this class lives, its listener is told how far the long work of this thread is: reading
+/// a scan, meshing it, preparing an algorithm. The haptic tick reports nothing. The work reports at least
+/// about every tenth of a second; to stop it, throw WorkStopped from the listener, which ends the work and
+/// frees its memory.
 class WorkProgress {
  public:
   /// Called often, in this thread, with the share done of the whole, from 0 to 1 and never falling.
@@ -23,15 +24,15 @@ class WorkProgress {
   WorkProgress(const WorkProgress&) = delete;
   WorkProgress& operator=(const WorkProgress&) = delete;
 
-  /// For the work to call: this share of it (0 to 1) is done. Does nothing where nobody listens.
+  /// For the work to call: this share of it (0 to 1) is done. Does nothing if no listener is set.
   static void done(double share);
   static void done(std::size_t parts, std::size_t of_parts) {
     done(of_parts > 0 ? static_cast<double>(parts) / static_cast<double>(of_parts) : 1);
   }
 
-  /// What is done while one lives is one piece of a larger work: from where the piece before it ended to
-  /// `until`, a share of the larger work. When it is destroyed the piece counts as done, unless an exception
-  /// ended it.
+  /// Marks one piece of a larger work: all that is done while it lives counts from the end of the piece
+  /// before it to `until`, a share of the larger work. When it is destroyed the piece counts as done, unless
+  /// an exception ended it.
   class Part {
    public:
     explicit Part(double until);
@@ -46,11 +47,11 @@ class WorkProgress {
   };
 
   /// A listener for a WorkProgress in another thread, on which this thread waits: it passes that thread's
-  /// progress on to whoever listens to this one's.
+  /// progress on to this one's listener.
   static Listener of_this_thread();
 
  private:
-  // What a thread works on: a piece of the whole, and how far the whole is.
+  // The piece of the whole that a thread works on, and how far the whole is.
   struct Work {
     Listener* listener = nullptr;
     double from = 0;

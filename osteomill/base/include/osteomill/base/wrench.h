@@ -52,11 +52,11 @@ struct SafeWrench {
   WrenchFault fault = WrenchFault::none;
 };
 
-/// The wrench that may be sent: force and torque shortened to the limits without turning them, or zero where
-/// any component is not finite. Safe in the haptic tick.
+/// Returns the wrench that may be sent: force and torque shortened to the limits without turning them, or
+/// zero if any component is not finite. Safe in the haptic tick.
 SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) noexcept;
 
-/// How fast the vectors of force and torque may change; without limit where not set.
+/// Limits how fast the vectors of force and torque may change; no limit unless set.
 struct WrenchRates {
   static constexpr double kAny = std::numeric_limits<double>::infinity();
   double force_N_s = kAny;
@@ -66,10 +66,11 @@ struct WrenchRates {
 /// For a person's hand: 20 N and 500 N mm are gone within 5 ms.
 inline constexpr WrenchRates kRatesForAHand{4000, 1e5};
 
-/// `to`, or as far from `from` towards it as the rates allow in `dt_s`. Safe in the haptic tick.
+/// Returns `to`, or the wrench as far from `from` towards it as the rates allow in `dt_s`. Safe in the haptic
+/// tick.
 Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s) noexcept;
 
-/// True where force and torque are exactly zero.
+/// Returns whether force and torque are exactly zero.
 bool is_zero(const Wrench& wrench) noexcept;
 
 }  // namespace osteomill
