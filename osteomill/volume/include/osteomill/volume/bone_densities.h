@@ -6,7 +6,7 @@ namespace osteomill {
 
 /// The two densities between which milling is counted.
 struct BoneDensities {
-  /// What bone is cut down to: the density of what lies around it.
+  /// The density of what lies around the bone, to which milling cuts bone down.
   double surroundings = 0;
   /// The density at which 1 mm^3 of bone costs 1 mm^3: typical bone (dentine in a tooth).
   double reference = 1;

@@ -8,8 +8,8 @@
 
 namespace osteomill {
 
-/// Where rows of floats lie in one array: rows of `row_length` values begin `row_stride` apart, slices of
-/// `slice_rows` rows `slice_stride` apart; what is between them is 0 and nobody's.
+/// Describes how rows of floats lie in one array: rows of `row_length` values begin `row_stride` apart,
+/// slices of `slice_rows` rows `slice_stride` apart. The floats between them are 0 and unused.
 struct RowLayout {
   std::size_t row_length = 0;
   std::size_t row_stride = 0;
@@ -17,10 +17,11 @@ struct RowLayout {
   std::size_t slice_stride = 0;
   std::size_t slices = 0;
 
-  /// Every row begins with a cache line, and rows that are neighbours, along j or along k, come to different
-  /// sets of the caches: those of a scan 512 voxels wide would share so few that a burr's reach, a tenth of a
-  /// cache's size, throws itself out again and again. Rows or slices of less than 64 lie one behind the
-  /// other: of thin scans the gaps would be most. At most 1.6 times what the values take.
+  /// Lays rows out apart: every row begins with a cache line, and rows that are neighbours, along j or along
+  /// k, come to different sets of the caches: those of a scan 512 voxels wide would share so few that a
+  /// burr's reach, a tenth of a cache's size, throws itself out again and again. Rows or slices of less than
+  /// 64 lie one behind the other, because in thin scans the gaps would take most of the memory. Takes at most
+  /// 1.6 times what the values take.
   static RowLayout apart(std::size_t row_length, std::size_t slice_rows, std::size_t slices);
 
   std::size_t size() const { return slice_stride * slices; }
@@ -29,14 +30,14 @@ struct RowLayout {
 /// An array of floats whose copies share its memory until they differ: a copy costs the pages (4 KiB) that
 /// were written in it or in what it was copied from. Reading costs what reading any array does.
 ///
-/// The system makes a page of its own where one is written for the first time, which takes microseconds; a
-/// thread that cannot wait has `prepare` called for it. One thread writes; no one copies meanwhile.
+/// When a page is written for the first time the system makes a copy of it, which takes microseconds; for a
+/// thread that cannot wait, another thread calls `prepare`. One thread writes; no thread copies meanwhile.
 class CopyOnWriteFloats {
  public:
   CopyOnWriteFloats() = default;
-  /// Row by row from `values`, which holds all rows one behind the other. Gives their memory back while they
-  /// are taken over, so that both never stand whole. Throws std::bad_alloc; std::system_error where a limit
-  /// on file sizes (ulimit -f) forbids it; and WorkStopped as all long work.
+  /// Takes the rows over from `values`, which holds them one behind the other, and gives their memory back
+  /// meanwhile, so that both never stand whole. Throws std::bad_alloc; std::system_error if a limit on file
+  /// sizes (ulimit -f) forbids it; and WorkStopped as all long work.
   CopyOnWriteFloats(std::vector<float> values, const RowLayout& layout);
   CopyOnWriteFloats(const CopyOnWriteFloats& other);
   CopyOnWriteFloats(CopyOnWriteFloats&& other) noexcept { swap(other); }
@@ -48,18 +49,18 @@ class CopyOnWriteFloats {
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  /// 64 bytes behind the last may be read too.
+  /// Returns the first value. 64 bytes behind the last may be read too.
   const float* data() const { return values_; }
   float operator[](std::size_t n) const { return values_[n]; }
   bool operator==(const CopyOnWriteFloats& other) const;
 
-  /// Safe in the haptic tick, and where `prepare` was called swift too.
+  /// Writes one value. Safe in the haptic tick, and fast if `prepare` was called.
   void set(std::size_t n, float value) noexcept {
     values_[n] = value;
     std::atomic_ref(written_[n / kPageFloats]).store(1, std::memory_order_relaxed);
   }
-  /// Has the pages of [first, last] made before they are written. One thread at a time, which may be another
-  /// than the one that writes; waits for the system.
+  /// Makes the pages of [first, last] ready before they are written. One thread at a time, which may be
+  /// another than the one that writes; waits for the system.
   void prepare(std::size_t first, std::size_t last);
 
  private:
@@ -72,7 +73,7 @@ class CopyOnWriteFloats {
   std::shared_ptr<const Original> original_;
   float* values_ = nullptr;
   std::size_t size_ = 0;
-  // By page: whether it was made for this copy, and so may differ from the original.
+  // For each page: whether it was made for this copy, and so may differ from the original.
   std::vector<std::uint8_t> written_;
 };
 

@@ -8,14 +8,15 @@
 
 namespace osteomill {
 
-/// The densities of 8 x 8 x 8 voxels, the pieces in which changes of the bone go from thread to thread.
+/// The densities of a brick of 8 x 8 x 8 voxels, the piece in which changes of the bone go from thread to
+/// thread. (Ranges, surface and bone points have bricks of their own.)
 struct DensityBlock {
   static constexpr int kVoxels = 8;
 
   /// The lowest voxel; the brick may reach beyond the grid, where its densities mean nothing.
   VoxelIndex first;
   VoxelIndex last() const { return {first.i + kVoxels - 1, first.j + kVoxels - 1, first.k + kVoxels - 1}; }
-  /// Along i fastest.
+  /// The densities in row-major order, i fastest.
   std::array<float, static_cast<std::size_t>(kVoxels* kVoxels* kVoxels)> densities;
 
   /// Returns its voxels that lie in the grid.
@@ -28,7 +29,7 @@ struct DensityBlock {
   }
 
   DensityBlock() = default;
-  /// As the grid is now. Safe in the haptic tick.
+  /// Copies the grid's densities as they are now, from voxel `first` on. Safe in the haptic tick.
   DensityBlock(const DensityGrid& grid, const VoxelIndex& first) noexcept;
 };
 

@@ -12,34 +12,35 @@
 
 namespace osteomill {
 
-/// The densities of a scan, one float a voxel (Hounsfield units where the scan has them), in rows along i.
-/// Outside the grid there is nothing: every voxel there counts as `outside_density()`. Copies share
-/// the memory of what was changed in none of them. Reading is safe in the haptic tick; one thread writes.
+/// The densities of a scan, one float a voxel (Hounsfield units if the scan has them), in rows along i.
+/// Outside the grid there is nothing: every voxel there counts as `outside_density()`. Copies share the
+/// memory of all that was changed in none of them. Reading is safe in the haptic tick; one thread writes.
 class DensityGrid {
  public:
   DensityGrid() = default;
   /// `densities` has `geometry.voxel_count()` values, i running fastest, all finite (the readers see to
-  /// that). Throws std::invalid_argument where it has another count, or none.
+  /// that). Throws std::invalid_argument if the count differs or is 0.
   DensityGrid(const GridGeometry& geometry, std::vector<float> densities);
 
   const GridGeometry& geometry() const { return geometry_; }
-  /// As they lie in memory, to be kept and compared.
+  /// Returns the densities as they lie in memory, to be kept and compared.
   const CopyOnWriteFloats& densities() const { return densities_; }
-  /// The densities of row (j, k), from i = 0.
+  /// Returns the densities of row (j, k), from i = 0.
   std::span<const float> row(int j, int k) const noexcept {
     return {densities_.data() + place(0, j, k), layout_.row_length};
   }
-  /// Where the density of `v` lies, which must be in the grid. Those that follow along i lie behind it; along
-  /// j and k the next are row_stride() and slice_stride() floats on. 64 bytes behind any may be read.
+  /// Returns the address of the density of `v`, which must be in the grid. Those that follow along i lie
+  /// behind it; along j and k the next are row_stride() and slice_stride() floats on. 64 bytes behind any may
+  /// be read.
   const float* address_of(const VoxelIndex& v) const noexcept {
     return densities_.data() + place(v.i, v.j, v.k);
   }
   std::ptrdiff_t row_stride() const { return static_cast<std::ptrdiff_t>(layout_.row_stride); }
   std::ptrdiff_t slice_stride() const { return static_cast<std::ptrdiff_t>(layout_.slice_stride); }
-  /// The least density of the grid as it was made.
+  /// Returns the least density of the grid as it was made.
   float outside_density() const { return outside_density_; }
 
-  /// The voxel's number, i running fastest: not where it lies in memory.
+  /// Returns the voxel's number, i running fastest: not its place in memory.
   std::size_t linear_index(const VoxelIndex& v) const noexcept {
     return row_major(geometry_.dims, v.i, v.j, v.k);
   }
@@ -49,7 +50,7 @@ class DensityGrid {
   }
   /// `v` must lie in the grid.
   float operator[](const VoxelIndex& v) const { return *address_of(v); }
-  /// Any `v`; the outside density beyond the border.
+  /// Returns the density of any `v`; the outside density beyond the border.
   float at_or_outside(const VoxelIndex& v) const noexcept {
     return contains(v) ? *address_of(v) : outside_density_;
   }
@@ -64,8 +65,8 @@ class DensityGrid {
   void set(const VoxelIndex& v, float density) noexcept {
     densities_.set(place(v.i, v.j, v.k), density);
   }
-  /// Has the memory for changes about `changed` made before they come (CopyOnWriteFloats::prepare): as far as
-  /// a burr may go on from there in some tens of milliseconds.
+  /// Makes the memory for changes about `changed` ready before they come (CopyOnWriteFloats::prepare), as far
+  /// as a burr may go on from there in some tens of milliseconds.
   void prepare_about(const VoxelBox& changed);
 
  private:
@@ -89,11 +90,11 @@ void for_each_row(const DensityGrid& grid, const Use& use) {
   for_each_with_progress(rows, [&](const VoxelIndex& v) { use(grid.row(v.j, v.k)); });
 }
 
-/// The densities of every `every`th voxel in the order of their numbers.
+/// Returns the densities of every `every`th voxel in the order of their numbers.
 std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every);
 
-/// One voxel's part in a hash that is the sum of all parts (modulo 2^64), so that it follows a change at the
-/// cost of what changes, in any order. Safe in the haptic tick.
+/// Returns one voxel's part in a hash that is the sum of all parts (modulo 2^64). So a change costs only what
+/// changes, in any order. Safe in the haptic tick.
 inline std::uint64_t density_hash(std::size_t voxel, float density) noexcept {
   std::uint64_t x = (static_cast<std::uint64_t>(voxel) << 32) ^ std::bit_cast<std::uint32_t>(density);
   x *= 0x9e3779b97f4a7c15;
@@ -102,7 +103,7 @@ inline std::uint64_t density_hash(std::size_t voxel, float density) noexcept {
   return x ^ (x >> 32);
 }
 
-/// FNV-1a, a word at a time.
+/// Hashes words by FNV-1a, a word at a time.
 class WordHash {
  public:
   void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3; }
@@ -112,7 +113,7 @@ class WordHash {
   std::uint64_t hash_ = 0xcbf29ce484222325;
 };
 
-/// A number that two scans hardly share. Goes through every voxel; not for the tick.
+/// Returns a number that two scans hardly share. Goes through every voxel; not for the tick.
 std::uint64_t fingerprint_of(const DensityGrid& grid);
 
 }  // namespace osteomill

@@ -16,7 +16,8 @@ class EditableVolume {
   /// Puts the block's densities into the bone, and the bone's into the block: a second call undoes the first.
   /// Returns which voxels changed. The bone's ranges are exact again if a density rose.
   VoxelBox swap(DensityBlock& block);
-  /// Bone is where the density is greater from now on. Throws std::invalid_argument if it is not finite.
+  /// Sets the density above which there is bone from now on. Throws std::invalid_argument if it is not
+  /// finite.
   void set_isovalue(double isovalue) { bone_.set_isovalue(isovalue); }
 
  private:

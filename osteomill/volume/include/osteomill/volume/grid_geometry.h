@@ -29,7 +29,7 @@ struct VoxelBox {
     return v.i >= first.i && v.i <= last.i && v.j >= first.j && v.j <= last.j && v.k >= first.k &&
            v.k <= last.k;
   }
-  /// Grown so that it contains `v`.
+  /// Grows the box so that it contains `v`.
   void include(const VoxelIndex& v) {
     if (empty()) {
       first = last = v;
@@ -38,29 +38,29 @@ struct VoxelBox {
     first = {std::min(first.i, v.i), std::min(first.j, v.j), std::min(first.k, v.k)};
     last = {std::max(last.i, v.i), std::max(last.j, v.j), std::max(last.k, v.k)};
   }
-  /// Wider by `voxels` on every side (an empty box stays empty).
+  /// Returns the box wider by `voxels` on every side (an empty box stays empty).
   VoxelBox grown(int voxels) const {
     if (empty()) return *this;
     return {{first.i - voxels, first.j - voxels, first.k - voxels},
             {last.i + voxels, last.j + voxels, last.k + voxels}};
   }
-  /// The part that is in `other` too.
+  /// Returns the part that is in `other` too.
   VoxelBox intersected(const VoxelBox& other) const {
     return {{std::max(first.i, other.first.i), std::max(first.j, other.first.j),
              std::max(first.k, other.first.k)},
             {std::min(last.i, other.last.i), std::min(last.j, other.last.j), std::min(last.k, other.last.k)}};
   }
-  /// How many voxels it has along each axis, where it is not empty.
+  /// Returns how many voxels it has along each axis. It must not be empty.
   std::array<int, 3> dims() const {
     return {last.i - first.i + 1, last.j - first.j + 1, last.k - first.k + 1};
   }
-  /// The bricks of `side` voxels in which it lies, by their coordinates, counted from voxel 0. The box has no
-  /// coordinates below 0.
+  /// Returns the bricks of `side` voxels in which it lies, as a box of their coordinates, counted from voxel
+  /// 0. The box has no coordinates below 0.
   VoxelBox bricks(int side) const {
     if (empty()) return {};
     return {{first.i / side, first.j / side, first.k / side}, {last.i / side, last.j / side, last.k / side}};
   }
-  /// The voxels of one of those bricks.
+  /// Returns the voxels of one of those bricks.
   static VoxelBox of_brick(const VoxelIndex& brick, int side) {
     const VoxelIndex first{brick.i * side, brick.j * side, brick.k * side};
     return {first, {first.i + side - 1, first.j + side - 1, first.k + side - 1}};
@@ -77,7 +77,7 @@ void for_each(const VoxelBox& box, const Use& use) {
   }
 }
 
-/// The same where it takes long: says after each slice how far it is (WorkProgress).
+/// Does the same for long work: reports after each slice how far it is (WorkProgress).
 template <typename Use>
 void for_each_with_progress(const VoxelBox& box, const Use& use) {
   for (int k = box.first.k; k <= box.last.k; ++k) {
@@ -86,7 +86,7 @@ void for_each_with_progress(const VoxelBox& box, const Use& use) {
   }
 }
 
-/// Where a grid of voxels lies in the world frame W (the scan's patient axes, mm).
+/// Describes where a grid of voxels lies in the world frame W (the scan's patient axes, mm).
 /// Voxel coordinates are continuous: the centre of voxel (i, j, k) has the coordinates (i, j, k).
 struct GridGeometry {
   std::array<int, 3> dims{0, 0, 0};

@@ -9,9 +9,9 @@
 
 namespace osteomill {
 
-/// What a label map knows of one of its labels.
+/// All that a label map knows about one of its labels.
 struct Label {
-  /// As it stands in the map's file.
+  /// The value in the map's file.
   int value = 0;
   std::string name;
   /// Red, green, blue.
@@ -21,48 +21,50 @@ struct Label {
   friend bool operator==(const Label&, const Label&) = default;
 };
 
-/// "#rrggbb".
+/// Returns the colour as "#rrggbb".
 std::string hex_colour(const Label& label);
 
-/// Which structure each voxel of a scan belongs to. Labels are names, not quantities: they are looked up at
-/// the nearest voxel and never interpolated. Kept on the scan's grid, a byte a voxel, in the box that holds
-/// all labels. Does not change; reading is safe in the haptic tick and from any thread.
+/// Maps each voxel of a scan to the structure that it belongs to. Labels are names, not quantities: they are
+/// looked up at the nearest voxel and never interpolated. Kept on the scan's grid, a byte a voxel, in the box
+/// that holds all labels. Does not change; reading is safe in the haptic tick and from any thread.
 class LabelMap {
  public:
   /// A label by its place in `labels()`, counted from 1; 0 is no label.
   using Place = std::uint8_t;
   static constexpr std::size_t kMaxLabels = 255;
 
-  /// A label map on a grid of its own: `places` has a value a voxel of `own`, i running fastest. Each voxel
-  /// of `scan` gets the label of the voxel of `own` that is nearest to its centre, none outside of `own`.
-  /// Throws std::invalid_argument for more than `kMaxLabels` labels or places that do not fit.
+  /// Makes the map from labels on a grid of their own: `places` has a value for each voxel of `own`, i
+  /// running fastest. Each voxel of `scan` gets the label of the voxel of `own` that is nearest to its
+  /// centre, none outside of `own`. Throws std::invalid_argument for more than `kMaxLabels` labels or places
+  /// that do not fit.
   LabelMap(std::vector<Label> labels, const GridGeometry& scan, const GridGeometry& own,
            const std::vector<Place>& places);
 
   const std::vector<Label>& labels() const { return labels_; }
-  /// `place` is not 0.
+  /// Returns the label at this place, which is not 0.
   const Label& label(Place place) const { return labels_[place - 1u]; }
-  /// Any voxel of the scan.
+  /// Returns the place of the label at any voxel of the scan; 0 for none.
   Place at(const VoxelIndex& v) const noexcept {
     if (!box_.contains(v)) return 0;
     return places_[row_major(dims_, v.i - box_.first.i, v.j - box_.first.j, v.k - box_.first.k)];
   }
-  /// At the voxel nearest to any finite point of W.
+  /// Returns the place of the label at the voxel nearest to any finite point of W.
   Place nearest_to(const Vec3& point_W) const noexcept;
-  /// The label of the bone just under a place of its surface with this normal. Looks up to 1.5 voxels deep,
-  /// since label maps often leave out the bone's outermost voxels.
+  /// Returns the label of the bone just under a place of its surface with this normal. Looks up to 1.5 voxels
+  /// deep, since label maps often leave out the bone's outermost voxels.
   Place under_surface(const Vec3& point_W, const Vec3& normal_W) const noexcept;
 
-  /// How many voxels of the scan have each label, by the label's place; voxels without a label are not
-  /// counted. Goes through all voxels; not for the tick.
+  /// Returns how many voxels of the scan have each label, by the label's place; voxels without a label are
+  /// not counted. Goes through all voxels; not for the tick.
   std::vector<std::size_t> voxel_counts() const;
 
-  /// Where there are labels; empty where there is none.
+  /// Returns the box that holds all labels; empty if there are none.
   const VoxelBox& box() const { return box_; }
-  /// The box that holds all labels that are no-go; empty where there is none.
+  /// Returns the box that holds all no-go labels; empty if there are none.
   const VoxelBox& no_go_box() const { return no_go_box_; }
   const GridGeometry& scan_geometry() const { return scan_; }
-  /// A number that two label maps hardly share: of where which value lies, not of what labels are called.
+  /// Returns a number that two label maps hardly share. It follows from the places of values, not from the
+  /// labels' names.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
  private:

@@ -15,9 +15,9 @@ namespace osteomill {
 
 /// The bone as every room sees it: densities, the isovalue that bounds the bone (bone where density >
 /// isovalue), and the range of densities brick by brick. Densities fall and never rise, and the isovalue
-/// stays: whatever follows a bone from tick to tick rests on that. `EditableVolume` changes a bone that
-/// nothing follows. The haptic thread alone lowers densities; all others read copies, which cost what is
-/// changed in them.
+/// stays: all that follows a bone from tick to tick rests on that. `EditableVolume` changes a bone that
+/// nothing follows. The haptic thread alone lowers densities; all others read copies, which take memory only
+/// for what is changed in them.
 class Volume {
  public:
   /// Throws std::invalid_argument if the isovalue is not finite.
@@ -95,7 +95,8 @@ void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   });
 }
 
-/// What milling changed in one step: every voxel whose density fell lies in `voxels` (empty where none did).
+/// The change that milling made in one step: every voxel whose density fell lies in `voxels` (empty if none
+/// fell).
 struct VolumeChange {
   VoxelBox voxels;
 };
