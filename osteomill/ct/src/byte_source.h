@@ -12,7 +12,7 @@ struct z_stream_s;
 
 namespace osteomill {
 
-/// How the bytes of a file are packed. zlib finds out itself which of the first two it is.
+/// The ways in which the bytes of a file are packed. zlib finds out itself which of the first two it is.
 enum class Packing { none, gzip_or_zlib, deflate };
 
 /// A file's bytes in order, unpacked while they are read.
@@ -27,16 +27,16 @@ class ByteSource {
   bool skip(std::uint64_t count);
 
   bool is_packed() const { return stream_ != nullptr; }
-  /// What the file holds from where the source began, packed as it is.
+  /// Returns how many bytes the file holds from where the source began, packed as they are.
   std::uint64_t bytes_in_file() const { return in_file_; }
-  /// How many bytes of the file, packed as they are, have been read so far.
+  /// Returns how many bytes of the file, packed as they are, have been read so far.
   std::uint64_t bytes_used() const;
   /// An upper bound on the bytes still to be read: of a packed file what the best packing could hold.
   std::uint64_t max_bytes() const;
   /// Exactly how many bytes there are to be read. For a packed file this unpacks all of it once, and nothing
   /// may have been read before.
   std::uint64_t bytes_to_come();
-  /// Whether the packed data were read to their proper end, with the right checksums.
+  /// Returns whether the packed data were read to their proper end, with the right checksums.
   bool ended_well() const { return ended_; }
 
  private:

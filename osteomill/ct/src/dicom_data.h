@@ -27,8 +27,8 @@ std::optional<DicomData> load_dicom(const std::filesystem::path& path, std::uint
 /// `load_dicom` lets through.
 void with_dicom_stack(const std::function<void()>& work);
 
-/// Whether a JPEG decoder has found damaged data in this thread since this was last called. (Such a decoder
-/// goes on with what it has, and says so only in DCMTK's log.)
+/// Returns whether a JPEG decoder has found damaged data in this thread since this was last called. (Such a
+/// decoder goes on with what it has, and says so only in DCMTK's log.)
 bool take_jpeg_complaint();
 
 }  // namespace osteomill

@@ -19,7 +19,7 @@ class DcmPixelItem;
 
 namespace osteomill {
 
-/// How the pixels of a slice are stored, and what their numbers mean.
+/// The form in which the pixels of a slice are stored, and the meaning of their numbers.
 struct StoredPixels {
   int bits_allocated = 0;
   int bits_stored = 0;
@@ -35,7 +35,7 @@ struct DicomSlice {
   StoredPixels pixels;
 };
 
-/// What one DICOM file says of itself.
+/// The header of one DICOM file.
 struct DicomHeader {
   std::filesystem::path file;
   std::string series_uid;
@@ -50,9 +50,9 @@ struct DicomHeader {
   /// A scout view to plan a scan by, not a part of it.
   bool is_localizer = false;
   bool is_compressed = false;
-  /// As they are stored; 0 where it has no pixels.
+  /// The size of its pixels as they are stored; 0 if it has none.
   std::uint64_t pixel_bytes = 0;
-  /// Of a DICOMDIR: the images that it names, relative to its folder.
+  /// For a DICOMDIR, the images that it names, relative to its folder.
   std::vector<std::filesystem::path> listed_files;
   /// So damaged that even its series is not known.
   bool lost = false;
@@ -61,7 +61,7 @@ struct DicomHeader {
   /// A slice for each frame; empty where there is a fault.
   std::vector<DicomSlice> slices;
 
-  /// What was read, pixels still in the file; goes away within `with_dicom_stack`.
+  /// The data as read, pixels still in the file; `with_dicom_stack` releases them.
   std::shared_ptr<DcmFileFormat> data;
 
   /// It lists the files of a disc.
@@ -84,10 +84,10 @@ std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
 void read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities);
 
-/// Of a folder: reads one of the series that lie in it and the folders in it; nothing where there are no
-/// pictures. Of a file: the series to which it belongs, from the folder in which it lies; the frames of a
-/// file that has several; or one of the series that a DICOMDIR names. Nothing where the file is not DICOM.
-/// Throws InputError naming the path.
+/// Reads DICOM. From a folder it reads one of the series that lie in it and the folders in it; returns
+/// nothing if there are no pictures. From a file it reads the series to which the file belongs, from the
+/// folder in which it lies; the frames of a file that has several; or one of the series that a DICOMDIR
+/// names. Returns nothing if the file is not DICOM. Throws InputError naming the path.
 std::optional<Scan> read_dicom(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace osteomill

@@ -4,7 +4,7 @@
 
 namespace osteomill {
 
-/// What a DICOM header says of each of its grey frames.
+/// The size of grey frames, as a DICOM header gives it.
 struct FrameSize {
   int columns = 0;
   int rows = 0;
@@ -22,9 +22,9 @@ bool decode_rle(std::span<const unsigned char> stream, const FrameSize& size, st
 bool decode_jpeg2000(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 
 enum class JpegKind { jpeg, jpeg_ls };
-/// Whether a stream is of the kind that it is said to be, and has nothing but well-formed segments before a
-/// grey image of that size with no more bits than `size` has room for. DCMTK does not check this: it never
-/// returns from what is no segment, or from an image of the other kind.
+/// Returns whether a stream is of the kind that it is said to be, and has nothing but well-formed segments
+/// before a grey image of that size with no more bits than `size` has room for. DCMTK does not check this: it
+/// never returns from data that are no segment, or from an image of the other kind.
 bool jpeg_fits(std::span<const unsigned char> stream, JpegKind kind, const FrameSize& size);
 
 }  // namespace osteomill

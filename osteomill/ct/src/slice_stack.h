@@ -8,10 +8,10 @@
 
 namespace osteomill {
 
-/// Where one slice of a series lies, as its header says: sizes above 0, numbers finite. All in mm, in the
+/// The place of one slice of a series, as its header says: sizes above 0, numbers finite. All in mm, in the
 /// patient's LPS frame W.
 struct SlicePlane {
-  /// What to call the slice in a message.
+  /// The slice's name in a message.
   std::string name;
   /// Two slices with the same one are copies of each other (SOPInstanceUID and frame).
   std::string instance;
@@ -33,8 +33,8 @@ struct SliceStack {
   GridGeometry geometry;
   /// For every k the number of the slice that lies there; copies are left out.
   std::vector<std::size_t> order;
-  /// How far above the lowest each slice lies, where these are not the heights of the grid's slices, which
-  /// may then be more or fewer: their densities have to be interpolated (`even_out_slices`). Else empty.
+  /// The height of each slice above the lowest, if these are not the heights of the grid's slices, which may
+  /// then be more or fewer: their densities have to be interpolated (`even_out_slices`). Else empty.
   std::vector<double> heights_mm;
   /// By how much each of the grid's slices lies further along i and j than the one below: a gantry tilt. Zero
   /// where the stack is straight; else they have to be shifted before they are in their place.

@@ -18,7 +18,7 @@ namespace osteomill {
 
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
-/// How many bytes one voxel takes.
+/// Returns how many bytes one voxel takes.
 std::uint64_t bytes_of(VoxelType type);
 
 /// The voxels of a file, and what its header says of how they are stored.
@@ -30,7 +30,7 @@ struct StoredVoxels {
   bool is_text = false;
   /// Bytes of `source` before the voxels.
   std::uint64_t skip = 0;
-  /// How long the header says that the compressed data are; 0 where it does not say.
+  /// The length of the compressed data, if the header gives it; else 0.
   std::uint64_t compressed_bytes = 0;
   /// Density = slope * stored value + intercept.
   double slope = 1;
@@ -46,14 +46,14 @@ void skip_to_last(StoredVoxels& stored, std::uint64_t count);
 std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
                                std::uint64_t max_bytes, std::vector<std::string>& warnings);
 
-/// What the header of a volume file says, and the voxels behind it, ready to be read.
+/// The header of a volume file, and the voxels behind it, ready to be read.
 struct VolumeHeader {
   GridGeometry geometry;
   StoredVoxels voxels;
   std::vector<std::string> warnings;
-  /// What NRRD calls key/value pairs, in which programs keep what the format has no field for.
+  /// NRRD's key/value pairs, in which programs keep data that the format has no field for.
   std::map<std::string, std::string> key_values{};
-  /// Where the header says so; it need not.
+  /// True if the header says so; it need not.
   bool is_labels = false;
 };
 
@@ -66,7 +66,7 @@ VolumeHeader read_nifti_header(const std::filesystem::path& path);
 /// One of the formats whose volume lies in one file (or in a header and a file of voxels).
 struct VolumeFormat {
   const char* name;
-  /// Of its files, in small letters.
+  /// The endings of its files, in small letters.
   std::array<std::string_view, 2> endings;
   VolumeHeader (*read_header)(const std::filesystem::path& path);
 };

@@ -11,19 +11,19 @@
 
 namespace osteomill {
 
-/// Where the labels of a scan are to be had.
+/// Names the files that the labels of a scan come from.
 struct LabelFiles {
   /// NRRD, NIfTI or MetaImage; a voxel's value is its label, 0 is none.
   std::filesystem::path map;
   /// A colour table of 3D Slicer's (.ctbl or .txt): a line a label, "value name red green blue alpha",
-  /// colours from 0 to 255; lines that begin with # and empty ones say nothing. Before the names and colours
-  /// that a .seg.nrrd has itself; may be empty.
+  /// colours from 0 to 255; lines that begin with # and empty ones are passed over. Takes precedence over the
+  /// names and colours that a .seg.nrrd has itself; may be empty.
   std::filesystem::path table;
   /// Labels that no burr may touch, by value or by name (case does not matter).
   std::vector<std::string> no_go;
 };
 
-/// Whether `read_labels` reads files of such a name.
+/// Returns whether `read_labels` reads files of such a name.
 bool is_label_file(const std::filesystem::path& path);
 
 struct LabelsRead {
@@ -34,9 +34,9 @@ struct LabelsRead {
 
 /// Reads a label map and puts it on the scan's grid, whatever its own is, by the nearest voxel. Labels
 /// without a name are called "label 3", those without a colour get one that differs from their neighbours'.
-/// Throws InputError, naming the file, where it cannot be read, its values are no labels (not whole, beyond a
-/// million, more than LabelMap::kMaxLabels), it labels nothing, or nothing of the scan; and where a no-go
-/// label is not in it, or where its voxels take more memory than allowed.
+/// Throws InputError, naming the file, if it cannot be read, its values are no labels (not whole, beyond a
+/// million, more than LabelMap::kMaxLabels), it labels nothing, or nothing of the scan; and if a no-go label
+/// is not in it, or its voxels take more memory than allowed.
 LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan,
                        std::uint64_t max_memory_bytes = allowed_memory_bytes());
 

@@ -10,18 +10,18 @@
 
 namespace osteomill {
 
-/// How much of a scan a label has.
+/// Tells how much of a scan a label has.
 struct LabelSummary {
   Label label;
   std::size_t voxels = 0;
   double volume_mm3 = 0;
-  /// Of these voxels, those that are bone.
+  /// The number of these voxels that are bone.
   std::size_t bone_voxels = 0;
 };
 
-/// What `osteomill info` tells of a scan. Lengths in mm, in the patient's LPS frame.
+/// All that `osteomill info` reports about a scan. Lengths in mm, in the patient's LPS frame.
 struct ScanSummary {
-  /// With all the warnings that are told.
+  /// The scan, with all the warnings that are reported.
   Scan scan;
   double value_min = 0;
   double value_max = 0;
@@ -31,23 +31,24 @@ struct ScanSummary {
   double isovalue = 0;
   /// Voxels whose density is greater than `isovalue`.
   std::size_t voxels_above_iso = 0;
-  /// Empty where the scan has no labels.
+  /// A summary of each label; empty if the scan has none.
   std::vector<LabelSummary> labels{};
 };
 
-/// One pass over the voxels. `suggested_iso` is what is reported as suggested (`suggest_isovalue`).
+/// Summarises a scan in one pass over its voxels. `suggested_iso` is reported as the suggested one
+/// (`suggest_isovalue`).
 ScanSummary summarise(Scan scan, SuggestedIsovalue suggested_iso, double isovalue);
 
-/// Of the bone's labels, if it has any. One pass over their voxels.
+/// Returns a summary of each of the bone's labels, if it has any. One pass over their voxels.
 std::vector<LabelSummary> summarise_labels(const Volume& bone);
 
-/// A JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max, value_mean,
-/// suggested_iso, suggested_how, voxels_above_iso, warnings, boundaries, series where there are several,
-/// labels where there are any, and a line feed at its end. Bytes of a warning that are not UTF-8 are
+/// Returns a JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max,
+/// value_mean, suggested_iso, suggested_how, voxels_above_iso, warnings, boundaries, series if there are
+/// several, labels if there are any, and a line feed at its end. Bytes of a warning that are not UTF-8 are
 /// replaced.
 std::string to_json(const ScanSummary& summary);
 
-/// The summary for people to read, a line for each fact.
+/// Returns the summary for people to read, a line for each fact.
 std::string to_text(const ScanSummary& summary);
 
 }  // namespace osteomill
