@@ -13,8 +13,8 @@ namespace osteomill {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// The energy of some points and its derivatives by a move of the tool, at t = 0. Of points that push without
-/// an energy only the gradient, which is what they push with, and `convex`. Safe in the haptic tick.
+/// The energy of some points and its derivatives by a move of the tool, at t = 0. For points that push
+/// without an energy, only `gradient` (their push) and `convex` are set. Safe in the haptic tick.
 struct EnergySum {
   double energy_Nmm = 0;
   Vector6 gradient = Vector6::Zero();

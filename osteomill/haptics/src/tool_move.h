@@ -4,34 +4,34 @@
 
 namespace osteomill {
 
-/// How the simulated tool moves: the burr's centre by `translation_mm`, and about it by the rotation vector
+/// A move of the simulated tool: the burr's centre by `translation_mm`, and about it by the rotation vector
 /// `rotation_rad`, both in W's axes.
 struct ToolMove {
   Vec3 translation_mm = Vec3::Zero();
   Vec3 rotation_rad = Vec3::Zero();
 };
 
-/// A share of the move. Translation and rotation are shortened alike, so that a tool that slides along the
-/// bone while it turns stays on it.
+/// Returns a share of the move. Translation and rotation are shortened alike, so that a tool that slides
+/// along the bone while it turns stays on it.
 inline ToolMove operator*(double share, const ToolMove& move) {
   return {share * move.translation_mm, share * move.rotation_rad};
 }
 
-/// The move that takes the tool from `from` to `to`.
+/// Returns the move that takes the tool from `from` to `to`.
 ToolMove move_between(const Pose& from, const Pose& to) noexcept;
-/// The pose after the move.
+/// Returns the pose after the move.
 Pose moved(const Pose& X_WT, const ToolMove& move) noexcept;
 
-/// What a tick may add to the device's own move: a share `tick / time_s` of the stretch between device and
-/// tool, and a speed.
+/// The move that a tick may add to the device's own: a share `tick / time_s` of the stretch between device
+/// and tool, and a speed.
 struct Release {
   double time_s = 0.1;
   double mm_s = 15;
   double rad_s = 0.05;
 };
 
-/// How far the simulated tool may go in a tick. The hand feels the stretch between tool and device, and this
-/// bound keeps the stretch from leaping where bone gives way.
+/// Bounds how far the simulated tool may go in a tick. The hand feels the stretch between tool and device,
+/// and this bound keeps the stretch from leaping where bone gives way.
 ///
 /// The tool's translation has to end in one ball and its rotation vector in another, both in W's axes. A tool
 /// on a spring, held by frictionless surfaces, moves by some projection of the device's move. All projections

@@ -77,14 +77,14 @@ class BarrierShell final : public HapticAlgorithm {
   bool has_pose_ = false;
   Pose X_WT_;
   Pose X_WD_before_;
-  // How far the tool went in the last tick: what the next gathering reaches for.
+  // The tool's way in the last tick, which the next gathering reaches for.
   Room last_move_;
-  // Of the last gathering, and what is left of it.
+  // The room that the last gathering gave, and what is left of it.
   Room room_;
   Room room_left_;
   // Began inside bone and has not yet been outside: with the device, and nothing is felt.
   bool carried_ = false;
-  // Whether all bone about it was known when it began: until then it stands still.
+  // True once all bone about it was known: until then it stands still.
   bool has_begun_ = false;
   // By how much the cores are yet smaller than they will be, for a tool that began in touch with bone.
   double smaller_mm_ = 0;

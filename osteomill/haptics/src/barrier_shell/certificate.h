@@ -4,10 +4,10 @@
 
 namespace osteomill::barrier_shell {
 
-/// How much of a core's distance to a point the whole move may use up, at most; the share t of it no more
-/// than t of that. The distance to a convex body is convex along a straight line, so it falls no faster than
-/// at first; a turn bends the point's path, seen from the tool, by at most t^2 (|omega| |delta| + 1/2
-/// |omega|^2 |r|). May be negative, where the move leads away. Safe in the haptic tick.
+/// Returns how much of a core's distance to a point the whole move uses up at most; a share t of the move
+/// uses up no more than t of that. The distance to a convex body is convex along a straight line, so it falls
+/// no faster than at first; a turn bends the point's path, seen from the tool, by at most t^2 (|omega|
+/// |delta| + 1/2 |omega|^2 |r|). Negative if the move leads away. Safe in the haptic tick.
 inline double distance_used(const Vec3& point_T, const Vec3& outward_T, const Vector6& move_T) noexcept {
   const Vec3 delta_mm = move_T.head<3>(), omega_rad = move_T.tail<3>();
   const double omega = omega_rad.norm();
@@ -15,7 +15,7 @@ inline double distance_used(const Vec3& point_T, const Vec3& outward_T, const Ve
          omega * (delta_mm.norm() + 0.5 * omega * point_T.norm());
 }
 
-/// The same for the ball, which a turn about its centre leaves as it is: exact in translation.
+/// Returns the same for the ball, which a turn about its centre leaves as it is: exact in translation.
 inline double distance_used_by_ball(const Vec3& outward_T, const Vector6& move_T) noexcept {
   return outward_T.dot(move_T.head<3>());
 }
@@ -23,8 +23,8 @@ inline double distance_used_by_ball(const Vec3& outward_T, const Vector6& move_T
 /// A step leaves every point at least this share of its distance.
 inline constexpr double kDistanceKept = 0.1;
 
-/// The greatest share of a move that leaves every point `kDistanceKept` of its distance, given the greatest
-/// `distance_used / distance` of all points.
+/// Returns the greatest share of a move that leaves every point `kDistanceKept` of its distance, given the
+/// greatest `distance_used / distance` of all points.
 inline double certified_share(double max_use) noexcept {
   return max_use > 1 - kDistanceKept ? (1 - kDistanceKept) / max_use : 1.0;
 }

@@ -4,8 +4,8 @@
 
 namespace osteomill::barrier_shell {
 
-/// How far within the tool's surface its cores lie: the rounding, but at most half of the least of its two
-/// radii and the shaft's length.
+/// Returns how far within the tool's surface its cores lie: the rounding, but at most half of the least of
+/// its two radii and the shaft's length.
 double inset_within(const MillingTool& tool, double rounding_mm);
 
 /// The two convex bodies within the tool that bone never reaches, in T: a ball about the burr's centre and a
@@ -16,8 +16,8 @@ struct Cores {
   double cylinder_radius_mm;
   double cylinder_length_mm;
 
-  /// `inset_within` the tool's surface; `smaller_mm` more where a tool that began in touch with bone has not
-  /// yet grown to its size (at least a hair of each core stays).
+  /// Returns the cores `inset_within` the tool's surface; `smaller_mm` further within if a tool that began in
+  /// touch with bone has not yet grown to its size (at least a hair of each core stays).
   static Cores within(const MillingTool& tool, double rounding_mm, double smaller_mm = 0);
 };
 
@@ -29,7 +29,7 @@ struct CoreDistance {
   Mat3 curvature_per_mm;
 };
 
-/// In closed form. Safe in the haptic tick.
+/// Return the distance in closed form. Safe in the haptic tick.
 CoreDistance distance_to_ball(const Cores& cores, const Vec3& point_T);
 CoreDistance distance_to_cylinder(const Cores& cores, const Vec3& point_T);
 

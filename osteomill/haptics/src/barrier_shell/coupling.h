@@ -16,7 +16,7 @@ struct Coupling {
   double max_force_N = WrenchLimits{}.force_N;
   double max_torque_Nmm = WrenchLimits{}.torque_Nmm;
 
-  /// As it acts on the hand that holds the device at `X_WD`, in W.
+  /// Returns the wrench as it acts on the hand that holds the device at `X_WD`, in W.
   Wrench wrench_on_hand(const Pose& X_WT, const Pose& X_WD) const noexcept;
   /// The lever at which a force stores as much energy in the torsional spring as in the translational one.
   double length_mm() const noexcept { return std::sqrt(torsional_Nmm_per_rad / translational_N_per_mm); }

@@ -9,7 +9,7 @@
 
 namespace osteomill::barrier_shell {
 
-/// How far the tool may move before points have to be gathered again.
+/// The room for the tool to move in before points have to be gathered again.
 struct Room {
   double move_mm = 0;
   double turn_rad = 0;
@@ -17,13 +17,13 @@ struct Room {
 
 /// The bone near the tool's parts as measured from one pose.
 struct MeasuredBone {
-  /// Room for as many points at each part as NearBone has.
+  /// Makes room for as many points at each part as NearBone has.
   explicit MeasuredBone(std::size_t room = 0) : ball(room), cylinder(room) {}
 
   MeasuredPoints ball;
   MeasuredPoints cylinder;
 
-  /// The greatest share of any point's distance that a move from that pose by a barrier may use up.
+  /// Returns the greatest share of any point's distance that a move from that pose by a barrier may use up.
   double max_use(const Vector6& move_T, const Barrier& barrier) const noexcept;
 };
 
@@ -31,19 +31,19 @@ struct MeasuredBone {
 /// Safe in the haptic tick.
 class NearBone {
  public:
-  /// Has room for `room` points at each part; the cylinder meets the bricks' coarse points, or as the ball
-  /// the fine ones.
+  /// Makes room for `room` points at each part. The ball meets the bricks' fine points; the cylinder meets
+  /// the coarse ones, or the fine ones if `fine_at_cylinder`.
   explicit NearBone(std::size_t room = 0, bool fine_at_cylinder = false);
 
   /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
   /// Makes bricks, as many as a tick may.
   void gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
               const Room& room) noexcept;
-  /// Whether a point may have been left out, for want of room or since its brick is not made yet: the tool
-  /// must not move.
+  /// Returns whether a point may have been left out, for want of room or because its brick is not made yet:
+  /// the tool must not move then.
   bool is_incomplete() const noexcept { return brick_missing_ || ball_.overflowed || cylinder_.overflowed; }
   bool is_empty() const noexcept { return point_count() == 0; }
-  /// How many points a sum goes through.
+  /// Returns how many points a sum goes through.
   std::size_t point_count() const noexcept { return ball_.count + cylinder_.count; }
 
   /// Measures the points from a pose within the room of the last gathering.
@@ -62,7 +62,7 @@ class NearBone {
   };
 
   bool fine_at_cylinder_;
-  // The first brick_count_ of them.
+  // The bricks gathered: the first brick_count_ entries.
   std::vector<Gathered> bricks_;
   std::size_t brick_count_ = 0;
   bool brick_missing_ = false;

@@ -10,7 +10,7 @@
 
 namespace osteomill::barrier_shell {
 
-/// Which points are gathered: those within `near_mm` of a core or, of the cylinder, within `near_mm` +
+/// The reach within which points are gathered: `near_mm` of a core or, at the cylinder, `near_mm` +
 /// `per_lever` times their distance from the burr's centre.
 struct Reach {
   Cores cores;
@@ -19,8 +19,8 @@ struct Reach {
 };
 
 /// Appends the points of a brick that are within reach of the part; `frame` is the brick's, seen from the
-/// tool. The widest vector instructions that the processor has are chosen when first called; they give the
-/// same bits as the narrowest, as do those of all that follows. Safe in the haptic tick.
+/// tool. The first call chooses the widest vector instructions that the processor has; they give the same
+/// bits as the narrowest. That holds for all functions below too. Safe in the haptic tick.
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
                       const Reach& reach, NearPoints& near) noexcept;
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
@@ -81,8 +81,8 @@ void sum_ball(const NearPoints& near, const Frame& moved, const Cores& cores, co
 void sum_side(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
               Lanes<SideSum>& lanes, MeasuredPoints& measured) noexcept;
 
-/// Returns the greatest `distance_used / distance` of a move, of whose distances none counts as less than
-/// `min_distance_mm`; at least 0.
+/// Returns the greatest `distance_used / distance` of a move; at least 0. A distance below `min_distance_mm`
+/// counts as that.
 double max_use_by_ball(const MeasuredPoints& measured, const Vector6& move_T,
                        double min_distance_mm) noexcept;
 double max_use_by_cylinder(const MeasuredPoints& measured, const Vector6& move_T,

@@ -20,21 +20,21 @@ struct NearPoints {
   std::size_t room() const { return area.size(); }
 
   std::size_t count = 0;
-  /// Whether points found no room.
+  /// True if points found no room.
   bool overflowed = false;
   std::vector<float> x, y, z, area;
 };
 
-/// The same points as measured from one pose: of all of them what they push with and its derivatives by a
-/// move of the tool, and of each its distance to the part and the direction out of it. Places are kept of
-/// points near the cylinder alone.
+/// The same points as measured from one pose: the sum of their pushes and its derivatives by a move of the
+/// tool, and for each point its distance to the part and the direction out of it. `x`, `y` and `z` hold the
+/// places of points near the cylinder alone.
 struct MeasuredPoints {
   explicit MeasuredPoints(std::size_t room);
 
   EnergySum sum;
   std::size_t count = 0;
   std::vector<float> distance, out_x, out_y, out_z, x, y, z;
-  /// Which points are nearest to the cylinder's ends: the first `at_end_count`.
+  /// The points that are nearest to the cylinder's ends: the first `at_end_count` entries.
   std::vector<std::uint32_t> at_end;
   std::size_t at_end_count = 0;
 };
@@ -50,11 +50,11 @@ Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept;
 void close_gathering(NearPoints& near) noexcept;
 
 /// Adds a point that pushes with `push` (energy, pressure and stiffness of all its area) at `point_T`,
-/// `distance` from a core: the plain way, for every part.
+/// `distance` from a core: one at a time, without vector instructions, for every part.
 void add_point(EnergySum& sum, const Barrier::Value& push, const Vec3& point_T, const CoreDistance& distance);
 
 /// Measures points from a tool that has moved since the gathering, so that its frame then is `moved` seen
-/// from now. The same bits whatever the width of the machine's registers. Safe in the haptic tick.
+/// from now. Gives the same bits whatever the width of the machine's registers. Safe in the haptic tick.
 void measure_ball(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
                   MeasuredPoints& measured) noexcept;
 void measure_cylinder(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,

@@ -79,11 +79,11 @@ class BoneBricks {
   /// (UpdateQueue). Of all other bricks about `others` points are done a tick; new bricks and passing over
   /// unchanged ones count as points too.
   void refresh(const VoxelBox& voxels, int others = kOthersPerTick) noexcept;
-  /// Lists the bricks that bear the tool, by their slots; whoever uses the points keeps the list.
+  /// Lists the bricks that bear the tool, by their slots; the user of the points keeps the list.
   void clear_bearing() { queue_.clear_bearing(); }
   void add_bearing(std::uint32_t slot) { queue_.add_bearing(slot); }
   bool is_up_to_date() const { return queue_.is_empty(); }
-  /// How many bricks still have to be looked at, those that bear the tool among them.
+  /// Returns how many bricks still have to be looked at, those that bear the tool among them.
   std::size_t owed() const noexcept { return queue_.size(); }
   /// Makes room if little is left, by forgetting what is not near the tool.
   void make_room(const MillingTool& tool, const Pose& X_WT) noexcept;

@@ -20,11 +20,11 @@ struct CrossingLattice {
 /// A row of nodes and the edges that begin at them.
 struct CrossingRow {
   static constexpr std::size_t kMostNodes = 16;
-  /// As many are read at once.
+  /// The number of nodes that are read at once.
   static constexpr std::size_t kNodes = 8;
   /// The first node's density; those of all neighbours of the edges' ends lie about it.
   const float* densities;
-  /// Where the first node lies, in steps.
+  /// The place of the first node, in steps.
   int i, j, k;
   /// For each axis, a bit a node: whether the surface crosses the edge along that axis.
   std::uint32_t crossed[3];

@@ -102,7 +102,7 @@ class BrickPoints {
   const PointChunk& chunk(std::uint32_t index) const { return chunks_[index]; }
   std::uint32_t next_chunk(std::uint32_t index) const { return next_[index]; }
   std::size_t free_chunks() const { return free_chunks_; }
-  /// Of all bricks.
+  /// Returns the number of points of all bricks.
   std::size_t total() const { return total_; }
   /// Points that found no room since the start.
   std::uint64_t dropped() const { return dropped_; }

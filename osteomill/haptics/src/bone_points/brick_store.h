@@ -24,11 +24,11 @@ class BrickStore {
   /// The brick whose points a slot holds.
   const VoxelIndex& brick(std::uint32_t slot) const { return slots_[slot].brick; }
   bool is_used(std::uint32_t slot) const { return fine_.brick(slot).count != 0; }
-  /// Whether densities that its points are made from have fallen since they were made.
+  /// Returns whether densities that its points are made from have fallen since they were made.
   bool is_stale(const SurfaceLattice& lattice, std::uint32_t slot) const {
     return slots_[slot].changes != lattice.changes_of(slots_[slot].brick);
   }
-  /// Whether there is room for one more brick, however many points it has.
+  /// Returns whether there is room for one more brick, however many points it has.
   bool has_room() const;
 
   /// Makes the points of a brick that has `slot`, or kNoSlot if it has none yet; it then takes one, for which
@@ -63,7 +63,7 @@ class BrickStore {
   std::vector<std::uint32_t> free_;
   std::size_t free_count_ = 0;
   std::size_t next_to_forget_ = 0;
-  // Of the brick that is being made.
+  // The surface of the brick that is being made.
   SurfaceLattice::BrickSurface found_;
 };
 

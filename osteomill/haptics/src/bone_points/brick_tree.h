@@ -18,7 +18,8 @@ class BrickTree {
  public:
   /// Names a place; good until its node is forgotten.
   using Place = std::uint32_t;
-  /// What a place holds if not an index: of a brick's slot or, of a larger place, of its node.
+  /// The marks of a place that holds no index: neither that of a brick's slot nor, for a larger place, that
+  /// of its node.
   static constexpr std::uint32_t kUnseen = 0xffffffffu;
   static constexpr std::uint32_t kNoBone = 0xfffffffeu;
   static constexpr std::uint32_t kBoneAlone = 0xfffffffdu;
@@ -30,7 +31,7 @@ class BrickTree {
   std::uint32_t held(Place place) const { return held_[place]; }
   /// Goes down the octree, leaving out every place for which `meets(level, node)` is false and all that hold
   /// no surface, and calls `use(level, node, place)` for each unseen place and each brick with a slot, in a
-  /// fixed order. Creates nothing; where `use` opens a place, the walk goes on below it.
+  /// fixed order. Creates nothing; if `use` opens a place, the walk goes on below it.
   template <typename Meets, typename Use>
   void visit(const Meets& meets, const Use& use) const {
     walk(levels_, {}, kRoot, meets, use);
@@ -48,7 +49,7 @@ class BrickTree {
 
  private:
   static constexpr std::uint32_t kRoot = 0;
-  // Of the root and of free nodes.
+  // The place of the root and of free nodes.
   static constexpr Place kNoPlace = 0xffffffffu;
 
   template <typename Meets, typename Use>

@@ -10,9 +10,9 @@
 
 namespace osteomill {
 
-/// Where the isosurface crosses the edges of a lattice, as area-weighted points, brick by brick. Lattice
-/// nodes are the voxels' centres or, along an axis on which those lie farther apart than wanted, a whole
-/// number of steps between two of them. Every crossing stands for A_a |n_a| of surface (A_a the face of
+/// Finds where the isosurface crosses the edges of a lattice, as area-weighted points, brick by brick.
+/// Lattice nodes are the voxels' centres or, along an axis on which those lie farther apart than wanted, a
+/// whole number of steps between two of them. Every crossing stands for A_a |n_a| of surface (A_a the face of
 /// a cell across edges along a, n the surface's unit normal): three regular lattices, whose sum is a
 /// quadrature of the surface whatever its slope. A point is the weighted mean of the crossings in a cell: of
 /// one node, or, in a fine scan, of 2^n nodes a side, of whose lines those are looked at that lie half the
@@ -30,11 +30,11 @@ class SurfaceLattice {
   /// Brick b begins at the edges whose lower node is `brick_nodes() * b - 1`: crossings between the scan's
   /// border and the nothing beyond it count.
   int brick_nodes() const { return brick_nodes_; }
-  /// The densities that a brick's points are made from.
+  /// Returns how many densities a brick's points are made from.
   int densities_of_brick() const { return (brick_nodes_ + 3) * (brick_nodes_ + 3) * (brick_nodes_ + 3); }
-  /// Of neighbouring nodes.
+  /// Returns the distance of neighbouring nodes along each axis.
   const Vec3& step_mm() const { return step_mm_; }
-  /// Origin of a brick's frame (the grid's axes) in the grid's frame (origin at voxel 0, 0, 0).
+  /// Returns the origin of a brick's frame (the grid's axes) in the grid's frame (origin at voxel 0, 0, 0).
   Vec3 brick_origin_G(const VoxelIndex& brick) const {
     return brick_nodes_ * step_mm_.cwiseProduct(Vec3(brick.i, brick.j, brick.k));
   }
@@ -46,14 +46,15 @@ class SurfaceLattice {
   Vec3 middle_G(int level, const VoxelIndex& node) const;
   double radius_mm(int level) const { return brick_radius_mm_ * static_cast<double>(1 << level); }
 
-  /// Where there is no bone there never will be; bone alone becomes surface as densities fall.
+  /// Names what a node holds. A node without bone stays without; bone alone becomes surface as densities
+  /// fall.
   enum class Found { no_bone, bone_alone, surface };
-  /// Returns what there is in such a node; may return `surface` where there is none.
+  /// Returns what such a node holds; may return `surface` though there is none.
   Found found_in(int level, const VoxelIndex& node) const;
-  /// A number that differs from what it was earlier if any density that the brick's points are made from has
-  /// fallen since.
+  /// Returns a number that differs from what it was earlier if any density that the brick's points are made
+  /// from has fallen since.
   std::uint32_t changes_of(const VoxelIndex& brick) const;
-  /// The bricks whose points may change with densities in `voxels`.
+  /// Returns the bricks whose points may change with densities in `voxels`.
   VoxelBox bricks_touched_by(const VoxelBox& voxels) const;
 
   /// Points in the brick's frame, at the lattice's spacing and, as `merge_flat_cells` makes them, at twice
@@ -63,7 +64,7 @@ class SurfaceLattice {
     PointRows coarse{kMaxPointsOfBrick};
     std::array<std::uint8_t, kMaxPointsOfBrick> coarse_cell;
   };
-  /// Of a brick's rows of nodes along i, a bit each: bit j of element k.
+  /// A bit for each of a brick's rows of nodes along i: bit j of element k.
   using RowBits = std::array<std::uint32_t, kMaxBrickNodes + 1>;
   /// Finds fine points alone, and returns what lines meet. `without_bone`: the rows in which no bone was
   /// found before, so that they need not be looked at again; adds those that it finds.

@@ -10,7 +10,7 @@ struct ToolFromGrid {
   Mat3 turn;
   Vec3 offset_mm;
 
-  /// Of whatever says where G lies in W: points `origin_W() + direction() * p_G`.
+  /// Takes any type that says where G lies in W: points `origin_W() + direction() * p_G`.
   template <typename Points>
   ToolFromGrid(const Points& points, const Pose& X_WT) {
     const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();

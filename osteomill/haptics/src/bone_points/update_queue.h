@@ -11,15 +11,16 @@
 
 namespace osteomill {
 
-/// Which bricks wait to be brought up to date after densities fell, which of them bear the tool, and how much
-/// of it a tick does, counted in points. A value without pointers; all of it is safe in the haptic tick.
+/// Keeps which bricks wait to be brought up to date after densities fell and which of them bear the tool, and
+/// bounds how much of that a tick does, counted in points. A value without pointers; all of it is safe in the
+/// haptic tick.
 class UpdateQueue {
  public:
-  /// About how many points of bricks that bear the tool are brought up to date a tick. (Tried: bringing a
-  /// bearing brick up to date only once its surface has sunk by 2 um, judged by bone lost over area. It took
-  /// half the time but doubled the steps of torque, 0.28 N mm for 0.14; tooth, 3 N.)
+  /// About the number of points a tick that are brought up to date in bricks that bear the tool. (Tried:
+  /// bringing a bearing brick up to date only once its surface has sunk by 2 um, judged by bone lost over
+  /// area. It took half the time but doubled the steps of torque, 0.28 N mm for 0.14; tooth, 3 N.)
   static constexpr int kBearingPerTick = 1500;
-  /// About how many points are made a tick of bricks that the tool meets for the first time.
+  /// About the number of points a tick that are made in bricks that the tool meets for the first time.
   static constexpr int kMadePerTick = 2500;
   static constexpr std::size_t kMostBearing = 1024;
 
@@ -28,7 +29,7 @@ class UpdateQueue {
   /// Takes out the next brick, if any waits.
   std::optional<VoxelIndex> next();
   bool is_empty() const { return walked_.empty() && waiting_.empty(); }
-  /// How many bricks wait, those that bear the tool among them.
+  /// Returns how many bricks wait, those that bear the tool among them.
   std::size_t size() const;
 
   /// Lists the slot of a brick that bears the tool, if there is room. The tool rests on these bricks: if they

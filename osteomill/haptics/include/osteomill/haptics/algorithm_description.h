@@ -12,20 +12,22 @@
 
 namespace osteomill {
 
-/// What the user says of the algorithms' settings. What is left open takes each algorithm's default.
+/// The values that the user gives to settings of the algorithms. A setting without one keeps the algorithm's
+/// default.
 struct HapticSettings {
   struct Named {
-    /// Of this algorithm, by the setting's own name. Empty: of every algorithm that has a setting with an
-    /// option of that name (SettingDescription::option).
+    /// The algorithm whose setting of the name `setting` is meant. If empty, `setting` is an option
+    /// (SettingDescription::option), and every algorithm that has a setting with this option takes the value.
     std::string algorithm;
     std::string setting;
     double value;
   };
 
-  /// Options are applied first, then what is said of one algorithm, each in this order.
+  /// Values for options are applied first, then those for one algorithm, each in this order.
   std::vector<Named> named = {};
 
-  /// For every algorithm that has it, in the place of what was said before: `set_option("stiffness", 2)`.
+  /// Sets an option for every algorithm that has it, in the place of an earlier value:
+  /// `set_option("stiffness", 2)`.
   void set_option(const std::string& option, double value) {
     clear_option(option);
     named.push_back({"", option, value});
@@ -36,15 +38,15 @@ struct HapticSettings {
   }
 };
 
-/// How people and files know an algorithm; a recording keeps this of it. Figures and file names are made from
-/// it, so the name holds only letters, digits, '-' and '_', and the label also spaces and any of ().,:+
-/// (`is_usable`).
+/// The names and the colour by which people and files know an algorithm; a recording keeps them. Figures and
+/// file names are made from it, so the name holds only letters, digits, '-' and '_', and the label also
+/// spaces and any of ().,:+ (`is_usable`).
 struct AlgorithmId {
-  /// On the command line and in files: "point-shell". Two algorithms of one name are the same.
+  /// The name on the command line and in files: "point-shell". Two algorithms of one name are the same.
   std::string name;
-  /// In figures and tables: "3 point-shell". Algorithms are listed in the order of their labels.
+  /// The label in figures and tables: "3 point-shell". Algorithms are listed in the order of their labels.
   std::string label;
-  /// Of its curves, as HTML and gnuplot write it: "#c62828".
+  /// The colour of its curves, as HTML and gnuplot write it: "#c62828".
   std::string colour;
 
   friend bool operator==(const AlgorithmId& a, const AlgorithmId& b) { return a.name == b.name; }
@@ -56,16 +58,16 @@ inline const std::string& name_of(const AlgorithmId& algorithm) {
 }
 
 bool is_usable(const AlgorithmId& algorithm);
-/// Whether it holds letters, digits, '-' and '_' alone.
+/// Returns whether a name holds letters, digits, '-' and '_' alone.
 bool is_plain_name(std::string_view name);
 
-/// Each once, in the order of their labels.
+/// Returns each algorithm once, in the order of their labels.
 std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms);
 
 /// A setting of an algorithm. Its name is that in `--set ALGORITHM.NAME=VALUE`, configuration files and
 /// recordings; every algorithm's setting of the same option is set by that option.
 struct SettingDescription : FieldDescription {
-  /// Its default; of `setting_values`, what is in force.
+  /// Its default; in the result of `setting_values`, the value in force.
   double value = 0;
 };
 
@@ -80,23 +82,23 @@ struct AlgorithmDescription {
   std::string resolution_setting = {};
   std::string resolution_name = {};
   std::vector<SettingDescription> settings = {};
-  /// Makes it with a value for each of `settings`, all within their ranges. Throws std::invalid_argument
-  /// where values do not go together.
+  /// Makes it with a value for each of `settings`, all within their ranges. Throws std::invalid_argument if
+  /// values do not go together.
   std::function<std::unique_ptr<HapticAlgorithm>(std::span<const double> values)> make = {};
 };
 
-/// The setting that an option of the command line sets; null where it has none.
+/// Returns the setting that an option of the command line sets; null if the algorithm has none.
 const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option);
 
-/// Throws std::invalid_argument, naming algorithm and setting, where the value does not lie in its range.
+/// Throws std::invalid_argument, naming algorithm and setting, if the value does not lie in its range.
 void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value);
 
-/// Every setting with the value that `make_algorithm` would use, in the order of the description. Throws
-/// std::invalid_argument, naming algorithm and setting, where one is out of range or unknown.
+/// Returns every setting with the value that `make_algorithm` would use, in the order of the description.
+/// Throws std::invalid_argument, naming algorithm and setting, if one is out of range or unknown.
 std::vector<SettingDescription> setting_values(const AlgorithmDescription& algorithm,
                                                const HapticSettings& settings);
 
-/// The algorithm with these settings, still to be prepared. Throws as `setting_values` does.
+/// Makes the algorithm with these settings, still to be prepared. Throws as `setting_values` does.
 std::unique_ptr<HapticAlgorithm> make_algorithm(const AlgorithmDescription& algorithm,
                                                 const HapticSettings& settings);
 

@@ -6,12 +6,13 @@
 
 namespace osteomill {
 
-/// How far from the burr's surface the bone that it presses on may lie, in mm: as far as a proxy or a skin
-/// keeps the burr away, and at least half a voxel, by which the surface of a coarse scan may be wrong.
+/// Returns how far from the burr's surface the bone that it presses on may lie, in mm: as far as a proxy or a
+/// skin keeps the burr away, and at least half a voxel, by which the surface of a coarse scan may be wrong.
 double pressing_reach_mm(const GridGeometry& geometry);
 
-/// Whether bone lies ahead of a burr that presses with this force, no farther off than `pressing_reach_mm`.
-/// A wall beside the burr may hold it, but the burr does not press on it. Safe in the haptic tick.
+/// Returns whether bone lies ahead of a burr that presses with this force, no farther off than
+/// `pressing_reach_mm`. A wall beside the burr may hold it, but the burr does not press on it. Safe in the
+/// haptic tick.
 bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W,
                   const Vec3& force_W_N) noexcept;
 
@@ -20,7 +21,7 @@ bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_
 /// not spend for as long.
 inline constexpr double kPressingKept_s = 0.01;
 
-/// `burr_presses` from tick to tick.
+/// Follows `burr_presses` from tick to tick, and keeps it true for kPressingKept_s.
 class PressingBurr {
  public:
   /// Safe in the haptic tick.

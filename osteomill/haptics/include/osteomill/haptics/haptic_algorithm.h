@@ -12,8 +12,8 @@
 
 namespace osteomill {
 
-/// What the tool meets: the bone and the tool that mills it. The volume outlives the algorithm that was
-/// prepared with it.
+/// The surroundings that an algorithm is prepared for: the bone, and the tool that mills it. The volume
+/// outlives the algorithm that was prepared with it.
 struct Scene {
   const Volume* volume = nullptr;
   MillingTool tool;
@@ -22,22 +22,23 @@ struct Scene {
   double tick_period_s = 1e-3;
 };
 
-/// What one step of an algorithm says.
+/// The result of one step of an algorithm.
 struct HapticStep {
-  /// As it acts on the hand, in W, about the burr's centre; before the device's limits are applied.
+  /// The wrench as it acts on the hand, in W, about the burr's centre; before the device's limits are
+  /// applied.
   Wrench wrench;
   /// The simulated tool: where the tool is drawn and where it cuts.
   Pose X_WT;
-  /// The force with which the burr (not the shaft) presses on the bone, in W; zero where something else holds
-  /// the tool. Milling is paid with it and cuts where it points.
+  /// The force with which the burr (not the shaft) presses on the bone, in W; zero if something else holds
+  /// the tool. Milling is paid with it and cuts in its direction.
   Vec3 burr_force_W_N = Vec3::Zero();
-  /// Where, in W, bone holds the tool's shaft, of an algorithm that knows one such point: of line-proxy the
-  /// paper's intersection point (IP). To be drawn; nothing is computed from it.
+  /// The point in W at which bone holds the tool's shaft, if the algorithm knows one: line-proxy gives the
+  /// paper's intersection point (IP). It is drawn; nothing is computed from it.
   std::optional<Vec3> intersection_W;
-  /// How many sample points (vertices, or points of the shell) touch.
+  /// The number of sample points (vertices, or points of the shell) that touch.
   int contacts = 0;
-  /// How many bricks of bone points may have shown more bone than there was, since bringing them up to date
-  /// was left to later ticks.
+  /// The number of bricks of bone points that may have shown more bone than there was, because bringing them
+  /// up to date was left to later ticks.
   int owed_bricks = 0;
 };
 
@@ -52,16 +53,19 @@ class HapticAlgorithm {
   /// grid. Throws std::invalid_argument, naming setting and range, if bone could not hold it at all; then
   /// `prepare` throws the same.
   virtual std::vector<std::string> doubts_about(const MillingTool&, const GridGeometry&) const { return {}; }
-  /// Throws std::invalid_argument where a setting or the tool is out of range.
+  /// Makes the algorithm ready for this bone and tool. Throws std::invalid_argument if a setting or the tool
+  /// is out of range.
   virtual void prepare(const Scene& scene) = 0;
-  /// `X_WD` is the device's pose as a tool pose in W (finite); `dt_s` the time since the last step.
+  /// Computes one tick. `X_WD` is the device's pose as a tool pose in W (finite); `dt_s` is the time since
+  /// the last step.
   virtual HapticStep step(const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING = 0;
-  /// The volume's densities fell in `change`.
+  /// Follows the volume, whose densities fell in `change`.
   virtual void volume_changed(const VolumeChange& change) noexcept OSTEOMILL_NONBLOCKING = 0;
   /// Forgets all contacts, as before the first step; the volume stays as it is.
   virtual void reset() noexcept OSTEOMILL_NONBLOCKING = 0;
 
-  /// How many sample points it works with: vertices, or points of the shell as it stands. Not for the tick.
+  /// Returns how many sample points it works with: vertices, or points of the shell as it stands. Not for the
+  /// tick.
   virtual int sample_point_count() const = 0;
 
  protected:

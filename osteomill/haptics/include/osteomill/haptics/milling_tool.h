@@ -13,7 +13,7 @@ struct MillingTool {
   friend bool operator==(const MillingTool&, const MillingTool&) = default;
 };
 
-/// Throws std::invalid_argument, saying which, where a size is not positive and finite.
+/// Throws std::invalid_argument, naming the size, if a size is not positive and finite.
 void require_valid(const MillingTool& tool);
 
 /// An axis-aligned box in T.
@@ -30,8 +30,9 @@ struct ToolDistance {
   Vec3 outward_T;
 };
 
-/// In closed form: the smaller of the distances to the burr's sphere and the shaft's cylinder, which outside
-/// the tool is exact and inside it is exact away from where the two meet. Safe in the haptic tick.
+/// Returns the distance in closed form: the smaller of the distances to the burr's sphere and the shaft's
+/// cylinder, which is exact outside the tool, and inside it away from the place where the two meet. Safe in
+/// the haptic tick.
 ToolDistance tool_distance(const MillingTool& tool, const Vec3& point_T) noexcept;
 
 }  // namespace osteomill

@@ -6,7 +6,7 @@
 #include "osteomill/base/pose.h"
 #include "osteomill/volume/volume.h"
 
-/// Where the intersection point of section 4.3 begins, and what it follows. Safe in the haptic tick.
+/// Finds where the intersection point of section 4.3 begins, and what it follows. Safe in the haptic tick.
 namespace osteomill::line_proxy {
 
 /// Into how many steps the walk divides the translation and the rotation (each at least 1).
@@ -17,7 +17,7 @@ struct WalkSteps {
 
 /// The most active vertex at the first step n of the walk at which any vertex collides.
 struct WalkHit {
-  /// Where it was at step n-1 and is at step n, in W.
+  /// Its places at step n-1 and at step n, in W.
   Vec3 before_W;
   Vec3 at_W;
   /// Eq. 1, the smallest of the active vertices: 0 to 1 where it was outside before; anything, also not

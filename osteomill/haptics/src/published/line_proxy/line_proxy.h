@@ -40,7 +40,7 @@ class LineProxy final : public HapticAlgorithm {
   int sample_point_count() const override { return static_cast<int>(vertices_T_.size()); }
 
  private:
-  // What one tick leaves to the next.
+  // The state that one tick leaves to the next.
   struct Memory {
     std::optional<Vec3> device_tip_W;
     std::optional<Vec3> tip_proxy_W;

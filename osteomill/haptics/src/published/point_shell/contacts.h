@@ -14,8 +14,8 @@ namespace osteomill::point_shell {
 /// with the depth.
 void add_contact(EnergySum& sum, double push_N, double stiffness_N_per_mm, const Vec3& n, const Vec3& r_mm);
 
-/// What touches the tool, burr and shaft apart, in one frame's axes. With the tool moved by dx (mm) and
-/// turned by dw (rad, about the burr's centre), what acts on it is -(gradient + convex [dx; dw]).
+/// The contacts with the tool, summed for burr and shaft apart, in one frame's axes. With the tool moved by
+/// dx (mm) and turned by dw (rad, about the burr's centre), what acts on it is -(gradient + convex [dx; dw]).
 struct ToolContacts {
   EnergySum burr;
   EnergySum shaft;
@@ -27,14 +27,14 @@ struct ToolContacts {
   }
 };
 
-/// The height on the axis below which a contact is the burr's: where the shaft comes out of the sphere, or
-/// the equator of a burr no wider than its shaft.
+/// Returns the height on the axis below which a contact is the burr's: where the shaft comes out of the
+/// sphere, or the equator of a burr no wider than its shaft.
 double burr_top_mm(const MillingTool& tool);
 
-/// The points of the shell that lie in the tool at `X_WT`, summed in W's axes (Eriksson 2012, 6.2 and 6.3):
-/// boxes of the octree against the tool's bounding box, then each point of the boxes left against the tool's
-/// sampled distance ("SPO", 6.1). A point at the depth d pushes with `stiffness_N_per_mm3` times its area
-/// times d. Safe in the haptic tick.
+/// Finds the points of the shell that lie in the tool at `X_WT` and sums them in W's axes (Eriksson 2012, 6.2
+/// and 6.3): boxes of the octree against the tool's bounding box, then each point of the boxes left against
+/// the tool's sampled distance ("SPO", 6.1). A point at the depth d pushes with `stiffness_N_per_mm3` times
+/// its area times d. Safe in the haptic tick.
 ToolContacts contacts_by_octree(const VoxelShell& shell, const MillingTool& tool,
                                 const SampledDistanceField& field, const Pose& X_WT,
                                 double stiffness_N_per_mm3);

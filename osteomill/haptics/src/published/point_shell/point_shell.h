@@ -15,7 +15,7 @@ namespace osteomill::point_shell {
 
 /// Holds the settings of algorithm 3; point_shell_description.cpp gives each its meaning, range and default.
 struct Settings {
-  /// Of the voxels whose centres are points.
+  /// The scale of the voxels whose centres are points.
   int scale = 3;
   double translational_stiffness_N_per_mm = 5;
   double torsional_stiffness_Nmm_per_rad = 2500;

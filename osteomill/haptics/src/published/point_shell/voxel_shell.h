@@ -47,7 +47,7 @@ class BoneBits {
 /// The milled object as a point shell ("MPO", Eriksson 2012, 6.1): the centres of the surface voxels (bone
 /// with one of its 6 neighbours not bone), each for the square of its size, in bricks of 8 x 8 x 8 under an
 /// octree: of a node of level n, 2^n bricks along each axis, only the box is known. Voxels, here nodes, are
-/// the scan's or, `scale` times as far apart, sampled anew from it. Building allocates; `refresh` does not,
+/// the scan's or, `scale` times as far apart, sampled again from it. Building allocates; `refresh` does not,
 /// and is safe in the haptic tick.
 class VoxelShell {
  public:
@@ -74,7 +74,7 @@ class VoxelShell {
   void visit_bricks(const IsApart& is_apart, const Visit& visit) const {
     if (!masks_.empty()) visit_node(root_level_, {0, 0, 0}, is_apart, visit);
   }
-  /// Where G lies in W: points `origin + direction * p_G`.
+  /// Return where G lies in W: points `origin + direction * p_G`.
   const Vec3& origin_W() const { return geometry_.origin_mm; }
   const Mat3& direction() const { return geometry_.direction; }
 
@@ -106,7 +106,7 @@ class VoxelShell {
   float bone_above_ = 0;
   BoneBits bone_;
   VoxelBox bricks_;
-  // Of the node that has all bricks below it.
+  // The level of the node that has all bricks below it.
   int root_level_ = 0;
   BrickPoints points_;
   std::vector<SurfaceMask> masks_;
