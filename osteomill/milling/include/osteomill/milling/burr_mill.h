@@ -11,7 +11,7 @@
 
 namespace osteomill {
 
-/// What the removal rate kappa follows from. The defaults make a burr of 1.5 mm radius remove
+/// The settings from which the removal rate kappa follows. The defaults make a burr of 1.5 mm radius remove
 /// 3.4 mm^3/(N s); they are plausible for bone, and no source is claimed for them.
 struct CuttingSettings {
   double spindle_speed_rpm = 40000;
@@ -21,23 +21,23 @@ struct CuttingSettings {
   double specific_energy_Nmm_per_mm3 = 550;
 };
 
-/// kappa in mm^3/(N s): the power of the cutting force at the rim's speed, per newton pressed, over the
-/// specific energy. Throws std::invalid_argument where a setting or the radius is not a positive number.
+/// Returns kappa in mm^3/(N s): the power of the cutting force at the rim's speed, per newton pressed, over
+/// the specific energy. Throws std::invalid_argument if a setting or the radius is not a positive number.
 double removal_rate_mm3_per_Ns(const CuttingSettings& cutting, double burr_radius_mm);
 
 struct MillingSettings {
   /// kappa: mm^3 of reference density removed a newton of burr force and second.
   double removal_rate_mm3_per_Ns =
       osteomill::removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm);
-  /// The cutting force along the burr's speed as a share of its force, where the hand is to feel that
-  /// (CuttingReaction); 0 where not, and all of the burr then cuts as its rim does.
+  /// The cutting force along the burr's speed as a share of its force, if the hand is to feel it
+  /// (CuttingReaction); 0 if not, and all of the burr then cuts as its rim does.
   double reaction_share = 0;
 };
 
-/// What one step of milling did.
+/// The result of one step of milling.
 struct MillingStep {
   VolumeChange change;
-  /// In mm^3 of reference density: what was taken, each voxel charged by its density above the surroundings.
+  /// The bone taken, in mm^3 of reference density, each voxel charged by its density above the surroundings.
   /// Summed from the densities as they were written, so that it is exact for the volume as it now stands.
   double removed_mm3 = 0;
 };
@@ -48,20 +48,20 @@ struct MillingStep {
 /// the contact, and a wall that it only slides past stays. What is carved is a surface (cut_voxels.h): the
 /// same hole in any voxels, and nothing more where the burr has been before.
 ///
-/// What could not be spent is carried over, but for no more than 10 ms of pressing, and forgotten after 50 ms
-/// without force.
+/// A budget that could not be spent is carried over, but no more than that of 10 ms of pressing, and is
+/// forgotten after 50 ms without force.
 ///
-/// Where the burr meets more bone than a step has time for, it looks at every second line of the grid, or at
-/// every fourth, ... sixty-fourth, in turn, and spends all of its budget there: so a step's time is bounded
+/// If the burr meets more bone than a step has time for, it looks at every second line of the grid, or at
+/// every fourth, ... sixty-fourth, in turn, and spends all of its budget there. So a step's time is bounded,
 /// whatever the burr and the voxels.
 ///
-/// Not in the paper, whose milling rule is in earlier work; docs/algorithms.md.
+/// This rule is not in the paper, whose own is in earlier work; see docs/algorithms.md.
 class BurrMill {
  public:
-  /// Allocates all that `step` needs for this bone and burr. `volume` outlives it; from the first step on
-  /// nobody raises densities, since from step to step only voxels new in reach are searched for bone. Throws
-  /// std::invalid_argument if the radius or the rate is out of range or the reference is not denser than the
-  /// surroundings.
+  /// Allocates all that `step` needs for this bone and burr. `volume` outlives it; from the first step on its
+  /// densities must not rise, because from step to step only voxels new in reach are searched for bone.
+  /// Throws std::invalid_argument if the radius or the rate is out of range or the reference is not denser
+  /// than the surroundings.
   BurrMill(Volume& volume, double burr_radius_mm, const BoneDensities& densities,
            const MillingSettings& settings);
 
@@ -70,9 +70,10 @@ class BurrMill {
   /// haptic tick; time grows with the voxels overlapped.
   MillingStep step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
                    double dt_s) noexcept OSTEOMILL_NONBLOCKING;
-  /// Where the volume has labels: what the steps took of each and nobody has taken from here.
+  /// Returns what the steps took of each label and no caller has taken out of the tally yet. Empty if the
+  /// volume has no labels.
   LabelTally& by_label() { return by_label_; }
-  /// What was pressed for and not yet cut, mm^3 of reference density.
+  /// Returns the bone that was pressed for and not yet cut, in mm^3 of reference density.
   double carry_mm3() const { return carry_mm3_; }
 
  private:

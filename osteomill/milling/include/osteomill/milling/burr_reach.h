@@ -14,17 +14,16 @@ namespace osteomill {
 
 /// Finds where a ball overlaps voxels of one volume that are denser than a floor. It remembers, in bricks of
 /// 8 x 8 x 8 voxels and a bit a voxel, which ones held nothing when last looked at, so that a step costs
-/// little more than what it finds: in its hole a burr is all about emptied bricks. It finds pieces of rows (i
-/// runs along a row), brick by brick.
+/// little more than what it finds: a burr in its hole has emptied bricks all about it. It finds pieces of
+/// rows (i runs along a row), brick by brick.
 class BurrReach {
  public:
-  /// Allocates all that `find` needs. `volume` outlives it; from the first `find` on
-  /// its densities do not rise. `max_radius_mm` is
-  /// above 0, the grid not empty. No more than `max_pieces` are found at once.
+  /// Allocates all that `find` needs. `volume` outlives it; from the first `find` on its densities must not
+  /// rise. `max_radius_mm` is above 0, the grid not empty. No more than `max_pieces` are found at once.
   BurrReach(const Volume& volume, double max_radius_mm, float floor_density,
             std::size_t max_pieces = std::numeric_limits<std::size_t>::max());
 
-  /// The rows that a step looks at, where a ball has more voxels than a step has time for: those of every
+  /// The rows that a step looks at if a ball has more voxels than a step has time for: those of every
   /// `count`-th line of the grid, shifted with `turn` so that `count` turns see all. `count` is a power of 2.
   struct Share {
     unsigned count = 1;
@@ -44,7 +43,7 @@ class BurrReach {
   /// Forgets voxels of a piece that hold nothing any more, so that they are not found again.
   void forget_voxels(const Piece& piece, unsigned gone) noexcept;
   float floor_density() const { return floor_density_; }
-  /// The most that can be found at once.
+  /// Returns the most that can be found at once.
   std::size_t max_voxels() const { return max_voxels_; }
   std::size_t max_pieces() const { return max_pieces_; }
 

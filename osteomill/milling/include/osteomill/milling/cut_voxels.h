@@ -20,8 +20,8 @@ struct CutProfile {
   float per_voxel = 0.5f;
   float beyond_per_voxel = 4;
 
-  /// How far outside the surface bone is lowered, if it is not more than three times as dense as the
-  /// reference.
+  /// The distance outside the surface up to which bone is lowered, if it is not more than three times as
+  /// dense as the reference.
   static constexpr double kReach_voxels = 1.55;
 
   /// The isovalue and the reference are above the surroundings.
@@ -37,7 +37,7 @@ struct CutProfile {
 /// The burr's ball as it cuts, in the grid's axes, mm from the first voxel's centre.
 struct CuttingBall {
   Vec3 centre_mm = Vec3::Zero();
-  /// Where the burr presses: a unit vector, along its force on the bone.
+  /// The direction in which the burr presses: a unit vector, along its force on the bone.
   Vec3 ahead = Vec3::UnitZ();
   double radius_mm = 0;
 };
@@ -53,22 +53,22 @@ struct CutLists {
   std::vector<float> before, after;
 };
 
-/// The voxels that a ball would lower: all that it overlaps but for what is cut already. The half of the ball
-/// that lies ahead of its centre (leading) is moved along `ahead`, the other half (trailing) stays.
+/// The voxels that a ball would lower: all that it overlaps except those that are cut already. The half of
+/// the ball that lies ahead of its centre (leading) is moved along `ahead`, the other half (trailing) stays.
 class CutVoxels {
  public:
-  /// Room for so many voxels and rows at once.
+  /// Makes room for so many voxels and rows at once.
   CutVoxels(const GridGeometry& geometry, std::size_t voxels, std::size_t rows);
 
-  /// From the rows found about the ball: what it lowers with the leading half up to `max_ahead_mm` ahead. Has
-  /// `reach` forget what holds nothing.
+  /// Gathers, from the rows found about the ball, the voxels that it lowers with the leading half up to
+  /// `max_ahead_mm` ahead. Lets `reach` forget what holds nothing.
   void gather(BurrReach& reach, const CuttingBall& ball, const CutProfile& profile,
               double max_ahead_mm) noexcept;
 
-  /// What cutting to the ball's surface takes, as sums of densities.
+  /// The cost of cutting to the ball's surface, as sums of densities.
   struct Cost {
     double leading = 0;
-    /// How `leading` grows as the ball goes ahead.
+    /// The growth of `leading` as the ball goes ahead.
     double slope_per_mm = 0;
     double trailing = 0;
   };
@@ -106,16 +106,16 @@ class CutVoxels {
   std::array<std::vector<float>, 3> from_centre_mm_;
 };
 
-/// How far ahead of its centre a ball cuts, and which part of each drop is made.
+/// The distance ahead of its centre at which a ball cuts, and the part of each drop that is made.
 struct BurrAdvance {
   double ahead_mm = 0;
   CutVoxels::Shares shares;
 };
 
-/// The ball's place between `min_ahead_mm` and `max_ahead_mm` where cutting to its surface takes just the
-/// `budget` (a sum of densities, above 0); searched from `start_ahead_mm`. Bone that the trailing half
-/// overlaps is paid first, with at most half the budget. Where even the least place takes more, part of each
-/// drop is made; never is more spent than the budget, but for how floats round. Safe in the haptic tick.
+/// Returns the ball's place between `min_ahead_mm` and `max_ahead_mm` where cutting to its surface takes just
+/// the `budget` (a sum of densities, above 0); searched from `start_ahead_mm`. Bone that the trailing half
+/// overlaps is paid first, with at most half the budget. If even the least place takes more, part of each
+/// drop is made; no more is spent than the budget, except by the rounding of floats. Safe in the haptic tick.
 BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_ahead_mm, double min_ahead_mm,
                            double max_ahead_mm) noexcept;
 

@@ -6,32 +6,33 @@
 
 namespace osteomill {
 
-/// Of the power that a cutting force would have at the burr's rim, what it has where the burr cuts: 3/4 where
-/// the equator does, 1/2 where the pole does, whose speed is lower. `ahead_W`, where it presses, and
-/// `shaft_W` are unit vectors. What is cut lies about `ahead_W` as in BurrMill: on the half ahead, by the
-/// cosine of the angle from it. Each piece of the burr is held back in proportion to its speed.
+/// Returns the power that a cutting force has at the place where the burr cuts, as a share of its power at
+/// the burr's rim: 3/4 if the equator cuts, 1/2 if the pole does, whose speed is lower. `ahead_W`, in which
+/// it presses, and `shaft_W` are unit vectors. What is cut lies about `ahead_W` as in BurrMill: on the half
+/// ahead, by the cosine of the angle from it. Each piece of the burr is held back in proportion to its speed.
 double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) noexcept;
 
-/// The force that pays for what is cut: none where the burr does not turn, so that it forgets what it had
-/// pressed for as one that is lifted does; else the burr's force, less where its pole presses, and all of it
-/// where there is no reaction (`MillingSettings::reaction_share`). Safe in the haptic tick.
+/// Returns the force that pays for what is cut: none if the burr does not turn, so that the mill forgets what
+/// it had pressed for as if it were lifted; else the burr's force, less if its pole presses, and all of it if
+/// there is no reaction (`MillingSettings::reaction_share`). Safe in the haptic tick.
 Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N,
                       bool spindle_on) noexcept;
 
-/// What cutting does to the hand: the burr, which turns clockwise as the hand sees it, is held back along its
-/// speed, so that it pulls sideways along its rim and turns the handle. The power of its torque about the
-/// spindle is what the bone cost. Smoothed over 10 ms, so that no grain of the cutting is a step in the
-/// hand; at most twice `reaction_share` of what the burr pressed with, since no more than 10 ms of pressing
-/// are carried over. Not published in this form; docs/algorithms.md names what is.
+/// Computes what the hand feels of cutting: the burr, which turns clockwise as the hand sees it, is held back
+/// along its speed, so that it pulls sideways along its rim and turns the handle. The power of its torque
+/// about the spindle is what the bone cost. Smoothed over 10 ms, so that no grain of the cutting is a step in
+/// the hand; at most twice `reaction_share` of what the burr pressed with, since no more than 10 ms of
+/// pressing are carried over. Not published in this form; docs/algorithms.md names what is.
 class CuttingReaction {
  public:
-  /// None where `reaction_share` or the removal rate is 0.
+  /// Makes the reaction; there is none if `reaction_share` or the removal rate is 0.
   CuttingReaction(const MillingSettings& settings, double burr_radius_mm)
       : settings_(settings), radius_mm_(burr_radius_mm) {}
 
-  /// On the hand, about the burr's centre, as of the last tick.
+  /// Returns the reaction on the hand, about the burr's centre, as of the last tick.
   const Wrench& wrench() const { return wrench_; }
-  /// After each tick: what was removed with this force on the bone, `dt_s` long. Safe in the haptic tick.
+  /// Takes in, after each tick, what was removed with this force on the bone in `dt_s`. Safe in the haptic
+  /// tick.
   void follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) noexcept;
   void reset() noexcept { wrench_ = {}; }
 

@@ -8,21 +8,22 @@
 
 namespace osteomill {
 
-/// What a tick took of one label, and that it touched it at all. `label` 0 is no entry.
+/// The bone that a tick took of one label that it touched. `label` 0 means no entry.
 struct LabelCut {
   LabelMap::Place label = 0;
-  /// Of reference density, as MillingStep counts.
+  /// In mm^3 of reference density, as MillingStep counts.
   double removed_mm3 = 0;
   friend bool operator==(const LabelCut&, const LabelCut&) = default;
 };
-/// What a tick tells of labels: first the entries, then empty ones.
+/// The labels that a tick reports: first the entries, then empty ones.
 using LabelCuts = std::array<LabelCut, 4>;
 
-/// What was taken of each label and not yet told. Of fixed size; safe in the haptic tick. A tick tells of a
-/// few labels; where a burr cuts more at once, the others wait for the next ticks, so that nothing is lost.
+/// Sums what was taken of each label and not yet reported. Its size is fixed; safe in the haptic tick. A tick
+/// reports a few labels; if a burr cuts more at once, the others wait for the next ticks, so that nothing is
+/// lost.
 class LabelTally {
  public:
-  /// Of no label: nothing.
+  /// Adds to the sum of a label; does nothing for no label.
   void add(LabelMap::Place label, double removed_mm3) noexcept {
     if (label == 0) return;
     if (!waits_[label]) {
@@ -32,7 +33,7 @@ class LabelTally {
     removed_mm3_[label] += removed_mm3;
   }
 
-  /// Those that have waited longest.
+  /// Takes out the labels that have waited longest.
   LabelCuts take() noexcept {
     LabelCuts cuts;
     const std::size_t taken = std::min(cuts.size(), count_);

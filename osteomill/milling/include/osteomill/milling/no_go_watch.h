@@ -7,12 +7,12 @@
 
 namespace osteomill {
 
-/// Whether a burr touches a structure that no burr may touch. Looked for at points on the burr's surface, a
-/// voxel apart (on large burrs in fine voxels further, 512 points at the most): whatever is as wide as that
-/// is found when the burr reaches it, bone or not.
+/// Watches whether a burr touches a structure that no burr may touch. It looks at points on the burr's
+/// surface, a voxel apart (on large burrs in fine voxels further, 512 points at the most): any structure as
+/// wide as that is found when the burr reaches it, bone or not.
 class NoGoWatch {
  public:
-  /// Allocates. Null for no labels.
+  /// Allocates. `labels` may be null: then nothing is found.
   NoGoWatch(std::shared_ptr<const LabelMap> labels, double burr_radius_mm);
 
   /// Adds to `tally` every no-go label that the burr touches, with nothing removed. Safe in the haptic tick.
@@ -21,7 +21,7 @@ class NoGoWatch {
  private:
   std::shared_ptr<const LabelMap> labels_;
   double radius_mm_;
-  // From the burr's centre, in W: on its surface, and that centre.
+  // The points on the burr's surface, and its centre, as seen from that centre in W's axes.
   std::vector<Vec3> points_mm_;
 };
 
