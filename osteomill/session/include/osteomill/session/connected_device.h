@@ -18,7 +18,7 @@ namespace osteomill {
 
 using OpenConnection = std::function<std::unique_ptr<Connection>()>;
 
-/// What there is to be said of a device. Any thread.
+/// The state of a device, for people to read. From any thread.
 struct DeviceReport {
   enum class State : unsigned char {
     ok,
@@ -36,19 +36,19 @@ struct DeviceReport {
     hangs,
   };
   State state = State::ok;
-  /// How long it has been so.
+  /// How long it has been in this state.
   double since_s = 0;
-  /// Where it is lost, why it cannot be had; else what the device says of itself.
+  /// If the device is lost, why it cannot be opened; else what the device reports about itself.
   std::string reason;
   double inputs_per_s = 0;
-  /// Where its handle was a moment ago.
+  /// The place of its handle a moment ago.
   Vec3 handle_D_mm = Vec3::Zero();
-  /// How often it left `ok`, how often the haptic thread's wrench was too old, and how often it was opened
-  /// again.
+  /// Counts: how often it left `ok`, how often the haptic thread's wrench was too old, and how often it was
+  /// opened again.
   std::uint64_t faults = 0;
   std::uint64_t late_wrenches = 0;
   std::uint64_t reopened = 0;
-  /// Where something is wrong with it, what, in a sentence without a full stop; else empty.
+  /// Returns what is wrong with the device, in a sentence without a full stop; empty if nothing is.
   std::string complaint() const;
   bool gives_poses() const { return state <= State::not_driven; }
 };
@@ -56,12 +56,12 @@ struct DeviceReport {
 /// Haptic hardware as a session's device, whichever its back end is. A thread of its own reads the connection
 /// and writes to it, so that nothing the hardware does makes a tick wait, and watches over both sides. What
 /// is sent is within the device's limits, and from one wrench that has gone out to the next changes by no
-/// more than kRatesForAHand in a millisecond; it comes down to zero where the wrench is over 5 ms old, the
-/// device may not be driven, is lost or let go of, and at the end, and up again over 0.1 s. A device that is
-/// lost is opened again until it is there.
+/// more than kRatesForAHand in a millisecond; it comes down to zero if the wrench is over 5 ms old, if the
+/// device may not be driven, is lost or let go of, and at the end, and comes up again over 0.1 s. A device
+/// that is lost is opened again until it is there.
 ///
-/// It is driven (`is_driven`) while the newest input says that it may be, it is not lost, and nobody has let
-/// go of it. A clutch leaves it driven, since the tool stays where it is.
+/// It is driven (`is_driven`) while the newest input says that it may be, it is not lost, and it has not been
+/// let go of (`let_go`). A clutch leaves it driven, because the tool stays in its place.
 ///
 /// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
 /// without the tool: the device gives no pose and the hand feels nothing. Then it goes on from where the tool
@@ -78,25 +78,24 @@ class ConnectedDevice final : public Device {
   ConnectedDevice(const ConnectedDevice&) = delete;
   ConnectedDevice& operator=(const ConnectedDevice&) = delete;
 
-  /// Starts the thread; returns when the device has given a pose. Throws InputError where it gives none
-  /// within half a second.
+  /// Starts the thread; returns when the device has given a pose. Throws InputError if it gives none within
+  /// half a second.
   void start();
-  /// Returns when zero has been sent and the device is closed, with nothing to say. Where its maker's
-  /// software does not return within 0.8 s its thread is left to itself, and what there is to say of that is
-  /// returned. The device then gives no pose and takes no wrench.
+  /// Returns an empty text when zero has been sent and the device is closed. If its maker's software does not
+  /// return within 0.8 s, leaves the thread to itself and returns a sentence about that; the device then
+  /// gives no pose and takes no wrench.
   std::string close();
-  /// What the thread does, once: for a test that keeps time itself, in place of `start`.
+  /// Does once what the thread does over and over: for a test that keeps time itself, in place of `start`.
   void exchange();
 
   const DeviceCapabilities& capabilities() const { return capabilities_; }
 
-  /// For one other thread (the window's): how the handle moves the tool, and from where the operator looks,
-  /// at the front where that is not set. The tool stays where it is. Throws std::invalid_argument as
-  /// Workspace.
+  /// Set how the handle moves the tool, and from where the operator looks (from the front unless set). For
+  /// one other thread (the window's). The tool stays where it is. Throws std::invalid_argument as Workspace.
   void set_workspace(const WorkspaceSettings& settings);
   void set_view(const Quat& R_WV);
   const WorkspaceSettings& workspace() const { return way_set_.settings; }
-  /// The most that the device gives and `limits` allow, in W (Workspace::limits_W).
+  /// Returns the most that the device gives and `limits` allow, in W (Workspace::limits_W).
   WrenchLimits limits_W(const WrenchLimits& limits) const {
     return Workspace(capabilities_, workspace()).limits_W(limits);
   }

@@ -7,32 +7,32 @@
 
 namespace osteomill {
 
-/// What a device can do, as it says itself or its maker does.
+/// The abilities of a device, as it reports them or its maker states them.
 struct DeviceCapabilities {
-  /// Maker, model and, where it has one, serial number: what a workspace is remembered by.
+  /// Maker, model and, if it has one, serial number. The device's workspace is kept under this name.
   std::string name;
   /// Degrees of freedom that it senses (3: position alone; 6) and drives (3: force alone; 6).
   int sensed = 6;
   int driven = 6;
-  /// How the base D stands before the operator, placed as its maker means it to be: from D into the
-  /// operator's view V (x to the right, y up, z towards the operator).
+  /// The rotation of the base D before the operator, if it is placed as its maker means it to be: from D into
+  /// the operator's view V (x to the right, y up, z towards the operator).
   Quat R_VD = Quat::Identity();
   /// The most that its motors give.
   WrenchLimits limits;
-  /// After how long without a wrench it lets go of the hand by itself; 0 where nothing is known of that.
+  /// The time without a wrench after which it lets go of the hand by itself; 0 if that is not known.
   double lets_go_after_s = 0;
 };
 
-/// One input of a device: the pose X_DH of its handle H in its base frame D (mm), and what else it says. An
-/// orientation that it does not sense is identity.
+/// One input of a device: the pose X_DH of its handle H in its base frame D (mm), and what else it reports.
+/// An orientation that it does not sense is identity.
 struct DeviceInput {
   Pose X_DH;
   /// A bit each; the first asks for the spindle.
   unsigned buttons = 0;
   /// Why no force may be sent to the device now, and what helps, to be read after "it" ("is not calibrated:
-  /// ..."); null where force may be sent. Until then it is sent zero.
+  /// ..."); null if force may be sent. Until then it is sent zero.
   const char* not_driven = nullptr;
-  /// What else its operator should know of the device, in the same form; null where there is nothing.
+  /// What else the operator should know about the device, in the same form; null if there is nothing.
   const char* remark = nullptr;
 };
 
@@ -40,7 +40,7 @@ enum class ConnectionStatus : unsigned char {
   /// The input is one that the device has measured since the last, by its own word (a count, a time stamp, a
   /// status); the wrench has gone out.
   fresh,
-  /// Not within the time that was waited; the device may still be there.
+  /// No input came within the time that was waited; the device may still be there.
   silent,
   /// The device is gone or refuses: it has to be opened again.
   lost,
@@ -49,8 +49,8 @@ enum class ConnectionStatus : unsigned char {
 /// A back end: the connection to one opened device. Each has a function that opens it, which throws
 /// InputError naming the device and why it cannot be had; destroying it sends zero and closes the device. All
 /// calls come from one thread, which is not the haptic one: they may allocate, make system calls and wait,
-/// but no longer than said. They do not throw: what fails is told by the status. (One that throws all the
-/// same is taken for lost.)
+/// but no longer than said. They do not throw: the status reports a failure. (A connection that throws all
+/// the same is taken for lost.)
 class Connection {
  public:
   Connection() = default;
@@ -59,11 +59,11 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
   virtual const DeviceCapabilities& capabilities() const = 0;
   /// Waits for the next input, 2 ms at most. A device that stands still gives new inputs all the same.
-  /// `input` is written to only where the result is `fresh`.
+  /// `input` is written to only if the result is `fresh`.
   virtual ConnectionStatus read(DeviceInput& input) = 0;
   /// Sends force and torque as they act on the hand, in D about the handle's origin; a device that drives
-  /// force alone drops the torque. Finite, and within the capabilities' limits. Does not wait: `silent` where
-  /// the device cannot take it yet, and goes on giving the wrench before.
+  /// force alone drops the torque. Finite, and within the capabilities' limits. Does not wait: returns
+  /// `silent` if the device cannot take it yet and goes on with the wrench before.
   virtual ConnectionStatus write(const Wrench& wrench_D) = 0;
 };
 

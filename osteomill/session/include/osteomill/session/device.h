@@ -14,10 +14,10 @@ inline double share_sent(const Vec3& asked, const Vec3& sent) noexcept {
   return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
 }
 
-/// Where poses come from and wrenches go: hardware behind its thread (ConnectedDevice), a simulated operator,
-/// a virtual hand, a recorded trajectory. All calls come from the haptic thread, once a tick, and none
-/// allocates, locks or logs; only `let_go` and `take_hold` may come from anywhere. A device that has failed
-/// for good may throw from `read_pose` and `write_wrench`: that ends the loop that runs it.
+/// The source of poses and the receiver of wrenches: hardware behind its thread (ConnectedDevice), a
+/// simulated operator, a virtual hand, a recorded trajectory. All calls come from the haptic thread, once a
+/// tick, and none allocates, locks or logs; only `let_go` and `take_hold` may come from anywhere. A device
+/// that has failed for good may throw from `read_pose` and `write_wrench`: that ends the loop that runs it.
 class Device {
  public:
   virtual ~Device() = default;
@@ -28,22 +28,22 @@ class Device {
   /// Which share of the force that was written has reached the hand (share_sent). Milling removes bone for
   /// that share alone.
   virtual double given_share() const noexcept OSTEOMILL_NONBLOCKING { return 1; }
-  /// Whether what is written from now on reaches a hand; asked after `read_pose`. A device that was not
-  /// driven since the last tick, however shortly, returns false once: its hand may have sunk into bone, and
-  /// feels nothing until it is out (WrenchGuard::hold_back).
+  /// Returns whether what is written from now on reaches a hand; asked after `read_pose`. A device that was
+  /// not driven since the last tick, however shortly, returns false once: its hand may have sunk into bone,
+  /// and feels nothing until it is out (WrenchGuard::hold_back).
   virtual bool is_driven() const noexcept OSTEOMILL_NONBLOCKING { return true; }
 
-  /// Whether the operator asks for the spindle by a button or pedal of the device.
+  /// Returns whether the operator asks for the spindle by a button or pedal of the device.
   virtual bool spindle_asked() const noexcept OSTEOMILL_NONBLOCKING { return false; }
-  /// The tick is over: where the simulated tool is shown, and how long it is until the next pose is read;
-  /// called once more before that where the next one comes late. A simulated device moves on; hardware has
-  /// nothing to do.
+  /// Tells the device that the tick is over: the pose at which the simulated tool is shown, and the time
+  /// until the next pose is read. Called once more before that if the next tick comes late. A simulated
+  /// device moves on; hardware has nothing to do.
   virtual void tick_done(const Pose& /*X_WT*/, double /*dt_s*/) noexcept OSTEOMILL_NONBLOCKING {}
-  /// Called between two ticks: from now on the tool is at `X_WD` wherever the hand is, and moves from there
-  /// as the hand moves. A device that gives poses of its own (a trajectory) does nothing.
+  /// Puts the tool at `X_WD`, wherever the hand is; from there it moves as the hand moves. Called between two
+  /// ticks. A device that gives poses of its own (a trajectory) does nothing.
   virtual void put_at(const Pose& /*X_WD*/) noexcept OSTEOMILL_NONBLOCKING {}
-  /// The program is ending: zero from now on, whatever is written later. From any thread, and from a signal's
-  /// handler. True once zero has gone out; it is asked again until then.
+  /// Sends zero from now on, whatever is written later, because the program is ending. Called from any
+  /// thread, and from a signal's handler. Returns true once zero has gone out; it is called again until then.
   virtual bool let_go() noexcept {
     try {
       write_wrench(Wrench{});
@@ -52,8 +52,8 @@ class Device {
       return false;
     }
   }
-  /// After `let_go`: the program goes on after all (it was only stopped), and so does what is written, which
-  /// comes up slowly.
+  /// Takes `let_go` back, because the program goes on after all (it was only stopped): what is written is
+  /// sent again, and comes up slowly.
   virtual void take_hold() noexcept {}
 
  protected:

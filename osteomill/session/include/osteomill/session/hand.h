@@ -29,34 +29,36 @@ struct HandSettings {
   /// Root mean square of the tremor along each axis: instruments held still over an eye were measured with
   /// 0.038 mm in all (Singh and Riviere 2002).
   double tremor_mm = 0.02;
-  /// How far the tremor turns about each axis, rms. Hands held out were measured with 0.01 g at 7 Hz (the
+  /// The tremor's rotation about each axis, rms. Hands held out were measured with 0.01 g at 7 Hz (the
   /// commonest of 97; 0.0015 to 0.035 g; Wade, Gresty and Findley 1982): 0.036 mm, some 80 mm from the wrist
   /// that turns.
   double tremor_rad = 0.0005;
 };
 
-/// Throws std::invalid_argument, naming it, where a setting is negative or not finite.
+/// Throws std::invalid_argument, naming the setting, if one is negative or not finite.
 void require_valid(const HandSettings& settings);
 
-/// The most that the torsional spring gives.
+/// Returns the most that the torsional spring gives.
 inline double torque_limit_Nmm(const HandSettings& settings) noexcept {
   return settings.push_N * settings.push_lever_mm;
 }
 
-/// What the hand does to the handle, in W about the burr's centre: springs towards the target, each no
-/// stronger than its limit, and dampers against the motion relative to the target. Safe in the haptic tick.
+/// Returns the wrench of the hand on the handle, in W about the burr's centre: springs towards the target,
+/// each no stronger than its limit, and dampers against the motion relative to the target. Safe in the haptic
+/// tick.
 Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist& target_velocity,
                    const Pose& X_WD, const Twist& velocity) noexcept;
 
-/// A hand drawn from the range of real ones, for studies over many: stiffness uniform from 135 to 1000 N/m,
-/// damping from 5 to 10 N s/m, rotation by the same lever as above. The softest is an arm that holds a haptic
-/// device lightly (135 N/m, 6.45 N s/m, 0.554 kg; van Beek et al. 2015, Scientific Reports 5:18004); firm
-/// grips reach about 1000 N/m. Push and tremor stay at their defaults. The same seed gives the same hand.
+/// Returns a hand drawn from the range of real ones, for studies over many: stiffness uniform from 135 to
+/// 1000 N/m, damping from 5 to 10 N s/m, rotation by the same lever as above. The softest is an arm that
+/// holds a haptic device lightly (135 N/m, 6.45 N s/m, 0.554 kg; van Beek et al. 2015, Scientific Reports
+/// 5:18004); firm grips reach about 1000 N/m. Push and tremor stay at their defaults. The same seed gives the
+/// same hand.
 HandSettings random_hand(std::uint64_t seed);
 
-/// A hand that grips `firmness` times as firmly: all its stiffness and damping times `firmness`, since
-/// both rise steadily with the force of the grip (Hasser and Cutkosky 2002, nine hands on a knob; stiffness
-/// in proportion: Hoeppner, McIntyre and van der Smagt 2013).
+/// Returns a hand that grips `firmness` times as firmly: all its stiffness and damping times `firmness`,
+/// since both rise steadily with the force of the grip (Hasser and Cutkosky 2002, nine hands on a knob;
+/// stiffness in proportion: Hoeppner, McIntyre and van der Smagt 2013).
 HandSettings gripping(HandSettings hand, double firmness);
 
 /// The tremor of a hand, a displacement or a rotation vector in W, a function of time alone: along each axis
@@ -66,7 +68,7 @@ HandSettings gripping(HandSettings hand, double firmness);
 /// sine).
 class Tremor {
  public:
-  /// `rms` is the root mean square along each axis, in mm or rad. Throws std::invalid_argument where it is
+  /// `rms` is the root mean square along each axis, in mm or rad. Throws std::invalid_argument if it is
   /// negative or not finite.
   Tremor(std::uint64_t seed, double rms);
 

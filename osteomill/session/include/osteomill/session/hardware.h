@@ -9,7 +9,7 @@
 
 namespace osteomill {
 
-/// What looking for a device came to.
+/// The result of looking for a device.
 struct FoundDevice {
   bool there = false;
   /// What is there, or why nothing is, in half a sentence.
@@ -17,16 +17,16 @@ struct FoundDevice {
 };
 
 /// A kind of haptic hardware, and all that is to be known of its back end. `address` is what a user wrote
-/// after the name and a colon, empty where nothing was.
+/// after the name and a colon; it may be empty.
 struct HardwareKind {
   std::string_view name;
-  /// What an address looks like; empty where there is none.
+  /// The form of an address; empty if the kind has none.
   std::string_view address;
   std::string_view meaning;
-  /// What is there, after a second at most. Commands nothing: motors stay as they are, whoever
-  /// drives them. Throws InputError as `open` does.
+  /// Looks for the device and returns what is there, after a second at most. Commands nothing: motors stay as
+  /// they are, whichever program drives them. Throws InputError as `open` does.
   std::string (*look_for)(const std::string& address);
-  /// Throws InputError naming the device and why it cannot be had.
+  /// Opens the device. Throws InputError naming it and why it cannot be opened.
   std::unique_ptr<Connection> (*open)(const std::string& address);
 
   FoundDevice find(const std::string& at) const;
@@ -59,9 +59,9 @@ std::string look_for_touch(const std::string& address);
 std::unique_ptr<Connection> open_udp(const std::string& address);
 std::string look_for_udp(const std::string& address);
 
-/// Every kind that there is a back end for.
+/// Returns every kind that there is a back end for.
 std::span<const HardwareKind> hardware_kinds();
-/// Null where there is none of that name.
+/// Returns the kind of that name; null if there is none.
 const HardwareKind* hardware_named(std::string_view name);
 
 }  // namespace osteomill

@@ -13,25 +13,25 @@ namespace osteomill {
 /// The test of section 8.2 of the paper as one hand's intent: mill a hole and push the shaft against its
 /// edge, then stand in it and hold still.
 struct ScriptSettings {
-  /// How long the milling lasts.
+  /// The time that the milling lasts.
   double milling_s = 20.0;
-  /// Where true, the milling instead lasts until the shaft has leant on bone for `leant_share` of
-  /// `milling_s`, or the hand gives up trying to, after three times `milling_s` at the latest.
+  /// If true, the milling instead lasts until the shaft has leant on bone for `leant_share` of `milling_s`,
+  /// or the hand gives up trying to, after three times `milling_s` at the latest.
   bool until_leant = false;
   static constexpr double leant_share = 0.15;
   double holding_s = 20.0;
   /// The hole is deep enough to lean in when the shown burr's tip is this far below the entry.
   static constexpr double depth_mm = 3.0;
-  /// How long the hand takes, at the start of the holding, to come to what it then holds: at least this, and
-  /// with `until_leant` until it feels that push and the wall, but no longer than half the holding. What it
-  /// takes beyond `settle_s` makes the holding so much longer.
+  /// The least time that the hand takes, at the start of the holding, to come to the push that it then holds.
+  /// With `until_leant` it takes until it feels that push and the wall, but no longer than half the holding;
+  /// the time beyond `settle_s` makes the holding so much longer.
   double settle_s = 1.0;
 };
 
-/// Throws std::invalid_argument, naming it, where a setting is out of range.
+/// Throws std::invalid_argument, naming the setting, if one is out of range.
 void require_valid(const ScriptSettings& settings);
 
-/// What of the test the hand did not achieve in the time it had.
+/// The parts of the test that the hand did not achieve in the time it had.
 struct ScriptShortfall {
   /// The hole was not deep enough when the hand began to lean.
   bool shallow = false;
@@ -43,10 +43,10 @@ struct ScriptShortfall {
   bool unsettled = false;
 };
 
-/// What the hand is doing.
+/// The stages of the test, in their order.
 enum class ScriptStage : unsigned char { approach, feed, lean, settle, hold, done };
 
-/// Where the hand wants the tool to be, and whether the spindle turns.
+/// The pose in which the hand wants the tool to be, and whether the spindle turns.
 struct ScriptIntent {
   /// Without tremor.
   Pose X_W_target;
@@ -62,12 +62,13 @@ class MillingScript {
   MillingScript(const ScriptSettings& settings, const HandSettings& hand, const MillingTool& tool,
                 const MillingEntry& entry);
 
-  /// What the script wants at time 0, and where the device is then.
+  /// Returns the present intent. At time 0 the device is where the script wants it.
   const ScriptIntent& intent() const noexcept { return intent_; }
-  /// Up to now. Without `until_leant` leaning and settling are not waited for, and not judged.
+  /// Returns the shortfall up to now. Without `until_leant` leaning and settling are not waited for, and not
+  /// judged.
   const ScriptShortfall& shortfall() const { return shortfall_; }
-  /// The intent at `time_s`, `dt_s` after the last one. `X_WD` is where the device is, `X_WT` where the
-  /// simulated tool is shown, `felt` the last wrench on the hand. Safe in the haptic tick.
+  /// Returns the intent at `time_s`, `dt_s` after the last one. `X_WD` is the device's pose, `X_WT` that at
+  /// which the simulated tool is shown, `felt` the last wrench on the hand. Safe in the haptic tick.
   const ScriptIntent& step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT,
                            const Wrench& felt) noexcept;
 
@@ -99,8 +100,8 @@ class MillingScript {
   double along_mm_ = 0;
   double sideways_mm_ = 0;
   double lean_rad_ = 0;
-  // How far the device had leant when the shaft met the wall that it is at; for how long it, and the whole
-  // tool, have been free.
+  // The angle to which the device had leant when the shaft met the wall that it is at; the times for which
+  // it, and the whole tool, have been free.
   std::optional<double> wall_rad_;
   double shaft_free_s_ = 0;
   double free_s_ = 0;

@@ -16,8 +16,8 @@
 
 namespace osteomill {
 
-/// How often a second the force goes round: the spindle's turns, divided by the least whole number that
-/// brings them to at most 250 Hz, which hands feel best and a device at 1 kHz can still render.
+/// Returns how often a second the force goes round: the spindle's turns, divided by the least whole number
+/// that brings them to at most 250 Hz, which hands feel best and a device at 1 kHz can still render.
 double vibration_hz(double spindle_speed_rpm);
 
 /// A force that goes round the shaft, as long as the burr cuts. Safe in the haptic tick.
@@ -26,7 +26,7 @@ class Vibration {
   Vibration(const VibrationSettings& settings, double spindle_speed_rpm)
       : settings_(settings), hz_(vibration_hz(spindle_speed_rpm)) {}
 
-  /// In W, `dt_s` after the last one.
+  /// Returns the force in W, `dt_s` after the last one.
   Vec3 force_N(const Pose& X_WT, double burr_force_N, double dt_s) noexcept;
 
  private:
@@ -35,21 +35,21 @@ class Vibration {
   double turns_ = 0;
 };
 
-/// What a session leaves to the one that goes on from it: where its simulated tool is, which is outside the
-/// bone, what the hand feels, and whether it was held back (WrenchGuard). There is no tool's pose where the
-/// next session is to begin at the device, which may have sunk into the bone.
+/// The state that a session leaves to the one that goes on from it: the pose of its simulated tool, which is
+/// outside the bone, the wrench that the hand feels, and whether it was held back (WrenchGuard). There is no
+/// tool's pose if the next session is to begin at the device, which may have sunk into the bone.
 struct TakenOver {
   std::optional<Pose> X_WT;
   Wrench sent;
   bool held_back = true;
 };
 
-/// When a tick is, and what is asked of it.
+/// The time of a tick, and what is asked of it.
 struct TickInput {
-  /// When it begins, and how long it is: the time since the one before, and until the next.
+  /// Its beginning, and its length: the time since the tick before, and until the next.
   double time_s = 0;
   double dt_s = 1e-3;
-  /// How much longer ago the one before is, because ticks were missed.
+  /// The time by which the tick before is longer ago, because ticks were missed.
   double late_s = 0;
   /// Whether the spindle turns; if not given, the device says so (Device::spindle_asked).
   std::optional<bool> spindle_on = {};
@@ -61,9 +61,9 @@ struct TickInput {
 /// The wrench goes out before bone is removed, so that milling cannot delay the hand.
 class MillingSession {
  public:
-  /// Ready to tick; takes as long as the algorithm's preparation. A session that has milled the same bone
-  /// takes no further tick while this one lives. Throws std::invalid_argument where a setting is out of range
-  /// or the tool cannot work (`require_workable`).
+  /// Makes a session ready to tick; takes as long as the algorithm's preparation. A session that has milled
+  /// the same bone takes no further tick while this one lives. Throws std::invalid_argument if a setting is
+  /// out of range or the tool cannot work (`require_workable`).
   MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
 
   /// One haptic tick, all of it: reads the device's pose, computes and sends the wrench, removes as much bone
@@ -72,28 +72,28 @@ class MillingSession {
   /// no allocation, lock, log or system call, and no exception but the device's.
   TickRecord tick(Device& device, const TickInput& input) OSTEOMILL_NONBLOCKING;
 
-  /// What stands between the algorithm and the hand. As safe as `tick`.
+  /// Returns the guard between the algorithm and the hand. As safe as `tick`.
   WrenchGuard& guard() { return guard_; }
 
-  /// Before the first tick: begins where another session is left, whose wrench the hand feels. As safe as
+  /// Begins where another session is left, whose wrench the hand feels. Before the first tick; as safe as
   /// `tick`.
   void take_over(const TakenOver& before) noexcept;
-  /// To be taken over by another, after the last tick.
+  /// Returns what another session takes over, after the last tick.
   TakenOver left() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back()}; }
-  /// The next tick counts as one that reaches no hand (Device::is_driven), as after a time without ticks. As
-  /// safe as `tick`.
+  /// Lets the next tick count as one that reaches no hand (Device::is_driven), as after a time without ticks.
+  /// As safe as `tick`.
   void hold_back() noexcept { hold_back_asked_ = true; }
 
-  /// From the next tick on the wrench comes down to zero slowly and stays there until the tool is placed. As
-  /// safe as `tick`.
+  /// Brings the wrench down to zero slowly, from the next tick on, and keeps it there until the tool is
+  /// placed. As safe as `tick`.
   void let_go() noexcept { let_go_asked_ = true; }
-  /// In the next tick the algorithm begins anew where the device then is, whatever was touched before; the
-  /// device is free of bone. As safe as `tick`.
+  /// Lets the algorithm begin again, in the next tick, at the pose that the device then has, whatever was
+  /// touched before; the device is free of bone. As safe as `tick`.
   void place() noexcept { place_asked_ = true; }
 
-  /// What the last tick changed of the volume.
+  /// Returns what the last tick changed of the volume.
   const VolumeChange& last_change() const { return last_change_; }
-  /// HapticStep's of the last tick, to be drawn.
+  /// Returns HapticStep::intersection_W of the last tick, to be drawn.
   const std::optional<Vec3>& intersection_W() const { return intersection_W_; }
   double removed_mm3() const { return removed_mm3_; }
   /// Goes on counting from what was removed of this bone before.
@@ -102,7 +102,7 @@ class MillingSession {
   const Volume& volume() const { return *volume_; }
   const std::shared_ptr<Volume>& shared_volume() const { return volume_; }
   const HapticAlgorithm& algorithm() const { return *algorithm_; }
-  /// As it was made with.
+  /// Returns the setup that it was made with.
   const MillingSetup& setup() const { return setup_; }
   const BoneDensities& densities() const { return densities_; }
 
@@ -115,7 +115,7 @@ class MillingSession {
   struct SafeStep {
     HapticStep step;
     SafeWrench sent;
-    // Of the torque sent.
+    // The cutting's part of the torque sent.
     Vec3 cutting_torque_W_Nmm = Vec3::Zero();
   };
   SafeStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on, bool is_driven) noexcept;
@@ -145,7 +145,7 @@ class MillingSession {
 };
 
 /// Runs the session along the trajectory, a tick a row, each as long as the time since the row before (the
-/// first as long as the second, or 1 ms where it is alone); calls `record` after each tick.
+/// first as long as the second, or 1 ms if it is the only one); calls `record` after each tick.
 void replay(MillingSession& session, const std::vector<TrajectoryPoint>& trajectory,
             const std::function<void(const TickRecord&)>& record);
 

@@ -27,7 +27,7 @@ struct MillingSetup {
   AlgorithmDescription algorithm = default_algorithm();
   HapticSettings haptics;
   CuttingSettings cutting;
-  /// Not given: follows from `cutting` and the burr.
+  /// The rate, if given; else it follows from `cutting` and the burr.
   std::optional<double> removal_rate_mm3_per_Ns;
   /// The hand feels how cutting holds the burr back along its speed (CuttingReaction).
   bool cutting_reaction = false;
@@ -35,23 +35,25 @@ struct MillingSetup {
   VibrationSettings vibration;
   /// Protects a hand unless told otherwise (GuardSettings::for_simulation).
   GuardSettings guard;
-  /// How long a tick nominally is.
+  /// The nominal length of a tick.
   double tick_s = 1e-3;
 };
 
-/// Flags of the fields of a MillingSetup. Of which part it is; a replay keeps the recording's, as a recording
-/// is of one scan, milled with one tool; without being set it follows from the others.
+/// Flags of the fields of a MillingSetup. kOfTheTool, kOfTheCutting and kOfTheLimits name the part of the
+/// setup. kOfTheRecording: a replay keeps the recording's value, because a recording is of one scan, milled
+/// with one tool. kFollows: unless set, the value follows from other fields.
 inline constexpr unsigned kOfTheTool = 1, kOfTheCutting = 2, kOfTheLimits = 4, kOfTheRecording = 8,
                           kFollows = 16;
 
-/// Returns every number of a setup but the algorithm's own, which its description has, and the tick.
+/// Returns every number of a setup except the tick and the algorithm's own settings, which its description
+/// has.
 template <>
 const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>();
 
-/// Throws std::invalid_argument, with one line that says why, where a tool cannot work in a scan with this
-/// grid: a size is out of its range, its burr or shaft is wider than the whole scan, or its burr so many
-/// voxels wide that no algorithm follows it at the haptic rate, or so few that the scan has nothing for it to
-/// feel. At once, before anything is prepared.
+/// Throws std::invalid_argument, with one line that says why, if a tool cannot work in a scan with this grid:
+/// a size is out of its range, its burr or shaft is wider than the whole scan, or its burr so many voxels
+/// wide that no algorithm follows it at the haptic rate, or so few that the scan has nothing for it to feel.
+/// Checked at once, before anything is prepared.
 void require_workable(const MillingTool& tool, const GridGeometry& scan);
 
 /// Returns a line for each setting of the algorithm that is poor for this tool in such a scan
@@ -59,7 +61,8 @@ void require_workable(const MillingTool& tool, const GridGeometry& scan);
 /// and if a setting is out of range or bone could not hold the tool with it: what a session would throw.
 std::vector<std::string> doubts_about(const MillingSetup& setup, const GridGeometry& scan);
 
-/// What a burr mills by under this setup. Throws std::invalid_argument where a setting is out of range.
+/// Returns the settings by which a burr mills under this setup. Throws std::invalid_argument if one is out of
+/// range.
 MillingSettings milling_settings(const MillingSetup& setup);
 
 }  // namespace osteomill

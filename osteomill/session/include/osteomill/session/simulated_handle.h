@@ -14,17 +14,16 @@ struct HandleSettings {
   double inertia_kg_m2 = 3e-4;
   /// The encoder's step; 0 reads without rounding.
   double position_step_mm = 0.005;
-  /// What the encoder resolves of turning: the step above at the end of a lever of 50 mm. 0 reads without
-  /// rounding.
+  /// The encoder's step of rotation: the step above at the end of a lever of 50 mm. 0 reads without rounding.
   double rotation_step_rad = 1e-4;
-  /// From the command to the motors' acting on it; rounded to whole substeps.
+  /// The time from a command until the motors act on it; rounded to whole substeps.
   double force_delay_s = 0.3e-3;
-  /// What the motors can give.
+  /// The most that the motors can give.
   WrenchLimits limits;
   double substep_s = 50e-6;
 };
 
-/// Throws std::invalid_argument, naming it, where a setting is out of range.
+/// Throws std::invalid_argument, naming the setting, if one is out of range.
 void require_valid(const HandleSettings& settings);
 
 /// The handle in simulated time. Position and rotation do not couple: the centre of mass lies at the burr's
@@ -45,20 +44,20 @@ class SimulatedHandle {
   /// At rest at `X_WD`, with nothing commanded.
   void reset(const Pose& X_WD) noexcept;
 
-  /// What the encoder says of the pose now: position to whole steps in W, orientation to whole steps of the
-  /// rotation vector from where the handle was at the start.
+  /// Returns the pose as the encoder reads it now: position to whole steps in W, orientation to whole steps
+  /// of the rotation vector from the handle's orientation at the start.
   Pose read() const noexcept;
   /// Commands a wrench (on the handle, in W, about the burr's centre). The motors give it, within their
   /// limits, from `force_delay_s` later on, until the next command takes effect.
   void command(const Wrench& wrench) noexcept;
-  /// Moves the handle on by one substep. `other` is what acts on it beside the motors: the hand.
+  /// Moves the handle on by one substep. `other` is the wrench that acts on it beside the motors: the hand's.
   void advance(const Wrench& other) noexcept;
 
   const HandleSettings& settings() const { return settings_; }
   /// The true pose and velocity.
   const Pose& pose() const { return X_WD_; }
   const Twist& velocity() const { return velocity_; }
-  /// What the motors gave in the last substep.
+  /// Returns the wrench that the motors gave in the last substep.
   const Wrench& motor_wrench() const { return motor_wrench_; }
   /// Kinetic energy in N mm (mJ).
   double kinetic_energy_Nmm() const;

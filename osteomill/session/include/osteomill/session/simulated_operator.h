@@ -15,7 +15,7 @@ struct OperatorSettings {
   HandleSettings handle;
   HandSettings hand;
   ScriptSettings script;
-  /// Of the tremor.
+  /// The seed of the tremor.
   std::uint64_t seed = 1;
 };
 
@@ -28,33 +28,34 @@ const std::vector<Field<OperatorSettings>>& fields_of<OperatorSettings>();
 /// Made outside the tick; nothing else allocates, locks, logs or throws.
 class SimulatedOperator : public Device {
  public:
-  /// Throws std::invalid_argument, naming it, where a setting is out of range, or where hand and handle
-  /// together are too stiff for the substep.
+  /// Throws std::invalid_argument, naming the setting, if one is out of range, or if hand and handle together
+  /// are too stiff for the substep.
   SimulatedOperator(const OperatorSettings& settings, const MillingTool& tool, const MillingEntry& entry);
 
-  /// As the encoder says.
+  /// Returns the pose as the encoder reads it.
   Pose read_pose() noexcept override { return handle_.read(); }
   void write_wrench(const Wrench& wrench) noexcept override {
     felt_ = wrench;
     handle_.command(wrench);
   }
-  /// Whether the tick that begins now belongs to the milling phase, in which the spindle turns.
+  /// Returns whether the tick that begins now belongs to the milling phase, in which the spindle turns.
   bool spindle_asked() const noexcept override { return script_.intent().milling; }
-  /// By the simulated tool the operator judges how deep the hole is. `dt_s` passes in whole substeps of the
-  /// handle; what is left over is kept for the next call. Nothing passes where it does not lie in (0, 1 s].
+  /// Moves hand and handle on. By the simulated tool the operator judges how deep the hole is. `dt_s` passes
+  /// in whole substeps of the handle; the rest is kept for the next call. Nothing passes if it does not lie
+  /// in (0, 1 s].
   void tick_done(const Pose& X_WT, double dt_s) noexcept override;
 
   double time_s() const { return static_cast<double>(substeps_) * handle_.settings().substep_s; }
   ScriptStage stage() const { return script_.intent().stage; }
   const ScriptShortfall& shortfall() const { return script_.shortfall(); }
-  /// Both phases are over.
+  /// Returns whether both phases are over.
   bool finished() const { return stage() == ScriptStage::done; }
 
-  /// Where the hand pulls to, with its tremor.
+  /// Returns the pose that the hand pulls to, with its tremor.
   const Pose& target() const { return X_W_target_; }
-  /// What the hand did to the handle in the last substep.
+  /// Returns the hand's wrench on the handle in the last substep.
   const Wrench& hand_wrench() const { return hand_wrench_; }
-  /// The handle as it truly is, without the encoder's steps.
+  /// Returns the handle as it truly is, without the encoder's steps.
   const SimulatedHandle& handle() const { return handle_; }
 
  private:

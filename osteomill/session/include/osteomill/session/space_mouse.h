@@ -4,21 +4,22 @@
 
 namespace osteomill {
 
-/// How far a SpaceMouse is pushed and twisted, -1 to 1 along and about each axis of the viewer: right, up,
+/// The push and the twist of a SpaceMouse, -1 to 1 along and about each axis of the viewer: right, up,
 /// towards the viewer.
 struct SpaceMouseState {
   Vec3 push = Vec3::Zero();
   Vec3 twist = Vec3::Zero();
-  /// How often any of its buttons went down since the last reading.
+  /// The number of times that any of its buttons went down since the last reading.
   int presses = 0;
 };
 
-/// A pose in W that it pushes and twists for so long: pushed as far as it goes by 20 mm, twisted by 1.2 rad a
-/// second, along and about the axes of the viewer, which R_WV turns to those of W.
+/// Returns a pose in W after the SpaceMouse has pushed and twisted it for this time: pushed as far as it goes
+/// by 20 mm, twisted by 1.2 rad a second, along and about the axes of the viewer, which R_WV turns to those
+/// of W.
 Pose moved(const Pose& X_W, const SpaceMouseState& by, const Quat& R_WV, double passed_s);
 
-/// A SpaceMouse behind the daemon spacenavd (or whatever listens at the socket that SPNAV_SOCKET names). One
-/// at a time; for one thread, not the haptic one.
+/// A SpaceMouse behind the daemon spacenavd (or another program that listens at the socket that SPNAV_SOCKET
+/// names). One at a time; for one thread, not the haptic one.
 class SpaceMouse {
  public:
   /// Looks for the daemon; without one there is no SpaceMouse, which is no error.
@@ -28,7 +29,7 @@ class SpaceMouse {
   SpaceMouse& operator=(const SpaceMouse&) = delete;
 
   bool present() const { return present_; }
-  /// As it is now. Never waits.
+  /// Returns its state now. Never waits.
   SpaceMouseState read();
 
  private:

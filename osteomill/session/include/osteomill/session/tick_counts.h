@@ -25,42 +25,43 @@ class FaultCount {
   int unsafe() const;
   /// Ticks that sent zero since the hand was held back (WrenchGuard).
   int held_back() const;
-  /// What to tell people, in one sentence; nothing where there were none. Not for the tick.
+  /// Returns a sentence about them for people to read; nothing if there were none. Not for the tick.
   std::optional<std::string> sentence() const;
 
  private:
   int count(std::initializer_list<WrenchFault> faults) const;
 
-  // Of each kind.
+  // The number of ticks of each kind.
   std::array<int, static_cast<std::size_t>(WrenchFault::held_back) + 1> ticks_{};
 };
 
-/// How much of each label was removed, when and with what force, from every tick in turn. Not for the tick.
+/// Counts how much of each label was removed, when and with what force, from every tick in turn. Not for the
+/// tick.
 class LabelCount {
  public:
   struct Entry {
-    /// Of reference density, as TickRecord counts.
+    /// In mm^3 of reference density, as TickRecord counts.
     double removed_mm3 = 0;
-    /// When the burr first and last cut or touched it.
+    /// The times at which the burr first and last cut or touched it.
     double first_s = 0;
     double last_s = 0;
-    /// For how long it did in all, and how the burr pressed on bone meanwhile.
+    /// The time for which it did in all, and the burr's force on bone meanwhile.
     double time_s = 0;
     double force_mean_N = 0;
     double force_max_N = 0;
-    /// How often, where half a second without parts one contact from the next.
+    /// The number of contacts; half a second without parts one from the next.
     int contacts = 0;
   };
 
   explicit LabelCount(std::vector<Label> labels) : labels_(std::move(labels)), entries_(labels_.size()) {}
-  /// Of a bone's labels; null where it has none.
+  /// Counts a bone's labels; `map` is null if it has none.
   explicit LabelCount(const std::shared_ptr<const LabelMap>& map = nullptr)
       : LabelCount(map ? map->labels() : std::vector<Label>{}) {}
 
-  /// Returns what to tell people where a contact with a no-go label begins in this tick.
+  /// Takes in a tick. Returns a sentence for people to read if a contact with a no-go label begins in it.
   std::optional<std::string> add(const TickRecord& record);
 
-  /// When the burr last cut or touched a no-go label.
+  /// Returns when the burr last cut or touched a no-go label.
   std::optional<double> last_no_go_s() const;
 
   const std::vector<Label>& labels() const { return labels_; }

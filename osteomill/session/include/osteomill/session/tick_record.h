@@ -11,11 +11,11 @@ namespace osteomill {
 /// All that is known of one tick: what recordings hold and reports are made from.
 struct TickRecord {
   double time_s = 0;
-  /// How long the tick was taken to be, and whether the spindle turned: with the tool's pose and the burr's
-  /// force all that milling depends on.
+  /// The length that the tick was taken to have, and whether the spindle turned. With the tool's pose and the
+  /// burr's force that is all that milling depends on.
   double dt_s = 0;
   bool spindle_on = false;
-  /// The session's other inputs beside the device's pose. How much of the force the hand had so far
+  /// The session's other inputs beside the device's pose. The share of the force that the hand had so far
   /// (Device::given_share); whether what was sent reached a hand (Device::is_driven); whether the tick is one
   /// of a pause; whether from this tick on nothing is felt until the tool is placed; whether before this tick
   /// the tool was placed where the device is, and its contacts were forgotten.
@@ -24,38 +24,39 @@ struct TickRecord {
   bool paused = false;
   bool let_go = false;
   bool placed = false;
-  /// Which of the sessions that follow each other on a bone it is of, where there are several.
+  /// The number of its session, if several follow each other on a bone.
   std::uint32_t session = 0;
   /// The device's pose as read, and the simulated tool's.
   Pose X_WD;
   Pose X_WT;
-  /// What was sent to the device (safe), in W about the burr's centre.
+  /// The wrench that was sent to the device (safe), in W about the burr's centre.
   Wrench wrench;
   WrenchFault fault = WrenchFault::none;
-  /// Of its torque, what the cutting adds (CuttingReaction).
+  /// The part of its torque that cutting adds (CuttingReaction).
   Vec3 cutting_torque_W_Nmm = Vec3::Zero();
-  /// Given to the hand less what it gave, up to this tick's pose (PassivityObserver), in N mm.
+  /// The energy given to the hand less what it gave, up to this tick's pose (PassivityObserver), in N mm.
   double energy_given_Nmm = 0;
   int contacts = 0;
-  /// HapticStep's.
+  /// As HapticStep::owed_bricks.
   int owed_bricks = 0;
-  /// With which the burr pressed on the bone, in W.
+  /// The force with which the burr pressed on the bone, in W.
   Vec3 burr_force_W_N = Vec3::Zero();
-  /// Since the start, in mm^3 of reference density.
+  /// The bone removed since the start, in mm^3 of reference density.
   double removed_mm3 = 0;
-  /// Of the bone after the tick (Volume::change_hash).
+  /// The hash of the bone after the tick (Volume::change_hash).
   std::uint64_t bone_hash = 0;
-  /// In this tick, where the bone has labels: what was taken of which, and which no-go ones were touched.
+  /// If the bone has labels: how much of which was taken in this tick, and which no-go ones were touched.
   LabelCuts label_cuts{};
   /// Time taken by the algorithm's step, and by milling with all that follows the volume.
   double compute_us = 0;
   double milling_us = 0;
   /// CPU time that the thread itself had for the whole tick, which no other program on the machine lengthens.
-  /// 0 where it was not measured: asking for it is a system call, so only whoever runs ticks that no hand
-  /// waits for can ask, before and after them.
+  /// 0 if it was not measured: asking for it is a system call, so only a loop whose ticks no hand waits for
+  /// can ask, before and after them.
   double tick_cpu_us = 0;
 
-  /// How long the tick kept its loop busy: by the thread's own CPU time where it is known, else by the clock.
+  /// Returns how long the tick kept its loop busy: by the thread's own CPU time if it is known, else by the
+  /// clock.
   double busy_us() const { return tick_cpu_us > 0 ? tick_cpu_us : compute_us + milling_us; }
 };
 

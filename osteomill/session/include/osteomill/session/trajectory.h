@@ -8,14 +8,14 @@
 
 namespace osteomill {
 
-/// Where a device was at a time, and whether the spindle turned.
+/// The pose of a device at a time, and whether the spindle turned.
 struct TrajectoryPoint {
   double time_s = 0;
   Pose X_WD;
   bool milling = false;
 };
 
-/// How far from the origin of W a pose can be, along each axis: beyond any scanner and any device.
+/// The greatest distance of a pose from the origin of W, along each axis: beyond any scanner and any device.
 inline constexpr double kFarthestPose_mm = 3e5;
 /// Returns whether the pose is finite and not farther than that. Safe in the haptic tick.
 inline bool is_reachable(const Pose& pose) {
@@ -29,7 +29,7 @@ inline bool is_reachable(const Pose& pose) {
 /// values, or no row at all.
 std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
 
-/// A device that is where it is put, and remembers what it was sent: for replays and tests.
+/// A device that gives the pose it was put at, and remembers the wrench it was sent: for replays and tests.
 class PosedDevice : public Device {
  public:
   void put(const Pose& X_WD, double given_share = 1, bool is_driven = true) noexcept {

@@ -10,19 +10,19 @@
 namespace osteomill {
 
 /// A simulated device whose handle follows a pose that another thread sets (from a mouse or a SpaceMouse). It
-/// is pulled there by a spring of limited force and a damper, so that bone can hold it back: who has no
+/// is pulled there by a spring of limited force and a damper, so that bone can hold it back: a user without
 /// haptic hardware sees the resistance.
 ///
 /// `pull_to` is for one other thread and never waits.
 class VirtualHand final : public Device {
  public:
-  /// At rest at `X_WD`. Throws std::invalid_argument as SimulatedHandle and the hand's settings do.
+  /// Begins at rest at `X_WD`. Throws std::invalid_argument as SimulatedHandle and the hand's settings do.
   VirtualHand(const HandleSettings& handle, const HandSettings& hand, const Pose& X_WD);
 
-  /// Poses that are not finite are not taken.
+  /// Sets the pose to pull to; one that is not finite is ignored.
   void pull_to(const Pose& X_W_target) noexcept;
-  /// For the haptic thread, between two ticks: puts hand and handle there, at rest, where they stay until the
-  /// next `pull_to`. Safe in the tick.
+  /// Puts hand and handle at `X_WD`, at rest, where they stay until the next `pull_to`. For the haptic
+  /// thread, between two ticks; safe in the tick.
   void put_at(const Pose& X_WD) noexcept override;
 
   Pose read_pose() noexcept override { return handle_.read(); }
@@ -40,7 +40,8 @@ class VirtualHand final : public Device {
   std::uint64_t pulls_ = 0;
   // The last pull that does not count any more.
   std::uint64_t over_ = 0;
-  // Where the hand pulls to now: it follows what is asked for smoothly, which comes only with every picture.
+  // The pose that the hand pulls to now. It follows smoothly what is asked for, which comes only with every
+  // picture.
   Pose X_W_target_;
 };
 

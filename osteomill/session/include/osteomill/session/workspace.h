@@ -8,16 +8,17 @@
 
 namespace osteomill {
 
-/// How a device's handle moves the tool, and what of the tool's wrench the hand gets.
+/// The settings by which a device's handle moves the tool, and the tool's wrench reaches the hand.
 struct WorkspaceSettings {
-  /// By how much the tool moves further than the handle.
+  /// The factor by which the tool moves further than the handle.
   double scale = 1;
-  /// How much of the power at the tool is power at the hand (Workspace::wrench_D).
+  /// The share of the power at the tool that is power at the hand (Workspace::wrench_D).
   double power = 1;
-  /// How the device stands other than its maker means it, about the axes of the operator's view V.
+  /// The rotation by which the device stands other than its maker means it to, about the axes of the
+  /// operator's view V.
   Vec3 turn_V_deg = Vec3::Zero();
-  /// For a device that drives force alone: so far from the burr the hand is, about which the shaft turns;
-  /// what turns it becomes a force at the burr. 0: it is not felt.
+  /// For a device that drives force alone: the distance from the burr of the hand about which the shaft
+  /// turns; a torque that turns it becomes a force at the burr. 0: the torque is not felt.
   double shaft_lever_mm = 0;
   friend bool operator==(const WorkspaceSettings&, const WorkspaceSettings&) = default;
 };
@@ -26,37 +27,38 @@ struct WorkspaceSettings {
 /// 0).
 void require_valid(const WorkspaceSettings& settings);
 
-/// How a device stands, from two moves of its handle in D that the operator says went to the right and up.
-/// Nothing where either is shorter than 10 mm, or they are not across each other within 30 degrees.
+/// Returns how a device stands (turn_V_deg), from two moves of its handle in D that the operator says went to
+/// the right and up. Returns nothing if either is shorter than 10 mm, or they are not at a right angle within
+/// 30 degrees.
 std::optional<Vec3> turn_by_moves_deg(const DeviceCapabilities& device, const Vec3& right_D_mm,
                                       const Vec3& up_D_mm);
 
-/// From where the operator looks without a window: at the patient's front, with their head up.
+/// Returns the view of an operator without a window: at the patient's front, with the head up.
 Quat view_from_the_front();
 
-/// From a device's base frame D onto the scan's W, and wrenches back. The handle's motion since the anchor is
-/// turned and scaled, and moves the tool from where it was then; so the handle may be moved on without the
-/// tool (a clutch) by anchoring anew. All but making it is safe in the haptic tick.
+/// Maps poses from a device's base frame D to the scan's W, and wrenches back. The handle's motion since the
+/// anchor is turned and scaled, and moves the tool from where it was then; so the handle can be moved on
+/// without the tool (a clutch) by anchoring again. All but making it is safe in the haptic tick.
 class Workspace {
  public:
   /// Throws std::invalid_argument as `require_valid`.
   Workspace(const DeviceCapabilities& device, const WorkspaceSettings& settings);
 
-  /// Valid settings, and from where the operator looks. The way of moving changes, so anchor anew.
+  /// Sets valid settings, and the operator's view. The way of moving changes, so anchor again.
   void set(const WorkspaceSettings& settings, const Quat& R_WV);
-  /// From now the handle at `X_DH` has the tool at `X_WT`.
+  /// From now on the handle at `X_DH` holds the tool at `X_WT`.
   void anchor(const Pose& X_WT, const Pose& X_DH) noexcept;
   Pose tool_pose(const Pose& X_DH) const noexcept;
 
-  /// What the device is to send for a wrench on the tool. By virtual work: whatever small motion the hand
-  /// makes, the work done on it is `power` times that done on the tool. With scale s the tool moves s times
-  /// as far and turns as much, so the force is power s times the tool's, and the torque power times.
-  /// `shaft_W` is the tool's shaft direction. A device that drives force alone gets the torque as its
+  /// Returns the wrench that the device is to send for one on the tool. By virtual work: whatever small
+  /// motion the hand makes, the work done on it is `power` times that done on the tool. With scale s the tool
+  /// moves s times as far and turns as much, so the force is power s times the tool's, and the torque power
+  /// times. `shaft_W` is the tool's shaft direction. A device that drives force alone gets the torque as its
   /// settings say.
   Wrench wrench_D(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept;
 
-  /// The most that may be asked for of the tool, in W, so that the device can give it; no more than `limits`.
-  /// A torque that the device does not drive is limited by `limits` alone.
+  /// Returns the most that may be asked for at the tool, in W, so that the device can give it; no more than
+  /// `limits`. A torque that the device does not drive is limited by `limits` alone.
   WrenchLimits limits_W(const WrenchLimits& limits) const;
 
  private:
@@ -69,13 +71,14 @@ class Workspace {
   Pose anchor_X_DH_;
 };
 
-/// Where a device's workspace is kept, by the device's name: in `config_folder()`, under devices/; empty
-/// where there is no such folder.
+/// Returns the file in which a device's workspace is kept, by the device's name: in `config_folder()`, under
+/// devices/; empty if there is no such folder.
 std::filesystem::path workspace_path(const std::string& device_name);
 
-/// As it was kept; nothing where none was. Throws InputError naming the file where it is at fault.
+/// Returns the settings as they were kept; nothing if none were. Throws InputError naming the file if it is
+/// at fault.
 std::optional<WorkspaceSettings> read_workspace(const std::filesystem::path& path);
-/// Throws InputError where it cannot be written.
+/// Writes the settings. Throws InputError if the file cannot be written.
 void keep_workspace(const std::filesystem::path& path, const WorkspaceSettings& settings);
 
 }  // namespace osteomill

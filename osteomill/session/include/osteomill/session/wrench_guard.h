@@ -7,16 +7,16 @@
 
 namespace osteomill {
 
-/// Bounds what a wrench may be, and how fast it may change, on its way to a hand. As it is, it protects a
-/// person's hand; what runs without one uses `for_simulation`.
+/// Bounds what a wrench may be, and how fast it may change, on its way to a hand. By default it protects a
+/// person's hand; a session without one uses `for_simulation`.
 struct GuardSettings {
   static constexpr double kAny = WrenchRates::kAny;
 
   WrenchLimits limits;
   WrenchRates rates = kRatesForAHand;
-  /// How long it takes from what was sent before to what is asked for, where they need not agree.
+  /// The time of a blend from the wrench sent before to the one asked for, when they need not agree.
   double blend_s = 0.1;
-  /// The furthest that a device moves and turns in a tick, and the longest tick; beyond them zero is sent.
+  /// The furthest that a device may move and turn in a tick, and the longest tick; beyond them zero is sent.
   double max_move_mm = 5;
   double max_turn_rad = 0.2;
   double max_tick_s = 0.005;
@@ -29,11 +29,11 @@ struct GuardSettings {
   static GuardSettings for_simulation(const WrenchLimits& limits = {}, bool passivity_controller = false);
 };
 
-/// How much energy a session has given to the hand, and a damper that takes it back where it is more than the
-/// hand gave: a passivity observer and controller in the time domain (Hannaford and Ryu, Time-domain
+/// Counts how much energy a session has given to the hand, and has a damper that takes it back if it is more
+/// than the hand gave: a passivity observer and controller in the time domain (Hannaford and Ryu, Time-domain
 /// passivity control of haptic interfaces, IEEE Trans. Robotics and Automation 18(1), 2002). The wrench is
 /// held between two poses, so its work is the sum of wrench times motion over the ticks, exactly, up to what
-/// the device adds (delay, rounding). One thread's; all of it is safe in the haptic tick.
+/// the device adds (delay, rounding). For one thread; all of it is safe in the haptic tick.
 class PassivityObserver {
  public:
   /// Counts from zero, for a device that may be anywhere and is sent `sent`.
@@ -44,18 +44,18 @@ class PassivityObserver {
     moved_mm_.setZero();
     turned_rad_.setZero();
   }
-  /// The device was read at `X_WD`: counts the work of what was sent since the last reading. One that is not
+  /// Counts the work of what was sent since the last reading of the device, now at `X_WD`. A pose that is not
   /// finite breaks the count off until the next that is.
   void move_to(const Pose& X_WD) noexcept;
-  /// What is sent from now on.
+  /// Sets the wrench that is sent from now on.
   void send(const Wrench& wrench) noexcept { sent_ = wrench; }
 
-  /// Given to the hand less what it gave, in N mm (mJ). A passive session never exceeds 0; one that is
-  /// damped, no more than what the last tick of a contact gave.
+  /// Returns the energy given to the hand less what it gave, in N mm (mJ). A passive session never exceeds 0;
+  /// one that is damped, no more than what the last tick of a contact gave.
   double energy_given_Nmm() const { return energy_given_Nmm_; }
 
-  /// A damping wrench that takes back what was given too much within a tick of `dt_s`, if the device goes on
-  /// as in the last one; less where that were more damping than a device can show. Zero where nothing is
+  /// Returns a damping wrench that takes back what was given too much within a tick of `dt_s`, if the device
+  /// goes on as in the last one; less if that were more damping than a device can show. Zero if nothing is
   /// owed.
   Wrench damping(double dt_s) const noexcept;
 
@@ -69,42 +69,43 @@ class PassivityObserver {
 };
 
 /// Stands between an algorithm and a hand: what is sent is within the limits, changes no faster than it may,
-/// and comes up slowly where the hand may have sunk into bone unfelt (after a pause, with another algorithm
-/// or bone, after a fault). A hand that begins to be driven, as at the start, is held back: it feels nothing
+/// and comes up slowly if the hand may have sunk into bone unfelt (after a pause, with another algorithm or
+/// bone, after a fault). A hand that begins to be driven, as at the start, is held back: it feels nothing
 /// until the tool is out of bone, and then what it touches after that. It counts the energy that the hand is
-/// given, and can keep it from being more than the hand gave. One thread's; all of it is safe in the haptic
+/// given, and can keep it from being more than the hand gave. For one thread; all of it is safe in the haptic
 /// tick.
 class WrenchGuard {
  public:
   WrenchGuard() : WrenchGuard(GuardSettings{}) {}
   explicit WrenchGuard(const GuardSettings& settings) : settings_(settings) { hold_back(); }
 
-  /// Given to the hand less what it gave, in N mm, up to the last pose.
+  /// Returns the energy given to the hand less what it gave, in N mm, up to the last pose.
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
-  /// From now what is asked for comes up slowly, from what was last sent.
+  /// From now on lets what is asked for come up slowly, from what was last sent.
   void begin_anew() noexcept;
   /// Begins as begin_anew does, in the place of another guard whose hand feels `sent` or was held back;
   /// energy is counted from now on.
   void begin_from(const Wrench& sent, bool held_back) noexcept;
-  /// Nothing that is sent reaches the hand. From now on it is zero, until the algorithm asks for next to
-  /// nothing (kFreeForce_N, kFreeTorque_Nmm) in a tick in which the tool may be out of bone. Nothing happens
-  /// where no hand is protected (`blend_s` is 0).
+  /// Sends zero from now on, because nothing that is sent reaches the hand, until the algorithm asks for next
+  /// to nothing (kFreeForce_N, kFreeTorque_Nmm) in a tick in which the tool may be out of bone. Does nothing
+  /// if no hand is protected (`blend_s` is 0).
   void hold_back() noexcept;
   bool is_held_back() const { return held_back_; }
   static constexpr double kFreeForce_N = 0.5;
   static constexpr double kFreeTorque_Nmm = 12.5;
-  /// From now on the wrench comes down to zero slowly and stays there until `begin_anew`.
+  /// Brings the wrench down to zero slowly, from now on, and keeps it there until `begin_anew`.
   void let_go() noexcept;
   const Wrench& sent() const { return sent_; }
-  /// Zero was sent last.
+  /// Returns whether zero was sent last.
   bool is_at_rest() const { return is_zero(sent_); }
 
-  /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
-  /// that is not finite is zero, and the next ones come up slowly again. A tool that is in bone (`is_free`
-  /// false) stays held back.
+  /// Returns what to send for a wrench in a tick of `dt_s`, with the reason if that is not what was asked
+  /// for. A wrench that is not finite becomes zero, and the next ones come up slowly again. A tool that is in
+  /// bone (`is_free` false) stays held back.
   SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s,
                   bool is_free = true) noexcept OSTEOMILL_NONBLOCKING;
-  /// What to send in a tick in which nothing may be felt, as there is no finite pose or a pause.
+  /// Returns what to send in a tick in which nothing may be felt, because of a pause or because there is no
+  /// finite pose.
   SafeWrench pass_zero(const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING;
 
  private:
