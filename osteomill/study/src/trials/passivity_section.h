@@ -9,15 +9,15 @@
 
 namespace osteomill {
 
-/// The stiffness felt at the limit over the device's damping, a panel for each delay, with the rule
-/// of the ideal wall.
+/// Draws the stiffness felt at the limit over the device's damping, a panel for each delay, with the rule of
+/// the ideal wall.
 Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::filesystem::path& folder);
 
-/// The report's section on passivity against a flat wall: what was measured and how, in words, with the
-/// figure and a table.
+/// Returns the report's section on passivity against a flat wall: what was measured and how, in words, with
+/// the figure and a table.
 Section passivity_section(std::span<const PassivityRow> rows, const Figure& figure);
 
-/// Writes stability.csv, whole or not at all. Throws InputError where it cannot be written.
+/// Writes stability.csv, whole or not at all. Throws InputError if it cannot be written.
 void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows);
 
 }  // namespace osteomill

@@ -12,8 +12,8 @@
 namespace osteomill {
 
 /// Draws a map of a study's rows into `folder` as NAME.svg and NAME.png: a cell for each pair of values, or,
-/// of more than 40, for each of 24 equal parts of their range. Nothing where no row has what it shows. Throws
-/// as draw_figure does.
+/// if there are more than 40 values, for each of 24 equal parts of their range. Returns nothing if no row has
+/// what it shows. Throws as draw_figure does.
 std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const StudyMap& map,
                                               const std::vector<TrialRow>& rows, const std::string& name,
                                               const std::filesystem::path& folder);

@@ -10,18 +10,18 @@
 
 namespace osteomill {
 
-/// A dot for every seed, by algorithm, with a bar at their median: a panel for each key metric that
-/// is not zero throughout, at most eight.
+/// Draws a dot for every seed, by algorithm, with a bar at their median: a panel for each key metric that is
+/// not zero throughout, at most eight.
 Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder);
 
-/// A figure of two that were tried, paired hand by hand.
+/// A comparison of two algorithms by one figure, paired hand by hand.
 struct PairedComparison {
   AlgorithmId first;
   AlgorithmId second;
-  /// By the sums of signed ranks; false where neither is.
+  /// Decided by the sums of signed ranks; false if neither is.
   bool second_is_greater = false;
-  /// Wilcoxon's signed-rank test, exact, two-sided, after Holm's correction over all that is compared with
-  /// it.
+  /// Wilcoxon's signed-rank test, exact, two-sided, after Holm's correction over all comparisons made
+  /// together.
   double p = 1;
 };
 
@@ -29,22 +29,23 @@ struct PairedComparison {
 std::vector<PairedComparison> compare_algorithms(const Study& study, std::string_view phase,
                                                  const RunFigure& figure);
 
-/// Which algorithms did what, on which bone, in how many hands.
+/// Returns a sentence on which algorithms did what, on which bone, in how many hands.
 std::string what_was_compared(const Study& study, std::string_view scan_name);
 
-/// Says ahead of all else that a study has too few hands to show anything; empty where it has enough.
+/// Returns a warning, to stand ahead of all else, that a study has too few hands to show anything; empty
+/// where it has enough.
 std::string too_few_hands(const Study& study);
 
-/// What a comparison shows, for readers of nothing else: a table of force and torque while milling, the shaft
-/// while holding and the bone removed, by algorithm and with their differences, and one of how many of the
-/// paper's findings hold.
+/// Returns the tables that show what a comparison found, for readers of nothing else: a table of force and
+/// torque while milling, the shaft while holding and the bone removed, by algorithm and with their
+/// differences, and one of how many of the paper's findings hold.
 std::vector<Table> conclusions(const Study& study);
 
-/// The report's section on a study: medians with their intervals, and which differences between algorithms
-/// are significant.
+/// Returns the report's section on a study: medians with their intervals, and which differences between
+/// algorithms are significant.
 Section study_section(const Study& study, const std::vector<CaptionedFigure>& figures);
 
-/// The report's section on what the paper says it found, each held against the study.
+/// Returns the report's section on what the paper says it found, each held against the study.
 Section findings_section(const Study& study);
 
 }  // namespace osteomill

@@ -11,22 +11,23 @@
 
 namespace osteomill {
 
-/// What was measured beside the recordings.
+/// Measurements beside the recordings.
 struct ReportExtras {
-  /// Of other hands and grips than the recordings'. Nothing where that is not known: then they are those of
-  /// the study.csv beside the recordings, if that is of them.
+  /// Runs in other hands and grips than the recordings'. If not given, they are read from the study.csv
+  /// beside the recordings, if that belongs to them.
   std::optional<std::vector<MeasuredRun>> others;
   std::vector<PassivityRow> passivity;
 };
 
-/// Whether these are recordings of the test of section 8.2, and not of anything else that was milled.
+/// Returns whether these are recordings of the test of section 8.2, and not of anything else that was milled.
 bool are_of_comparison(const std::vector<Recording>& recordings);
 
-/// The report of any session (write_report) with what the test of section 8.2 adds: what was compared and the
-/// verdict ahead of all, the paper's findings held against it, and where there are extras, a section on each,
-/// with their numbers in study.csv and stability.csv, which are there also where the report fails. Nothing is
-/// concluded from recordings that differ in more than the algorithm (differences_table). Returns the page's
-/// path, and puts what came out, the tables at its top, into `came_out`. Throws as write_report does.
+/// Writes the report of any session (write_report) with what the test of section 8.2 adds: what was compared
+/// and the verdict ahead of all, the paper's findings held against it, and if there are extras, a section on
+/// each. The extras' numbers go into study.csv and stability.csv, which are written even if the report fails.
+/// Draws no conclusions from recordings that differ in more than the algorithm (differences_table). Returns
+/// the page's path, and puts the results, the tables at its top, into `came_out`. Throws as write_report
+/// does.
 std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
                                               const std::filesystem::path& out_dir,
                                               const ReportExtras& extras = {},

@@ -11,8 +11,8 @@
 
 namespace osteomill {
 
-/// How much of the surface that milling left, by the voxels along it, the camera sees: 1 where nothing was
-/// milled. `milled` was the bone before and was only milled since. Not for the tick.
+/// Returns how much of the surface that milling left, by the voxels along it, the camera sees: 1 if nothing
+/// was milled. `milled` was the bone before and was only milled since. Not for the tick.
 double share_seen(const Volume& before, const Volume& milled, const Camera& camera);
 
 /// PNGs of a bone from obliquely above an entry, before milling and after it, all from the same view, those

@@ -34,13 +34,13 @@ struct PanelGrid {
 
 /// A figure to be drawn as SVG and as PNG from one description.
 struct FigureScript {
-  /// Of its files, without extension.
+  /// The name of its files, without extension.
   std::string name;
   double height_px;
   double width_px = PanelGrid::kWidth_px;
   /// gnuplot commands, which begin a multiplot.
   std::string body = {};
-  /// Where gnuplot runs.
+  /// The folder in which gnuplot runs.
   TemporaryFolder work = {};
   int files = 0;
 

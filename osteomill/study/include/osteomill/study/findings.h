@@ -28,12 +28,12 @@ struct Finding {
   bool of_the_machine = false;
 };
 
-/// How firmly the same hand grips for one of the findings, the loosest first: what its stiffness and damping
-/// are multiplied by (gripping, hand.h).
+/// The grips of the same hand for one of the findings, the loosest first: the factors of its stiffness and
+/// damping (gripping, hand.h).
 inline constexpr std::array<double, 3> kGrips{0.5, 1, 2};
 
-/// What algorithm 2's force has above 20 Hz (rms, N) while it is held, for each of `kGrips`; empty where only
-/// one was tried, not a number where contact was lost.
+/// Algorithm 2's force above 20 Hz (rms, N) while it is held, for each of `kGrips`; empty if only one was
+/// tried, not a number if contact was lost.
 using GripForces = std::vector<double>;
 
 /// The nine findings of the paper's section 8, as its text has them. One that needs runs which are not there

@@ -10,9 +10,9 @@ namespace osteomill {
 /// The option of every setting by which an algorithm is made stiffer or softer (SettingDescription::option).
 inline constexpr std::string_view kStiffnessOption = "stiffness";
 
-/// How stiff the setup's algorithm is felt on a flat wall (flat_wall) with its haptic settings: the slope of
-/// the force over the depth about 0.5 N (press_slowly_on_wall). 0 where it does not carry that. Throws
-/// std::invalid_argument where a setting is out of range.
+/// Returns how stiff the setup's algorithm is felt on a flat wall (flat_wall) with its haptic settings: the
+/// slope of the force over the depth about 0.5 N (press_slowly_on_wall). 0 if it does not carry that force.
+/// Throws std::invalid_argument if a setting is out of range.
 double felt_stiffness_N_per_mm(const MillingSetup& setup, const Volume& wall);
 
 /// The value of the algorithm's setting of the option "stiffness", as a setting of that algorithm alone, with

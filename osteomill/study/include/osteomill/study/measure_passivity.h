@@ -23,7 +23,7 @@ struct StiffnessLimit {
   Kind kind = Kind::below_all;
   /// The greatest passive one that was tried; 0 for `below_all`.
   double stiffness_N_per_mm = 0;
-  /// How stiff that one is felt.
+  /// The stiffness felt with it.
   double felt_N_per_mm = 0;
 };
 
@@ -38,14 +38,14 @@ StiffnessLimit seek_stiffness_limit(const std::function<WallPressResult(double s
 /// Schenkel (1997) and Diolaiti et al. (2006).
 double passive_stiffness_rule_N_per_mm(double damping_Ns_per_mm, double tick_s, double delay_s);
 
-/// How stiff an algorithm can be on a device of this damping and delay.
+/// The greatest stiffness of an algorithm on a device of this damping and delay.
 struct PassivityRow {
   AlgorithmId algorithm;
   double damping_Ns_per_mm = 0;
   double delay_s = 0;
   /// By the algorithm's own setting (--stiffness), which need not be what is felt.
   StiffnessLimit limit;
-  /// How stiff an ideal wall could be there (passive_stiffness_rule_N_per_mm).
+  /// The greatest stiffness of an ideal wall there (passive_stiffness_rule_N_per_mm).
   double rule_N_per_mm = 0;
 };
 

@@ -16,13 +16,14 @@ namespace osteomill {
 
 /// The most that a milling loop should lose of 1000 Hz (paper, section 8.1).
 inline constexpr double kMinRate_hz = 950.0;
-/// Where a hand stops following and starts to feel a buzz: "above 20 Hz" in all that is reported.
+/// The frequency at which a hand stops following and starts to feel a buzz: "above 20 Hz" in all that is
+/// reported.
 inline constexpr double kBuzzAbove_hz = 20.0;
 
-/// In the place of a figure that could not be measured: not a number.
+/// Stands for a figure that could not be measured: not a number.
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// What the tool leant on in a tick, and what the hand felt of it.
+/// The contacts of the tool in a tick, and whether the hand felt them.
 struct Contact {
   /// The burr presses on bone with 0.02 N or more.
   bool burr = false;
@@ -38,7 +39,7 @@ struct Contact {
 };
 Contact contact_of(const TickRecord& record);
 
-/// For how much of a recording the tool touched, each as a share of its ticks.
+/// The shares of a recording's ticks in which the tool touched.
 struct ContactShares {
   double any = 0;
   double burr = 0;
@@ -46,7 +47,7 @@ struct ContactShares {
   double force = 0;
   double torque = 0;
   /// When contact was lost: the time from the first tick to the last one in contact, if the recording then
-  /// goes on for a second or more; 0 if nothing touched at all. Not a number where contact was not lost.
+  /// goes on for a second or more; 0 if nothing touched at all. Not a number if contact was not lost.
   double lost_after_s = kNotMeasured;
   /// It was lost while the spindle turned: in this recording or, if nothing touched in it, before it began.
   bool lost_while_milling = false;
@@ -54,22 +55,22 @@ struct ContactShares {
   bool is_lost() const { return !std::isnan(lost_after_s); }
 };
 
-/// Whether a share of contact is enough to measure what is felt in it: a tenth of the ticks.
+/// Returns whether a share of contact is enough to measure what is felt in it: a tenth of the ticks.
 inline bool is_enough_contact(double share) {
   return share >= 0.1;
 }
 
-/// Why something that is felt could not be measured: "never touched", "lost while milling", "lost while
-/// milling, after 3.2 s", "lost contact after 3.2 s", "touched for 4 % of the time", "the shaft touched for 4
-/// % of the time" or "felt a force for 4 % of the time".
+/// Returns why something that is felt could not be measured: "never touched", "lost while milling", "lost
+/// while milling, after 3.2 s", "lost contact after 3.2 s", "touched for 4 % of the time", "the shaft touched
+/// for 4 % of the time" or "felt a force for 4 % of the time".
 std::string contact_words(const ContactShares& contact);
 
-/// How a vector over time behaves: force (N) or torque (N mm).
+/// Figures of a vector over time: force (N) or torque (N mm).
 struct VectorMetrics {
   /// Mean and greatest magnitude over all ticks.
   double mean = 0;
   double max = 0;
-  /// Root of the mean square magnitude of what lies above 20 Hz (signals.h).
+  /// Root of the mean square magnitude of its part above 20 Hz (signals.h).
   double hp_rms = 0;
   /// The greatest magnitude of the difference between two ticks that follow each other.
   double step_max = 0;
@@ -77,12 +78,12 @@ struct VectorMetrics {
   double hp_share = 0;
 };
 inline constexpr VectorMetrics kNotFelt{kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured};
-/// Over the ticks that are `counted` (empty: all); a step counts where one of its two ticks does. Zeros for
-/// none.
+/// Returns the figures over the ticks that are `counted` (empty: all); a step counts if one of its two ticks
+/// does. Zeros for none.
 VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
                              const std::vector<bool>& counted = {});
 
-/// How far unit directions stray from their mean (the direction of their sum), in degrees: the root of the
+/// The spread of unit directions about their mean (the direction of their sum), in degrees: the root of the
 /// mean square angle, and the greatest angle. Zeros for no directions.
 struct DirectionMetrics {
   double spread_deg = 0;
@@ -90,7 +91,8 @@ struct DirectionMetrics {
 };
 DirectionMetrics direction_metrics(std::span<const Vec3> directions);
 
-/// How far the shaft turned within 50 ms, in degrees: at most, and about the greatest step of the torque.
+/// The turn of the shaft within 50 ms, in degrees: the greatest, and that about the greatest step of the
+/// torque.
 struct ShaftTurns {
   double max_deg = 0;
   double at_torque_step_deg = 0;
@@ -101,39 +103,41 @@ struct RunMetrics {
   double steps = 0;
   /// Only ticks this long after the recording's first one, and later ones, are counted.
   double counted_from_s = 0;
-  /// Of the algorithm's step alone, by the clock (`compute_us`).
+  /// The time of the algorithm's step alone, by the clock (`compute_us`).
   Distribution step_us;
-  /// Of the tick's whole work (TickRecord::busy_us).
+  /// The time of the tick's whole work (TickRecord::busy_us).
   Distribution tick_us;
   /// HeldRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
   double rate_hz = 0;
   ContactShares contact;
-  /// While in contact; not a number where the hand did not feel a force, or a torque, for long enough.
+  /// Force and torque while in contact; not a number if the hand did not feel a force, or a torque, for long
+  /// enough.
   VectorMetrics force_N;
   VectorMetrics torque_Nmm;
-  /// Of the simulated tool's shaft while in contact; not a number where the shaft did not touch for long
-  /// enough.
+  /// The directions of the simulated tool's shaft while in contact; not a number if the shaft did not touch
+  /// for long enough.
   DirectionMetrics shaft;
   ShaftTurns turns;
-  /// How much of the torque above 20 Hz follows the force above 20 Hz of the 10 ms about it
-  /// (signals.h), while the shaft touches; not a number where that is too short to say.
+  /// The share of the torque above 20 Hz that follows the force above 20 Hz of the 10 ms about it
+  /// (signals.h), while the shaft touches; not a number if it touched for too short a time.
   double torque_follows_force = 0;
-  /// The mean number of sample points that touch, over the ticks in contact; like the turns not a number
-  /// where these ticks are too few.
+  /// The mean number of sample points that touch, over the ticks in contact; like the turns not a number if
+  /// these ticks are too few.
   double contacts_mean = 0;
-  /// Bone removed by milling after the first tick, and what was put back of it where a cut was taken back.
+  /// Bone removed by milling after the first tick, and the part of it that was put back when a cut was taken
+  /// back.
   double removed_mm3 = 0;
   double put_back_mm3 = 0;
-  /// How far the burr's centre went, by where it was every 0.02 s: from tick to tick a trembling hand goes
-  /// far without getting anywhere.
+  /// The length of the burr's path, by its centre's place every 0.02 s: from tick to tick a trembling hand
+  /// goes far without getting anywhere.
   double path_mm = 0;
 };
 
-/// Of the ticks from the `first` on. Throws InputError, naming the recording, where these are fewer than two,
-/// their time does not increase, a number is not finite, or they are too far apart to say anything about 20
-/// Hz.
+/// Returns the figures of the ticks from the `first` on. Throws InputError, naming the recording, if these
+/// are fewer than two, their time does not increase, a number is not finite, or they are too far apart to say
+/// anything about 20 Hz.
 RunMetrics run_metrics(const Recording& recording, std::size_t first);
-/// Of all ticks.
+/// Returns the figures of all ticks.
 inline RunMetrics run_metrics(const Recording& recording) {
   return run_metrics(recording, 0);
 }
@@ -150,24 +154,24 @@ const std::vector<Field<RunMetrics>>& fields_of<RunMetrics>();
 /// Returns the figure of this column. Throws std::invalid_argument if there is none.
 const Field<RunMetrics>& metric(std::string_view column);
 
-/// What was run, in which hand, and its figures.
+/// A run: its algorithm, its hand and its figures.
 struct MeasuredRun {
   AlgorithmId algorithm;
   std::string phase;
   RunMetrics metrics;
   /// Null if no recording was kept.
   const Recording* recording = nullptr;
-  /// What of its plan it did not reach (kNotReachedKey); empty for nothing.
+  /// The parts of its plan that it did not reach (kNotReachedKey); empty for none.
   std::string not_reached = {};
   std::uint64_t seed = 0;
-  /// Of the simulated hand; 0 if a person held the tool.
+  /// Stiffness and damping of the simulated hand; 0 if a person held the tool.
   double hand_stiffness_N_per_m = 0;
   double hand_damping_Ns_per_m = 0;
-  /// How firmly that hand gripped: 1 for as it is, else for a trial beside it (TrialPlan::grip).
+  /// The firmness of that hand's grip: 1 for the hand as it is, else for a trial beside it (TrialPlan::grip).
   double grip = 1;
 };
 
-/// Returns what a run says of its hand in numbers, the columns of study.csv behind the seed.
+/// Returns the numbers that a run has of its hand, the columns of study.csv behind the seed.
 template <>
 const std::vector<Field<MeasuredRun>>& fields_of<MeasuredRun>();
 

@@ -14,7 +14,7 @@ struct TrialSettings : MillingSetup {
   explicit TrialSettings(const MillingSetup& setup, const OperatorSettings& hand = {});
 
   OperatorSettings hand_and_device;
-  /// Of the device itself, where it is pressed on a wall without a hand.
+  /// The damping of the device itself, for a press on a wall without a hand.
   double device_damping_Ns_per_mm = 0.005;
   /// False lets the hand go through its motions without removing bone, as section 8.1 measures rates.
   bool spindle = true;
@@ -39,7 +39,7 @@ class MillingTrial {
                const TrialSettings& settings);
 
   bool finished() const { return operator_.finished(); }
-  /// What the hand could not bring about.
+  /// Returns what the hand could not bring about.
   const ScriptShortfall& shortfall() const { return operator_.shortfall(); }
   /// The next tick; then the hand and the device move on. No allocation.
   Tick tick();

@@ -8,10 +8,10 @@
 
 namespace osteomill {
 
-/// How a piece of a cell is shown; `words` may be broken into lines, as nothing else in a table of numbers.
+/// The look of a piece of a cell. In a table of numbers only `words` may be broken into lines.
 enum class Look : unsigned char { plain, strong, agrees, differs, faint, words };
 
-/// A cell of a table: plain text, whose line breaks stay, in pieces of which each is shown in its own way.
+/// A cell of a table: plain text, whose line breaks stay, in pieces that each have a look of their own.
 struct Cell {
   struct Piece {
     std::string text;
@@ -31,7 +31,7 @@ struct Cell {
 struct Table {
   std::vector<std::string> header;
   std::vector<std::vector<Cell>> rows;
-  /// Cells are numbers, to be aligned on the right.
+  /// True if cells are numbers, to be aligned on the right.
   bool numbers = false;
 };
 
@@ -47,7 +47,7 @@ struct CaptionedFigure {
 /// A part of a page, shown in the order of its fields; what is empty is not shown. All text is plain.
 struct Section {
   std::string title;
-  /// What a reader must know before believing the rest.
+  /// Sentences that a reader must know before believing the rest.
   std::vector<std::string> notices;
   std::vector<std::string> paragraphs;
   std::vector<CaptionedFigure> figures;
@@ -62,7 +62,7 @@ struct Page {
   std::vector<Section> sections;
 };
 
-/// Returns a section whose title is of this level (<h2>). Throws InputError where a figure cannot be read.
+/// Returns a section whose title is of this level (<h2>). Throws InputError if a figure cannot be read.
 std::string html(const Section& section, int level = 2);
 
 /// Returns a whole page with its own style sheet, which loads nothing from anywhere. Throws as `html` of a
@@ -71,7 +71,7 @@ std::string html(const Page& page);
 
 /// Writes a page into `out_dir` under this name, with the files and figures that `make` puts beside it: it
 /// gets a folder that has a folder `figures`. All appear together or none. Returns the page's path. Throws
-/// InputError where a file cannot be written, and what `make` throws.
+/// InputError if a file cannot be written, and what `make` throws.
 std::filesystem::path write_page(const std::filesystem::path& out_dir, const std::string& name,
                                  const std::function<Page(const std::filesystem::path& beside)>& make);
 

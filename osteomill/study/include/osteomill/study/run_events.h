@@ -6,9 +6,10 @@
 
 namespace osteomill {
 
-/// What a long run tells whoever started it, in that one's thread; nothing where they do not say to whom.
+/// The reports of a long run to the caller who started it, in the caller's thread; by default they go
+/// nowhere.
 struct RunEvents {
-  /// What is being done, and which share of it.
+  /// Is told what is being done, and which share of it.
   std::function<void(std::string_view what, double fraction_done)> progress = [](std::string_view, double) {};
   /// One line that people should see.
   std::function<void(const std::string& line)> warn = [](const std::string&) {};

@@ -8,7 +8,7 @@
 
 namespace osteomill {
 
-/// What a recording says of its run, with these figures of it; it points to the recording.
+/// Returns what a recording says about its run, with these figures; the result points to the recording.
 MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics);
 
 /// The runs of a report, by phase, then by algorithm.

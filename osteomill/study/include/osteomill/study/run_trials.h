@@ -28,7 +28,7 @@ auto run_trials(const std::vector<Trial>& trials, const std::string& what, std::
   return results;
 }
 
-/// What came of a trial of a study.
+/// The result of a trial of a study.
 struct TriedTrial {
   /// One for each part of its test, without the trial's number.
   std::vector<TrialRow> rows;

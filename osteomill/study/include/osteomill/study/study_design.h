@@ -14,11 +14,11 @@ namespace osteomill {
 /// Options of a trial and their values, as a command line would have them: {"push", "1.5"}.
 using StudySettings = std::vector<std::pair<std::string, std::string>>;
 
-/// The value of an option, the last where it is set several times; null where it is not set.
+/// Returns the value of an option, the last if it is set several times; null if it is not set.
 const std::string* find_value(const StudySettings& settings, std::string_view key);
 
-/// What is tried, one after the other: a value of one option each, or of several that belong together (a
-/// tool, a hand).
+/// The settings that are tried, one after the other: each is a value of one option, or of several that belong
+/// together (a tool, a hand).
 using StudyAxis = std::vector<StudySettings>;
 
 /// A number's range, evenly or, where `logarithmic`, evenly in its logarithm.
@@ -26,7 +26,7 @@ struct StudyRange {
   double from = 0;
   double to = 0;
   bool logarithmic = false;
-  /// At a share of the range, 0 its beginning and 1 its end.
+  /// Returns the number at a share of the range, 0 its beginning and 1 its end.
   double at(double share) const;
 };
 
@@ -48,29 +48,29 @@ struct LatinHypercube {
   std::vector<Axis> axes;
 };
 
-/// What a map of a study shows: the trials by two of what was set or measured, coloured by what came of them.
-/// `x`, `y` and `colour` are an option, a column of the rows, or the ratio of two of them, "A / B"; `panels`
-/// is an option, or two in the same way, with a panel for each value.
+/// A map of a study: the trials by two of their settings or results, coloured by a third. `x`, `y` and
+/// `colour` are an option, a column of the rows, or the ratio of two of them, "A / B"; `panels` is an option,
+/// or two in the same way, with a panel for each value.
 struct StudyMap {
   std::string title;
   std::string x;
   std::string y;
   std::string colour;
   std::string panels = "algorithm";
-  /// Which rows; empty for the test's first part.
+  /// The part of the test whose rows are shown; empty for the first.
   std::string part;
-  /// Of the trials of a cell: "median", "mean" or "max".
+  /// The statistic over the trials of a cell: "median", "mean" or "max".
   std::string statistic = "median";
   bool logarithmic_colour = false;
-  /// A line where x and y are the same.
+  /// Whether to draw a line along which x and y are the same.
   bool line_of_equality = false;
 };
 
 /// The names in what a map shows: one, or the two of a ratio.
 std::vector<std::string> names_in(std::string_view shown);
 
-/// What a study tries: every combination of the hypercube's trials and the grid's axes, numbered from 0, the
-/// hypercube the slowest, so that a part of it is spread over all, and the last axis the fastest. A value
+/// The trials of a study: every combination of the hypercube's trials and the grid's axes, numbered from 0,
+/// the hypercube the slowest, so that a part of it is spread over all, and the last axis the fastest. A value
 /// type; its trials are made from their numbers as they are needed, so that a million take no memory.
 class StudyDesign {
  public:
@@ -78,7 +78,7 @@ class StudyDesign {
   StudyDesign(StudySettings fixed, std::vector<StudyAxis> grid, LatinHypercube hypercube);
 
   std::size_t trial_count() const { return count_; }
-  /// All that is set of a trial: what is fixed, and what varies in the order of `varied`.
+  /// Returns all settings of a trial: those that are fixed, and those that vary in the order of `varied`.
   StudySettings trial(std::size_t number) const;
   /// The options that differ between trials, in the order of the axes.
   const std::vector<std::string>& varied() const { return varied_; }
@@ -90,7 +90,7 @@ class StudyDesign {
   std::vector<StudyMap> maps;
   /// The paper's findings are held against the rows, hand by hand (of `milling`).
   bool findings = false;
-  /// Of options, for axes and tables.
+  /// The units of options, for axes and tables.
   StudySettings units;
 
  private:
@@ -103,7 +103,7 @@ class StudyDesign {
   std::size_t count_ = 1;
 };
 
-/// The seed of a trial; 1 where it is not set.
+/// Returns the seed of a trial; 1 if it is not set.
 std::uint64_t seed_of(const StudySettings& settings);
 
 }  // namespace osteomill

@@ -15,7 +15,7 @@ namespace osteomill {
 /// Which study a folder is of: the content of its file study.h5. The study's trials are run in slices, trials
 /// that follow each other, and a slice is done when its file lies in the folder.
 struct StudyRecord {
-  /// Of the study's file and of the program, as bytes.
+  /// Hashes of the study's file and of the program, as bytes.
   std::uint64_t study_hash = 0;
   std::uint64_t program_hash = 0;
   /// From where the study names its scans.
@@ -27,13 +27,13 @@ struct StudyRecord {
 
   std::size_t slices() const { return (trials + trials_a_slice - 1) / trials_a_slice; }
   std::size_t first_of(std::size_t slice) const { return slice * trials_a_slice; }
-  /// Of trials, in this slice.
+  /// Returns the number of trials in this slice.
   std::size_t size_of(std::size_t slice) const;
-  /// Of everything above.
+  /// Returns a hash of everything above.
   std::uint64_t hash() const;
 };
 
-/// Of a file's bytes. Throws InputError where it cannot be read.
+/// Returns a hash of a file's bytes. Throws InputError if it cannot be read.
 std::uint64_t hash_of_file(const std::filesystem::path& path);
 
 /// study.h5 in `folder`, whole or not at all; reading gives nothing where there is none. Throws InputError
@@ -76,7 +76,7 @@ void write_slice(const StudyFolder& study, const Slice& slice);
 /// (again).
 std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number);
 
-/// How far a study is, by the files of its folder; what these hold is put behind `rows`.
+/// The progress of a study, by the files of its folder; the rows that these hold are put behind `rows`.
 struct StudyStatus {
   /// By their numbers, all slices.
   std::vector<std::size_t> done;

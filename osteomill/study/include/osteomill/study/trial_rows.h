@@ -10,8 +10,8 @@
 
 namespace osteomill {
 
-/// What each trial of a study does: section 8.2 of the paper in a simulated hand, which gives a row for each
-/// phase; or a device without a hand is pressed on a flat wall (wall_press.h), one row.
+/// The test that each trial of a study runs: section 8.2 of the paper in a simulated hand, which gives a row
+/// for each phase; or a device without a hand is pressed on a flat wall (wall_press.h), one row.
 enum class StudyTest : unsigned char { milling, wall };
 
 inline constexpr std::string_view kStudyTests[] = {"milling", "wall"};
@@ -22,7 +22,7 @@ inline std::string_view name_of(StudyTest test) {
 /// The parts of a test, one row each.
 std::span<const std::string_view> parts_of(StudyTest test);
 
-/// What came of a press on a wall.
+/// The result of a press on a wall.
 struct WallFigures {
   /// 1 if the handle came to rest; not a number if the wall gave way.
   double passive = kNotMeasured;

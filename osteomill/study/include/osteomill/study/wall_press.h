@@ -15,8 +15,8 @@ struct WallPress {
   double tick_s = 1e-3;
 };
 
-/// What becomes of the handle's motion. `gives_way`: the wall is too soft to carry the force, so that there
-/// is none to speak of.
+/// The fate of the handle's motion. `gives_way`: the wall is too soft to carry the force, so that there is no
+/// motion to speak of.
 enum class WallMotion : unsigned char { dies_out, goes_on, gives_way };
 
 struct WallPressResult {

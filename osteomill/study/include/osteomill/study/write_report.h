@@ -18,17 +18,17 @@ struct MetricLine {
   std::function<Cell(const MeasuredRun&)> cell;
 };
 
-/// What whoever made the recordings has to say of them; all of it may be empty. A plain session has nothing.
+/// The parts of a report that its caller adds; any may be empty. A plain session adds none.
 struct PageText {
   std::string title = "What was milled, and what the hand felt";
-  /// At the page's top, what a reader came for. Without it the page says there of each run how long it took,
-  /// how far the burr went, what was removed and what was felt.
+  /// The section at the page's top, with the answer that a reader looks for. Without it the page says there
+  /// about each run how long it took, how far the burr went, what was removed and what was felt.
   std::optional<Section> opening;
-  /// Between what was felt and what was set.
+  /// Sections between those on what was felt and those on settings.
   std::vector<Section> sections;
-  /// Below the times that any session has.
+  /// Lines below the times that any session has.
   std::vector<MetricLine> further_times;
-  /// More to say below a figure, by the figure's name ("force").
+  /// Notes to add below a figure, by the figure's name ("force").
   std::map<std::string, std::string> caption_notes;
 };
 
@@ -36,7 +36,7 @@ struct PageText {
 /// measured (group_runs); returns the path of report.html. `text` gets the folder for its figures. The page
 /// has what matters most first: the opening, the bone before and after, force, torque, shaft and path, each
 /// with its figures and metrics, then what `text` adds, times, settings, and how to repeat it, with the
-/// figures in itself. All appear together or none. Throws InputError where gnuplot is missing or fails, or a
+/// figures in itself. All appear together or none. Throws InputError if gnuplot is missing or fails, or a
 /// file cannot be written.
 std::filesystem::path write_report(
     const RunGroup& runs, const std::filesystem::path& out_dir,
@@ -44,9 +44,8 @@ std::filesystem::path write_report(
       return PageText{};
     });
 
-/// A report of any number of recordings, one for each algorithm and phase that there is. Throws
-/// InputError also where there are no recordings, two are of the same algorithm and phase, or one
-/// cannot be measured.
+/// Writes a report of any number of recordings, one for each algorithm and phase. Throws InputError also if
+/// there are no recordings, two are of the same algorithm and phase, or one cannot be measured.
 std::filesystem::path write_report(const std::vector<Recording>& recordings,
                                    const std::filesystem::path& out_dir);
 
