@@ -38,7 +38,7 @@ class RecordingFile {
   void begin_session(const SessionStart& start, std::uint64_t row);
   void append(std::span<const TickRecord> records);
   std::uint64_t rows() const { return rows_; }
-  /// What was appended so far survives the end of this program, however it ends.
+  /// Makes what was appended so far survive the end of this program, however it ends.
   void flush(std::uint64_t dropped);
   void add_picture(const std::string& name, std::span<const unsigned char> png);
   void add_setting(const RunSetting& setting);
@@ -57,7 +57,7 @@ class RecordingFile {
   void create_columns();
   bool close();
   int descriptor() const;
-  /// Of the file, in bytes, with what has not reached the disk yet.
+  /// Returns the end of the file, in bytes, with what has not reached the disk yet.
   std::uint64_t end() const;
   /// Room on the disk for so much more than there is.
   void reserve(std::uint64_t bytes);
@@ -76,7 +76,7 @@ class RecordingFile {
   std::filesystem::path path_;
   Hdf5Handle file_;
   std::vector<Column> columns_;
-  // What was cut of labels: row, label, removed_mm3; empty where the bone has none.
+  // The columns of cuts by label: row, label, removed_mm3; empty if the bone has none.
   std::vector<Column> cut_columns_;
   std::vector<Column> hash_columns_;
   std::vector<Label> labels_;
@@ -85,7 +85,7 @@ class RecordingFile {
   std::uint64_t sessions_ = 0;
   BoneHash last_;
   std::uint64_t flushes_ = 0;
-  // As many bytes of the file have room on the disk.
+  // The number of bytes of the file that have room on the disk.
   std::uint64_t reserved_ = 0;
 };
 

@@ -102,7 +102,7 @@ class Attributes {
   void get(const std::string& name, std::uint64_t& value) const;
   void get(const std::string& name, Eigen::Ref<Vec3> value) const { get_reals(name, {value.data(), 3}); }
   void get(const std::string& name, std::array<int, 3>& values) const;
-  /// As many as there is room for.
+  /// Reads as many as there is room for.
   void get_reals(const std::string& name, std::span<double> values) const;
   template <typename Value>
   Value get(const std::string& name) const {

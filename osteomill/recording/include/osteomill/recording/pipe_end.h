@@ -43,7 +43,7 @@ class PipeEnd {
   std::uintmax_t most_bytes_;
 };
 
-/// What is passed as the bytes that it has in memory.
+/// True for types whose values are passed as the bytes that they have in memory.
 template <typename T>
 inline constexpr bool kFlat = std::is_trivially_copyable_v<T>;
 template <>

@@ -22,8 +22,8 @@ namespace osteomill {
 /// it to NAME.part-1.h5, or the first number that is free (`kept`); one that is still being written by
 /// another program is left alone, and the recorder cannot be made.
 ///
-/// Where several sessions follow each other on a bone (LiveSession::replace), `begin_session` is told of
-/// each; the records say by their number of which they are.
+/// If several sessions follow each other on a bone (LiveSession::replace), `begin_session` is told of each;
+/// the number in a record names its session.
 ///
 /// One thread pushes; another (or the same) makes, closes and destroys the recorder, after the last push.
 class Recorder {
@@ -31,24 +31,24 @@ class Recorder {
   /// So many records (16 s at 1000 Hz), or a few more, wait to be written before any is lost.
   static constexpr std::size_t kCapacity = 16384;
 
-  /// When records are written: those of a session that begins with the recording at once, others from when
-  /// `begin_session` says what they began from.
+  /// When the first session's records are written: at once, for a session that begins with the recording, or
+  /// from when `begin_session` says what it began from.
   enum class Begins : unsigned char { with_the_recording, when_told };
 
-  /// What becomes of the file where the recorder is destroyed without `close`. It is removed in any case
-  /// where nothing was recorded yet; `removed` is for runs that can simply be run again.
+  /// The fate of the file if the recorder is destroyed without `close`. It is removed in any case if nothing
+  /// was recorded yet; `removed` is for runs that can simply be run again.
   enum class Unfinished : unsigned char { left, removed };
 
-  /// Throws InputError, naming the file, where it cannot be created or another program writes it, and
-  /// std::invalid_argument where the description cannot be stored (write_description).
+  /// Throws InputError, naming the file, if it cannot be created or another program writes it, and
+  /// std::invalid_argument if the description cannot be stored (write_description).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
            Begins begins = Begins::with_the_recording, Unfinished unfinished = Unfinished::left);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Hands a record to the writing thread. Safe in the haptic tick: never waits, allocates or throws. Where
-  /// the queue is full the record is lost: false, and counted.
+  /// Hands a record to the writing thread. Safe in the haptic tick: never waits, allocates or throws. If the
+  /// queue is full the record is lost and counted, and false is returned.
   bool push(const TickRecord& record) noexcept;
   /// Takes a record of a run in simulated time, outside the tick: waits while the queue is full. Throws the
   /// InputError with which writing failed, if it did.
@@ -62,21 +62,21 @@ class Recorder {
   /// Returns a line on the unfinished recording that was there and where it is kept; empty if there was none.
   std::string kept() const;
 
-  /// How many records were lost. From any thread.
+  /// Returns how many records were lost. From any thread.
   std::uint64_t dropped() const noexcept;
-  /// Whether writing has failed (a full disk); the reason comes from `close`. From any thread.
+  /// Returns whether writing has failed (a full disk); the reason comes from `close`. From any thread.
   bool failed() const noexcept;
 
-  /// A picture to be stored at closing. `png` are the bytes of a PNG file; the name must be new and hold only
-  /// letters, digits, '-' and '_' (else std::invalid_argument).
+  /// Adds a picture to be stored at closing. `png` are the bytes of a PNG file; the name must be new and hold
+  /// only letters, digits, '-' and '_' (else std::invalid_argument).
   void add_picture(const std::string& name, std::vector<unsigned char> png);
 
-  /// Something of the run that is known only at its end, under a key that the description does not have; to
-  /// be stored at closing.
+  /// Adds a setting of the run that is known only at its end, under a key that the description does not have;
+  /// it is stored at closing.
   void add_setting(RunSetting setting);
 
-  /// Writes what is left, the pictures and settings, and gives the file its name. Throws InputError where any
-  /// of it fails, or writing failed before. To be called once.
+  /// Writes what is left, the pictures and settings, and gives the file its name. Throws InputError if any of
+  /// it fails, or writing failed before. To be called once.
   void close();
 
  private:
@@ -84,11 +84,11 @@ class Recorder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Writes a recording of no ticks: what a session may go on from. Appears whole or not at all; throws
-/// InputError where it cannot be written.
+/// Writes a recording of no ticks: what a session may go on from. The file appears whole or not at all.
+/// Throws InputError if it cannot be written.
 void write_start(const std::filesystem::path& path, const SessionStart& start);
 
-/// The name under which a recording that is to become `path` is written.
+/// Returns the name under which a recording that is to become `path` is written.
 std::filesystem::path unfinished_recording_path(const std::filesystem::path& path);
 
 }  // namespace osteomill

@@ -13,16 +13,16 @@
 
 namespace osteomill {
 
-/// What a session begins from, where that is not a scan that nobody has touched: with the inputs of its ticks
-/// all that it takes to run them again.
+/// The state that a session begins from, if that is not a scan as it was read. With the inputs of its ticks
+/// it is all that it takes to run them again.
 struct SessionStart {
   RunDescription run;
   TakenOver taken_over;
   double removed_mm3 = 0;
   /// Every brick in which the bone may differ from the scan, as it is at the beginning.
   std::vector<DensityBlock> bricks;
-  /// Not empty: it began in the recording of this name in the same folder, which ends where this one begins;
-  /// the rest means nothing then.
+  /// If not empty, the session began in the recording of this name in the same folder, which ends where this
+  /// one begins; the other fields mean nothing then.
   std::string goes_on_from;
 };
 
@@ -33,7 +33,7 @@ struct RunPicture {
 };
 
 /// The names of the pictures that reports lay side by side: the bone before the run and after it, and after
-/// it seen along the entry where the other view does not show what was removed.
+/// it seen along the entry if the other view does not show what was removed.
 inline constexpr std::string_view kPictureBefore = "before";
 inline constexpr std::string_view kPictureAfter = "after";
 inline constexpr std::string_view kPictureAlong = "along";
@@ -47,7 +47,7 @@ struct RecordedSession {
   SessionStart start;
 };
 
-/// What the bone was after a tick (TickRecord::bone_hash).
+/// The hash of the bone after a tick (TickRecord::bone_hash).
 struct BoneHash {
   std::size_t record = 0;
   std::uint64_t hash = 0;
@@ -56,44 +56,46 @@ struct BoneHash {
 
 /// One run, a record a tick.
 struct Recording {
-  /// Where it was read from; errors name it.
+  /// The file it was read from; errors name it.
   std::filesystem::path path;
-  /// Of the first session.
+  /// The description of the first session.
   RunDescription description;
-  /// In turn, from the first record on. Read records carry the session's place here as TickRecord::session.
+  /// The sessions in turn, from the first record on. Read records carry the session's place here as
+  /// TickRecord::session.
   std::vector<RecordedSession> sessions;
-  /// Every hundredth record's, and the last one's.
+  /// The hashes of every hundredth record, and of the last one.
   std::vector<BoneHash> bone_hashes;
   std::vector<TickRecord> records;
-  /// Sorted by name.
+  /// The pictures, sorted by name.
   std::vector<RunPicture> pictures;
-  /// False where the program ended before it closed the recording; up to the last
-  /// second is missing.
+  /// False if the program ended before it closed the recording; up to the last second is missing.
   bool complete = true;
   /// Ticks that found the recorder's queue full and are not among `records`.
   std::uint64_t dropped = 0;
 };
 
-/// One recording for each stretch in which algorithm, tool and settings stayed as they were (what was taken
-/// back ends none), for whoever measures them: where there are several, by their numbers as phases.
+/// Splits a recording into one for each stretch in which algorithm, tool and settings stayed as they were (a
+/// cut taken back ends none), to be measured one by one. If there are several, their phases are their
+/// numbers.
 std::vector<Recording> in_stretches(Recording recording);
 
 /// Reads a recording that a Recorder wrote, or the unfinished one that a killed program left (`complete` is
-/// then false). Throws InputError, naming the file, where it is not HDF5, is no recording of a version that
-/// is known, is cut short or damaged, or its columns are missing, of another type or of unequal lengths; only
-/// in an unfinished recording are columns of unequal lengths cut to the shortest. A finished recording is
-/// held against its checksum before HDF5 reads it; one without (unfinished, or rewritten by another program)
-/// is read as it is. Sizes are held against the file's before memory is taken.
+/// then false). Throws InputError, naming the file, if it is not HDF5, is no recording of a version that is
+/// known, is cut short or damaged, or its columns are missing, of another type or of unequal lengths; only in
+/// an unfinished recording are columns of unequal lengths cut to the shortest. A finished recording is held
+/// against its checksum before HDF5 reads it; one without (unfinished, or rewritten by another program) is
+/// read as it is. Sizes are held against the file's before memory is taken.
 Recording read_recording(const std::filesystem::path& path);
 
 /// Reads a recording that may go on from another one in its folder (SessionStart::goes_on_from): both as one,
 /// described as the first. Throws as read_recording.
 Recording read_with_what_came_before(const std::filesystem::path& path);
 
-/// What write_start wrote. The file is no input of the program's (input_files.h): it may be written over.
+/// Reads what write_start wrote. The file is no input of the program's (input_files.h): it may be written
+/// over.
 SessionStart read_start(const std::filesystem::path& path);
 
-/// Whether a file is HDF5, as recordings are.
+/// Returns whether a file is HDF5, as recordings are.
 bool is_hdf5(const std::filesystem::path& path);
 
 }  // namespace osteomill

@@ -12,29 +12,29 @@
 
 namespace osteomill {
 
-/// Throws InputError, naming the recording, where it was made with another scan than `scan`, which is as it
-/// was read.
+/// Throws InputError, naming the recording, if it was made with another scan than `scan`, which is as it was
+/// read.
 void require_made_with(const Recording& recording, const Volume& scan);
 
-/// How a recording is run again, and who hears of it.
+/// The choices for running a recording again, and the functions that are told of it.
 struct Replay {
-  /// By what name which algorithm is meant.
+  /// Finds the algorithm that a name means.
   std::function<const AlgorithmDescription*(std::string_view)> find = find_algorithm;
-  /// As what each session is run; as it was, where this is empty.
+  /// Returns the description as which each session is run, given its own. If empty, each is run as it was.
   std::function<RunDescription(const RunDescription&)> as;
-  /// Of each session before its first tick; may be empty.
+  /// Is told of each session before its first tick; may be empty.
   std::function<void(const SessionStart&, const MillingSession&)> begun;
-  /// Of each tick, as it was and as it is now. Returns whether to go on.
+  /// Is told of each tick, as it was and as it is now. Returns whether to go on.
   std::function<bool(const TickRecord& recorded, const TickRecord& now)> tick;
 };
 
 /// Runs the recording's ticks again through the same code as any session's: what the device, its spindle and
 /// its operator did comes from the recording, all else is computed. Every session begins from the bone, the
-/// tool and the wrench that it began from. Throws InputError, naming the recording, where that cannot be: it
-/// is of another scan, lost ticks, or what it goes by is unknown here or out of range.
+/// tool and the wrench that it began from. Throws InputError, naming the recording, if that cannot be: it is
+/// of another scan, lost ticks, or what it goes by is unknown here or out of range.
 void replay_recording(const Volume& scan, const Recording& recording, const Replay& replay);
 
-/// Where a recording and its replay first differ.
+/// The first tick in which a recording and its replay differ.
 struct Difference {
   std::size_t record = 0;
   double time_s = 0;
@@ -43,20 +43,21 @@ struct Difference {
 };
 
 struct Verification {
-  /// That were the same, and after how many of them the bone was held against the recording's.
+  /// The number of ticks that were the same, and that of those after which the bone was compared with the
+  /// recording's.
   std::size_t ticks = 0;
   std::size_t bones = 0;
   std::optional<Difference> difference;
 };
 
-/// Whether the recording comes out again bit for bit: everything of every tick but times, and the bone.
-/// `told` hears how many ticks are done; may be empty. Throws as `replay_recording`.
+/// Replays the recording and returns whether it comes out again bit for bit: everything of every tick except
+/// times, and the bone. `told` is told how many ticks are done; may be empty. Throws as `replay_recording`.
 Verification verify_recording(const Volume& scan, const Recording& recording,
                               const std::function<void(std::size_t ticks)>& told = {});
 
 /// Mills the bone as the recording did: `volume` is the scan as it was when the recording began, and is
 /// afterwards as it was when the recording ended, density by density; its isovalue plays no part and stays.
-/// Throws InputError, naming the recording, where it was made with another scan, lost ticks, goes on from the
+/// Throws InputError, naming the recording, if it was made with another scan, lost ticks, goes on from the
 /// milling of another recording, or does not say how the bone was milled; the bone is then in part milled.
 /// Not for the tick.
 void repeat_milling(Volume& volume, const Recording& recording);

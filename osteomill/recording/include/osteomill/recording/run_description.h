@@ -29,19 +29,19 @@ struct RunSetting {
 /// The key of the further setting that holds the command by which the run can be repeated (reports show it).
 inline constexpr std::string_view kCommandLineKey = "command_line";
 
-/// And of the one that says what of its plan a run did not reach, in words; a recording that reached all has
-/// none.
+/// The key of the one that says which parts of its plan a run did not reach, in words; a recording that
+/// reached all has none.
 inline constexpr std::string_view kNotReachedKey = "not_reached";
 
-/// And of the one that says by which comparison a recording was made: the same text in all of its recordings,
-/// and in no others. Recordings of nothing that is compared have none.
+/// The key of the one that says by which comparison a recording was made: the same text in all of its
+/// recordings, and in no others. Recordings that are not part of a comparison have none.
 inline constexpr std::string_view kComparisonKey = "comparison";
 
-/// The keys of those that say how stiff a simulated hand is, in N/mm, and how damped, in N s/mm.
+/// The keys of the stiffness of a simulated hand, in N/mm, and of its damping, in N s/mm.
 inline constexpr std::string_view kHandStiffnessKey = "hand.stiffness";
 inline constexpr std::string_view kHandDampingKey = "hand.damping";
 
-/// Where and when a recording was made. Nothing of it is of a patient.
+/// The place and time at which a recording was made. Holds nothing about a patient.
 struct Origin {
   /// "2026-11-22T13:45:00Z".
   std::string date_utc;
@@ -54,7 +54,7 @@ struct Origin {
   friend bool operator==(const Origin&, const Origin&) = default;
 };
 
-/// What a recording says of itself: enough to know what was run and to run it again.
+/// The description that a recording carries: enough to know what was run and to run it again.
 struct RunDescription {
   std::string program_version;
   Origin made;
@@ -62,35 +62,37 @@ struct RunDescription {
   std::string scan_name;
   std::array<int, 3> dims{0, 0, 0};
   Vec3 spacing_mm = Vec3::Ones();
-  /// Where the grid lies (GridGeometry).
+  /// The place of the grid (GridGeometry).
   Vec3 origin_mm = Vec3::Zero();
   Mat3 direction = Mat3::Identity();
-  /// Of the densities as they were read (fingerprint_of): a recording can be verified only against these. And
-  /// of the label map. 0 where nobody said, or there is none.
+  /// The fingerprints of the densities as they were read (fingerprint_of), against which alone a recording
+  /// can be verified, and of the label map. 0 if not known, or if there is no map.
   std::uint64_t scan_hash = 0;
   std::uint64_t label_map_hash = 0;
   /// In the scan's own unit of density.
   double isovalue = 0;
   MillingTool tool;
   AlgorithmId algorithm;
-  /// Which part of a longer run this is, in the words of whoever recorded it; empty where it is the whole.
+  /// The part of a longer run that this is, in the words of the program that recorded it; empty for the
+  /// whole.
   std::string phase;
   std::uint64_t seed = 0;
   double tick_period_s = 0.001;
   /// Everything else that was set, in the order in which people should read it; every key once.
   std::vector<RunSetting> settings;
-  /// Of the bone's label map, by their places in it; empty where it has none. Every value once.
+  /// The labels of the bone's label map, by their places in it; empty if it has none. Every value once.
   std::vector<Label> labels;
 };
 
-/// What a recording calls a part of a run's description.
+/// The name that a recording has for a part of a run's description.
 struct RunAttribute {
   std::string name;
-  /// It is part of what was run, by which runs can be compared, and not when, where or which of them it was.
+  /// True if it is part of what was run, by which runs can be compared; false if it says when, where or which
+  /// of them it was.
   bool is_setting = true;
 };
 
-/// Calls `visit(RunAttribute, value)` for all that a description has but its settings and labels, in the
+/// Calls `visit(RunAttribute, value)` for all that a description has except its settings and labels, in the
 /// order in which recordings have it.
 template <typename Run, typename Visit>
 void visit_attributes(Run& run, const Visit& visit) {
@@ -122,7 +124,7 @@ void visit_attributes(Run& run, const Visit& visit) {
   visit(RunAttribute{"tick_period_s"}, run.tick_period_s);
 }
 
-/// The value of a further setting; null where there is none of this key, or of another type.
+/// Returns the value of a further setting; null if there is none of this key, or it has another type.
 template <typename Value>
 const Value* find_setting(const RunDescription& run, std::string_view key) {
   for (const RunSetting& setting : run.settings) {
@@ -131,7 +133,7 @@ const Value* find_setting(const RunDescription& run, std::string_view key) {
   return nullptr;
 }
 
-/// The key of the setting that says with how many sample points the algorithm works.
+/// The key of the number of sample points that the algorithm works with.
 inline constexpr std::string_view kSamplePointsKey = "sample_points";
 
 /// Puts a number among a run's settings, in the place of one of this name.
@@ -156,7 +158,7 @@ void take_fields(const RunDescription& run, const std::filesystem::path& path, S
   }
 }
 
-/// What a session goes by.
+/// The settings that a session works by.
 struct SessionSettings {
   MillingSetup setup;
   BoneDensities densities;
@@ -164,17 +166,18 @@ struct SessionSettings {
 template <>
 const std::vector<Field<SessionSettings>>& fields_of<SessionSettings>();
 
-/// All of them in a run's description, in the place of those that it has. `sample_points` is how many the
-/// algorithm works with.
+/// Puts all of them into a run's description, in the place of those that it has. `sample_points` is the
+/// number that the algorithm works with.
 void set_session_settings(RunDescription& run, const SessionSettings& session, int sample_points);
 
-/// Read back, but for the algorithm: the run has its name, and whoever runs it knows which is meant. Throws
-/// InputError, naming the recording's `path`, where a setting is missing.
+/// Reads them back, without the algorithm: the run has only its name, and the caller knows which one is
+/// meant. Throws InputError, naming the recording's `path`, if a setting is missing.
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path);
 
-/// All that a recording says of a session on this bone, but for what the caller alone knows: scan_name,
-/// scan_hash, seed, and settings of its own (a script, a hand), which it adds. `sample_points` is how many
-/// the algorithm works with as it stands; `command_line`, how the program was called, may be empty.
+/// Returns all that a recording says about a session on this bone, without what the caller alone knows and
+/// adds: scan_name, scan_hash, seed, and settings of its own (a script, a hand). `sample_points` is the
+/// number that the algorithm works with as it stands; `command_line`, how the program was called, may be
+/// empty.
 RunDescription describe_run(const Volume& bone, const SessionSettings& session, int sample_points,
                             const std::string& command_line = {});
 
