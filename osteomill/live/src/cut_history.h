@@ -16,7 +16,7 @@ namespace osteomill {
 /// with the bone that was touched, not with time. For one thread.
 class CutHistory {
  public:
-  /// By the brick's place.
+  /// Bricks by their places.
   using Bricks = std::unordered_map<std::uint64_t, DensityBlock>;
   /// Bricks as they were before milling that can be taken back, and what had been removed by then.
   struct Before {
@@ -26,29 +26,30 @@ class CutHistory {
 
   explicit CutHistory(std::size_t undo_bytes) : max_bricks_(undo_bytes / sizeof(DensityBlock)), cuts_(1) {}
 
-  /// A brick as it was, of which something has just changed.
+  /// Keeps a brick as it was, of which something has just changed.
   void keep(const DensityBlock& before);
-  /// What comes from now on belongs to another cut; `removed_mm3` is what had been removed before it. Nothing
-  /// where nothing was cut since the last call.
+  /// Begins another cut, to which all that is milled from now on belongs; `removed_mm3` is what had been
+  /// removed before it. Does nothing if nothing was cut since the last call.
   void begin_cut(double removed_mm3);
 
-  /// How many cuts can be taken back.
+  /// Returns how many cuts can be taken back.
   std::size_t cuts() const;
   bool touched() const { return !first_.empty(); }
-  /// Every brick that was touched, as it was at the beginning.
+  /// Returns every brick that was touched, as it was at the beginning.
   const Bricks& first() const { return first_; }
 
-  /// Before the last cut; no bricks where there is none.
+  /// Returns the state before the last cut; no bricks if there is none.
   Before before_last() const;
   Before before_all() const { return {first_, 0}; }
-  /// The last cut, or all that was milled since the beginning, has been taken back. With the first of all
-  /// cuts nothing is milled any more.
+  /// Forget the last cut, or all that was milled since the beginning, after it has been taken back. Without
+  /// the first of all cuts nothing is milled any more.
   void drop_last();
   void drop_all();
 
-  /// Another isovalue, at which voxels that milling had cut down to `emptied` or below would count as bone:
-  /// they go down to `floor`, in all that can be taken back and in the bricks returned, which are those of
-  /// `grid` that differ. Voxels that are cut in part stay as they are, and with them the cut's surface.
+  /// Adapts to another isovalue, at which voxels that milling had cut down to `emptied` or below would count
+  /// as bone: lowers them to `floor`, in all that can be taken back and in the bricks returned, which are
+  /// those of `grid` that differ. Voxels that are cut in part stay as they are, and with them the cut's
+  /// surface.
   std::vector<DensityBlock> keep_emptied(const DensityGrid& grid, float emptied, double isovalue,
                                          float floor);
 

@@ -24,7 +24,7 @@ class SurfaceMesher {
   /// Waits until it is time to look for changes again, another isovalue is to be shown, or stop is requested.
   void wait(const std::stop_token& stop);
 
-  /// Has the whole surface meshed again at this isovalue, which need not be the bone's.
+  /// Lets the whole surface be meshed again at this isovalue, which need not be the bone's.
   void show_isovalue(double isovalue);
   /// Returns what was meshed since the last call.
   ChangedBricks take();
@@ -33,7 +33,7 @@ class SurfaceMesher {
   SurfaceUpkeep upkeep_;
   double shown_isovalue_;
   std::mutex mutex_;
-  // What the drawing thread has not taken yet.
+  // The bricks that the drawing thread has not taken yet.
   ChangedBricks published_;
   std::optional<double> new_isovalue_;
   std::condition_variable_any woken_;

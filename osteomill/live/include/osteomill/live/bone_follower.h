@@ -45,8 +45,8 @@ class BoneFollower {
   /// Returns what changed of the surface since the last call. The first call that brings anything brings the
   /// whole surface. For one drawing thread; never waits for meshing.
   ChangedBricks take_changed_bricks();
-  /// Has the whole surface meshed again at another isovalue; of several in short order, at the last one. The
-  /// bone's own isovalue stays. For any thread but the haptic one, as all that follows.
+  /// Lets the whole surface be meshed again at another isovalue; of several in short order, at the last one.
+  /// The bone's own isovalue stays. For any thread except the haptic one, as all functions below.
   void show_isovalue(double isovalue);
 
   /// Lets `use` read the bone as last handed over, some ticks behind. The copy does not change meanwhile.
@@ -74,7 +74,7 @@ class BoneFollower {
   /// The copy, made ready to become the bone.
   struct NextBone {
     std::shared_ptr<Volume> bone;
-    /// What is then removed of it.
+    /// The bone that is then removed of it, in mm^3 of reference density.
     double removed_mm3;
     /// Given if another isovalue changes them.
     std::optional<BoneDensities> densities;

@@ -21,23 +21,23 @@ namespace osteomill {
 
 /// A bone made ready for milling, which takes seconds.
 struct PreparedMilling {
-  /// Of the scan, before anything was milled (fingerprint_of).
+  /// The fingerprint of the scan, before anything was milled (fingerprint_of).
   std::uint64_t scan_hash = 0;
   std::unique_ptr<BoneFollower> follower;
   std::unique_ptr<MillingSession> session;
 };
 
-/// In any thread, also while another bone is milled. `bone` as scanned; what was milled of it `before`, if
-/// anything was, can be taken back as one cut. Throws std::invalid_argument for settings out of range, and
-/// InputError, naming the scan, where another was milled before.
+/// Prepares milling, in any thread, also while another bone is milled. `bone` is as scanned; what was milled
+/// of it `before`, if anything was, can be taken back as one cut. Throws std::invalid_argument for settings
+/// out of range, and InputError, naming the scan, if `before` is of another scan.
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
                                 const SessionStart& before = {});
 
 /// A bone that is milled in real time with a device, and all that can be done to it meanwhile. It runs the
-/// haptic thread; all of its functions are for one other thread. Whatever takes long (another algorithm or
-/// tool, undoing a cut) is prepared on a thread of its own: the tool goes on being felt, but nothing is
-/// milled until `update` has put the result in place. Wherever a thread is needed and the system gives none,
-/// std::system_error is thrown and all is as before the call.
+/// haptic thread; all of its functions are for one other thread. Work that takes long (another algorithm or
+/// tool, undoing a cut) is done on a thread of its own: the tool goes on being felt, but nothing is milled
+/// until `update` has put the result in place. If a thread is needed and the system gives none, the call
+/// throws std::system_error and changes nothing.
 class LiveMilling {
  public:
   /// `device` outlives this object; its handle is where the tool may begin. Does not start yet.
@@ -45,15 +45,15 @@ class LiveMilling {
   LiveMilling(std::shared_ptr<Volume> bone, const MillingSetup& setup, Device& device)
       : LiveMilling(prepare_milling(std::move(bone), setup), device) {}
 
-  /// As LiveSession::start, failures included.
+  /// Starts the haptic thread, as LiveSession::start does, failures included.
   void start();
   void stop() { live_.stop(); }
   bool running() const { return live_.running(); }
-  /// What the device ended the milling with (LiveSession::failure).
+  /// Returns the exception with which the device ended the milling (LiveSession::failure).
   std::exception_ptr failure() const { return live_.failure(); }
 
-  /// To be called often, as once a picture: puts in place what has been prepared. Throws what a preparation
-  /// failed with; milling goes on as it was.
+  /// Puts in place what has been prepared. Has to be called often, as once a picture. Throws what a
+  /// preparation failed with; milling goes on as it was.
   void update();
   /// Returns when nothing is being prepared any more. Throws as `update` does.
   void finish_preparing();
@@ -63,38 +63,39 @@ class LiveMilling {
   void set_spindle(bool on);
   bool spindle_asked() const { return spindle_; }
   void set_paused(bool paused) { live_.set_paused(paused); }
-  /// The tool and its device to a pose free of bone (LiveSession::place).
+  /// Brings the tool and its device to a pose free of bone (LiveSession::place).
   void place(const Pose& X_WD) { live_.place(X_WD); }
   bool placing() const { return live_.placing(); }
-  /// Begins to prepare another algorithm, tool or setting. False, here and in the following, where something
-  /// is being prepared already: then nothing is done, and whoever wants it asks again once that is in place.
+  /// Begins to prepare another algorithm, tool or setting. Returns false, as do the functions below, if
+  /// something is being prepared already: then it does nothing, and the caller asks again once that is in
+  /// place.
   [[nodiscard]] bool change(const MillingSetup& setup);
   [[nodiscard]] bool change_isovalue(double isovalue);
   /// Takes the last cut back; or all of them.
   [[nodiscard]] bool undo();
   [[nodiscard]] bool reset();
 
-  /// How much of each label's bone is gone, mm^3 of reference density, by the labels' places from 1; what was
-  /// taken back does not count. Empty for a bone without labels.
+  /// Returns how much of each label's bone is gone, mm^3 of reference density, by the labels' places from 1;
+  /// what was taken back does not count. Empty for a bone without labels.
   std::vector<double> removed_by_label() const;
 
-  /// What a recording says of the milling as it is now.
+  /// Returns what a recording says about the milling as it is now.
   RunDescription describe(const std::string& scan_name, const std::string& command_line) const;
   /// Takes the picture of the bone with this name (kPictureBefore and the others) and returns its PNG;
-  /// nothing where there is none of that name.
+  /// nothing if there is none of that name.
   using TakePicture = std::function<std::optional<std::vector<unsigned char>>(std::string_view name)>;
-  /// The recording goes on whatever is changed or taken back. Waits for what is being prepared. Where ticks
-  /// have run already, another session is prepared, so that the recording holds all that it takes to replay
-  /// it, and its ticks begin with that session. Pictures, where `picture` is given, are taken now and at the
-  /// end. Returns a line on an unfinished recording that was there and is kept (Recorder::kept). Throws
-  /// InputError where the file cannot be written; then nothing is recorded, nor where `update` or
-  /// `finish_preparing` throws since that session cannot be prepared.
+  /// Starts a recording, which goes on whatever is changed or taken back. Waits for what is being prepared.
+  /// If ticks have run already, another session is prepared, so that the recording holds all that it takes to
+  /// replay it, and its ticks begin with that session. Pictures, if `picture` is given, are taken now and at
+  /// the end. Returns a line on an unfinished recording that was there and is kept (Recorder::kept). Throws
+  /// InputError if the file cannot be written; then nothing is recorded. Nothing is recorded either if
+  /// `update` or `finish_preparing` throws because that session cannot be prepared.
   std::string start_recording(const std::filesystem::path& path, RunDescription description,
                               TakePicture picture = {});
-  /// Returns the recording's name. Throws as Recorder::close does.
+  /// Ends the recording and returns its name. Throws as Recorder::close does.
   std::filesystem::path stop_recording();
   bool recording() const { return recorder_ != nullptr; }
-  /// Writing has failed (a full disk): stop_recording says why. Milling goes on.
+  /// Returns whether writing has failed (a full disk); stop_recording says why. Milling goes on.
   bool recording_failed() const { return recorder_ && recorder_->failed(); }
 
   const LiveState& state() { return live_.state(); }
@@ -110,8 +111,8 @@ class LiveMilling {
 
   /// The bone as it is milled, some ticks behind: its surface, cuts and densities; from any thread.
   const BoneFollower& follower() const { return *follower_; }
-  /// What changed of its surface since the last call, and how that would look at another isovalue
-  /// (BoneFollower).
+  /// Pass on to BoneFollower: what changed of its surface since the last call, and the surface at another
+  /// isovalue.
   ChangedBricks take_changed_bricks() { return follower_->take_changed_bricks(); }
   void show_isovalue(double isovalue) { follower_->show_isovalue(isovalue); }
 
@@ -130,20 +131,19 @@ class LiveMilling {
   void set_as_now(RunDescription& run) const;
   void tell_recorder(const TakenOver& taken_over);
 
-  // Of the algorithm as it was prepared: those in use belong to the haptic thread, and change.
+  // The number as the algorithm was prepared: the points in use belong to the haptic thread, and change.
   int sample_points_;
   std::uint64_t scan_hash_;
   std::unique_ptr<BoneFollower> follower_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
   TakePicture take_picture_;
-  // What the recording says of its first session.
+  // The recording's description of its first session.
   RunDescription recorded_;
   // The first session that is recorded.
   std::uint32_t recorded_from_ = 0;
   LiveSession live_;
-  // Of starting, and of handing over changes where no haptic thread does: they come from one thread at a
-  // time.
+  // Held to start, and to hand over changes while no haptic thread does: they come from one thread at a time.
   std::mutex no_tick_mutex_;
   // After `live_`, so that it is waited for while the bone is still milled.
   std::future<Prepared> preparation_;

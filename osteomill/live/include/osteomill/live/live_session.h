@@ -18,11 +18,11 @@
 
 namespace osteomill {
 
-/// Hears of every tick in the haptic thread, after the wrench has gone out: what was recorded, the bone, and
-/// where it changed. Must keep to the rules of the tick: no allocation, lock, log, exception or system call.
+/// Is told of every tick in the haptic thread, after the wrench has gone out: its record, the bone, and where
+/// it changed. Must keep to the rules of the tick: no allocation, lock, log, exception or system call.
 using TickListener = std::function<void(const TickRecord&, const Volume&, const VolumeChange&)>;
 
-/// What the haptic thread is doing.
+/// The state of the haptic thread.
 struct LiveState {
   TickRecord record;
   bool spindle_on = false;
@@ -30,7 +30,7 @@ struct LiveState {
   std::optional<Vec3> intersection_W = {};
 };
 
-/// A milling session in real time: a thread of its own ticks it at 1 kHz, with real-time scheduling where the
+/// A milling session in real time: a thread of its own ticks it at 1 kHz, with real-time scheduling if the
 /// system allows it. Nothing that other threads do makes a tick wait.
 ///
 /// One other thread commands and reads the state (the window's). Commands take effect between two ticks and
@@ -42,44 +42,47 @@ class LiveSession {
   /// `device` outlives this object. Does not start yet.
   LiveSession(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {});
 
-  /// Returns when the haptic thread runs; nothing happens where it does already. Throws std::system_error
-  /// where the system gives no thread: the session is then not running, and can be started again.
+  /// Starts the haptic thread and returns when it runs; does nothing if it runs already. Throws
+  /// std::system_error if the system gives no thread: the session is then not running, and can be started
+  /// again.
   void start();
-  /// Returns when the last tick is over and zero has been sent. Can be started again.
+  /// Stops the haptic thread and returns when the last tick is over and zero has been sent. It can be started
+  /// again.
   void stop();
 
-  /// The device's own button or pedal turns the spindle on as well.
+  /// Switches the spindle. The device's own button or pedal turns it on as well.
   void set_spindle(bool on);
-  /// A pause sends zero and neither steps nor mills.
+  /// Begins or ends a pause, which sends zero and neither steps nor mills.
   void set_paused(bool paused);
-  /// While held nothing is milled, though everything is felt: the volume may then be read from other threads.
+  /// Holds the bone or lets it go. While held, nothing is milled, though everything is felt, and other
+  /// threads may read the volume.
   void hold_bone(bool held);
   /// Goes on with another algorithm, tool, setting or bone, prepared beforehand. Returns the state in which
   /// that began.
   TakenOver replace(std::unique_ptr<MillingSession> session);
-  /// The tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which nothing
-  /// is milled, so that the hand feels no step; then the device is put there (Device::put_at), and the
-  /// algorithm begins anew. One at a time: nothing while `placing`.
+  /// Brings the tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which
+  /// nothing is milled, so that the hand feels no step; then the device is put there (Device::put_at), and
+  /// the algorithm begins again. One at a time: does nothing while `placing`.
   void place(const Pose& X_WD);
   bool placing() const { return placing_.load(std::memory_order_acquire); }
   /// Replaces the listener; an empty one for none.
   void listen(TickListener listener);
 
-  /// Of the last tick.
+  /// Returns the state after the last tick.
   const LiveState& state() { return state_.read(); }
-  /// Every tick's record in turn. The queue holds 4 s; records that find it full are lost.
+  /// Returns every tick's record in turn. The queue holds 4 s; records that find it full are lost.
   std::optional<TickRecord> next_record();
   /// From any thread.
   TimingSummary timing() const { return timing_.summary(); }
-  /// In one line, what real-time scheduling the system refused; empty where nothing. Valid once started.
+  /// Returns in one line what real-time scheduling the system refused; empty if nothing. Valid once started.
   const std::string& refused_real_time() const { return refused_real_time_; }
   bool running() const { return running_.load(std::memory_order_acquire); }
-  /// What ended the session by itself, as the device threw it; null while it runs, and where `stop` or a
+  /// Returns what ended the session by itself, as the device threw it; null while it runs, and if `stop` or a
   /// signal ended it. For the commanding thread.
   std::exception_ptr failure() const { return running() ? nullptr : failure_; }
 
-  /// The session now in use, and how many were replaced before it. Its volume's densities only while held, or
-  /// while not running.
+  /// Return the session now in use, and how many were replaced before it. Its volume's densities may be read
+  /// only while held, or while not running.
   const MillingSession& session() const { return *session_; }
   std::uint32_t session_number() const { return session_number_; }
 

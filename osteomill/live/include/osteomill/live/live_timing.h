@@ -17,15 +17,15 @@ using Nanoseconds = std::int64_t;
 
 Nanoseconds monotonic_now_ns() noexcept;
 
-/// The deadline after one that was met, or not: `periods` after it.
+/// The deadline `periods` after an earlier one, met or not.
 struct NextDeadline {
   Nanoseconds deadline_ns;
   int periods;
 };
 
-/// The next deadline of a loop of `period_ns`, at `now_ns` when the tick of `deadline_ns` is done: one period
-/// on, or, where that lies a whole period or more in the past, the last one that has passed. Ticks that were
-/// missed are not made up for: they would come in a burst, faster than any device takes them.
+/// Returns the next deadline of a loop of `period_ns`, at `now_ns` when the tick of `deadline_ns` is done:
+/// one period on, or, if that lies a whole period or more in the past, the last one that has passed. Ticks
+/// that were missed are not made up for: they would come in a burst, faster than any device takes them.
 NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseconds period_ns) noexcept;
 
 /// Sleeps until 100 us before the deadline (clock_nanosleep to an absolute time), then looks at the clock
@@ -70,7 +70,7 @@ class TimeHistogram {
   std::atomic<double> max_us_{0};
 };
 
-/// When one tick was due, when its thread woke for it, and when it was done.
+/// The times at which a tick was due, its thread woke for it, and it was done.
 struct TickTimes {
   Nanoseconds deadline_ns = 0;
   Nanoseconds woke_ns = 0;
@@ -79,10 +79,10 @@ struct TickTimes {
   int periods = 1;
 };
 
-/// How well a live session keeps its time.
+/// Figures of how well a live session keeps its time.
 struct TimingSummary {
   std::uint64_t ticks = 0;
-  /// What the ticks' work allows a loop of this period (HeldRate), whether they woke in time or not.
+  /// The rate that the ticks' work allows a loop of this period (HeldRate), whether they woke in time or not.
   double rate_hz = 0;
   /// Counted by the clock: over the whole time, and over the last second that was completed (0 before).
   double ticks_per_s = 0;
