@@ -16,8 +16,8 @@
 
 namespace osteomill {
 
-/// How many triangles, or pixels, there is time for in one picture, learnt from how long earlier pictures
-/// took. Reads no clock itself.
+/// Learns how many triangles, or pixels, there is time for in one picture from the times of earlier pictures.
+/// Reads no clock itself.
 class DrawingPace {
  public:
   /// For the bone of one picture: in a thirtieth of a second it leaves time for all else.
@@ -63,7 +63,7 @@ class ClipFaces {
 /// from one frame to the next. While the view moves it has as many triangles and pixels as there is time for.
 /// Where the view rests, full detail is drawn brick by brick into a second picture, which takes the first
 /// one's place when it is done. Where bone is milled only the part of the picture in which it changed is
-/// drawn anew.
+/// drawn again.
 class BoneGround {
  public:
   BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,

@@ -19,7 +19,7 @@
 
 namespace osteomill {
 
-/// How a scene is projected into a picture of this size: the matrices, and the range of depths it covers.
+/// The projection of a scene into a picture of one size: the matrices, and the range of depths it covers.
 struct Projection {
   PixelSize size;
   double near_mm;
@@ -41,7 +41,7 @@ class DepthTiles {
   /// Reads the depths, which waits for all drawing.
   DepthTiles(const FrameTarget& target, const Projection& projection, const Camera& camera);
 
-  /// Whether all of the sphere lies behind what was drawn.
+  /// Returns whether all of the sphere lies behind what was drawn.
   bool hide(const Sphere& sphere) const;
 
  private:
@@ -51,7 +51,7 @@ class DepthTiles {
   Camera camera_;
   int columns_;
   int rows_;
-  // As OpenGL keeps depths, 0 to 1; rows from the top.
+  // Depths as OpenGL keeps them, 0 to 1; rows from the top.
   std::vector<float> depths_;
 };
 
@@ -59,8 +59,8 @@ class DepthTiles {
 void begin_cuts(GLuint program, const ViewScene& scene);
 void end_cuts();
 
-/// How finely the bone is drawn: each brick at the coarsest of its levels (BrickLevels) whose cells are at
-/// most this wide in the picture.
+/// The detail at which the bone is drawn: each brick at the coarsest of its levels (BrickLevels) whose cells
+/// are at most this wide in the picture.
 struct Detail {
   double cell_px = 0;
   /// In here, where the burr works, a cell is at most a pixel wide.
@@ -72,15 +72,16 @@ inline const Detail kFullDetail{0.5, std::nullopt};
 /// A brick that the camera may see.
 struct SeenBrick {
   std::size_t brick;
-  /// Of BrickLevels, to draw it at.
+  /// The level of BrickLevels to draw it at.
   std::size_t level;
-  /// How wide a cell of the finest level is in the picture where the brick is nearest.
+  /// The width of a cell of the finest level in the picture, where the brick is nearest.
   double cell_px;
   /// It lies at least in part in `Detail::sharp`.
   bool sharp;
 };
 
-/// Where triangles face: their normals all lie within this half angle about this axis. At first, anywhere.
+/// The directions that triangles face: their normals all lie within this half angle about this axis. At
+/// first, anywhere.
 struct Facing {
   Vec3 axis_W = Vec3::UnitZ();
   double spread_rad = 4;
@@ -116,7 +117,7 @@ class BoneLayer {
     gl::VertexArray vertex_array;
     gl::Buffer vertices;
     gl::Buffer indices;
-    /// Of the vertices; none where there are no labels.
+    /// The colours of the vertices; none if there are no labels.
     gl::Buffer label_colours;
     std::array<BrickLevels::Range, BrickLevels::kCount> levels{};
     Sphere bounds;

@@ -16,7 +16,7 @@ class CavityPass {
   void blur(GLuint depths, double near_mm, double far_mm) const;
   /// A texture of two channels: blurred depths in mm times a weight, and that weight (0: nothing was drawn).
   GLuint blurred_depths() const { return blurred_.texture.get(); }
-  /// How far the blur reaches in a picture of the same view of this size.
+  /// Returns how far the blur reaches in a picture of the same view of this size.
   double reach_px(const PixelSize& picture) const { return reach_of_height_ * picture.height; }
 
  private:

@@ -85,7 +85,7 @@ void set_attribute(GLuint place, GLint count, std::size_t vertex_bytes, std::siz
 
 namespace osteomill {
 
-/// What is drawn into: colours and depths of one size, as textures.
+/// A target to draw into: colours and depths of one size, as textures.
 class FrameTarget {
  public:
   explicit FrameTarget(const PixelSize& size);

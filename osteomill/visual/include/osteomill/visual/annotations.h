@@ -15,20 +15,20 @@ struct Annotation {
     Eigen::Vector2d to;
   };
   std::vector<Line> lines;
-  /// Of the text's middle.
+  /// The middle of the text.
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   std::string text;
 };
 
 /// A bar of a round length in mm, at most a quarter of the picture long, in its lower left corner. It holds
-/// at the camera's focus, which its text says where what is nearer is drawn noticeably larger.
+/// at the camera's focus; its text says so if nearer things are drawn noticeably larger.
 Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size);
 
 /// The patient's directions (L R A P S I, of W's LPS axes) about a point in the lower right corner, each
 /// where its direction points; those that point almost at the viewer, or away, are left out.
 std::vector<Annotation> orientation_letters(const Camera& camera, const PixelSize& size);
 
-/// The font of all that is written; where this file is missing, the one that comes with Dear ImGui is used.
+/// The font of all texts; if this file is missing, the one that comes with Dear ImGui is used.
 inline constexpr const char* kFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 inline constexpr float kFontSize_px = 14;
 

@@ -11,18 +11,18 @@ namespace osteomill {
 
 /// One corner of the isosurface's triangles, laid out so that it can be handed to a graphics card as it is.
 struct MeshVertex {
-  /// In W.
+  /// The position in W.
   std::array<float, 3> position_mm;
-  /// In W, of unit length, out of the bone.
+  /// The normal in W, of unit length, out of the bone.
   std::array<float, 3> normal;
-  /// Of the bone just under the surface, to colour it by: the greater of those half a voxel and a voxel below
-  /// it, where fewer of a scan's voxels are half air.
+  /// The density of the bone just under the surface, to colour it by: the greater of those half a voxel and a
+  /// voxel below it, where fewer of a scan's voxels are half air.
   float density;
   friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
 };
 static_assert(sizeof(MeshVertex) == 28 && std::is_trivially_copyable_v<MeshVertex>);
 
-/// What is in three floats of a vertex, and what puts it there.
+/// Read three floats of a vertex as a vector, and write a vector into them.
 inline Vec3 vec3_of(const std::array<float, 3>& numbers) {
   return Eigen::Map<const Eigen::Vector3f>(numbers.data()).cast<double>();
 }

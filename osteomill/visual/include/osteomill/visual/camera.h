@@ -23,10 +23,11 @@ struct Sphere {
 struct Camera {
   Vec3 focus_W = Vec3::Zero();
   double distance_mm = 100;
-  /// From the camera's axes to W's: x to the right, y up, z towards the viewer.
+  /// The rotation from the camera's axes to W's: x to the right, y up, z towards the viewer.
   Quat orientation = Quat::Identity();
 
-  /// From bottom to top. The narrower it is (and the further away the camera), the less perspective there is.
+  /// The angle of view from bottom to top. The narrower it is (and the further away the camera), the less
+  /// perspective there is.
   double field_of_view_rad = 0.52;
 
   Vec3 right_W() const { return orientation * Vec3::UnitX(); }
@@ -39,33 +40,34 @@ struct Camera {
 /// Looks along `direction_W` at all of the sphere, with `up_W` up in the picture (not along the direction).
 Camera camera_on(const Sphere& sphere, const Vec3& direction_W, const Vec3& up_W);
 
-/// As 3D Slicer's views move under the mouse (pixels, y downwards). A drag across the window turns by 200
-/// degrees; what is dragged stays under the pointer at the focus when panning; zooming by a drag upwards
-/// comes closer.
+/// Move the camera as 3D Slicer's views move under the mouse (pixels, y downwards). A drag across the window
+/// turns by 200 degrees; what is dragged stays under the pointer at the focus when panning; zooming by a drag
+/// upwards comes closer.
 void turn(Camera& camera, const PixelSize& size, double right_px, double down_px);
 void pan(Camera& camera, const PixelSize& size, double right_px, double down_px);
 void zoom_by_drag(Camera& camera, const PixelSize& size, double down_px);
 void zoom_by_wheel(Camera& camera, double steps);
 
-/// How wide a pixel is at this distance from the eye along the view.
+/// Returns how wide a pixel is at this distance from the eye along the view.
 double mm_per_pixel(const Camera& camera, const PixelSize& size, double depth_mm);
 
-/// The point's distance from the eye along the view.
+/// Returns the point's distance from the eye along the view.
 double depth_of(const Camera& camera, const Vec3& point_W);
 
-/// Where a point is seen, pixels from the top left; meaningless behind the eye.
+/// Returns where a point is seen, pixels from the top left; meaningless behind the eye.
 Eigen::Vector2d pixel_of(const Camera& camera, const PixelSize& size, const Vec3& point_W);
 
-/// The unit direction from the eye through a pixel.
+/// Returns the unit direction from the eye through a pixel.
 Vec3 ray_through(const Camera& camera, const PixelSize& size, double x_px, double y_px);
 
-/// World to camera, and camera to OpenGL's clip coordinates with the depths between `near_mm` and `far_mm`.
+/// Return the matrices from world to camera, and from camera to OpenGL's clip coordinates with the depths
+/// between `near_mm` and `far_mm`.
 Eigen::Matrix4f view_matrix(const Camera& camera);
 Eigen::Matrix4f projection_matrix(const Camera& camera, const PixelSize& size, double near_mm, double far_mm);
 
 /// A view along the patient's axes (W is LPS: +x left, +y posterior, +z superior).
 struct PatientView {
-  /// Where the viewer is.
+  /// The side on which the viewer is.
   std::string_view from;
   Vec3 direction_W;
   Vec3 up_W;

@@ -9,8 +9,8 @@
 
 namespace osteomill {
 
-/// What a cut lays open: red, green and blue, row by row; the corners are the middles of the first pixel, of
-/// the end of its row, of the last pixel and of the beginning of the last row.
+/// The picture of a face that a cut lays open: red, green and blue, row by row; the corners are the middles
+/// of the first pixel, of the end of its row, of the last pixel and of the beginning of the last row.
 struct ClipFace {
   std::array<Vec3, 4> corners_W;
   int width = 0;
@@ -18,13 +18,14 @@ struct ClipFace {
   std::vector<std::array<unsigned char, 3>> pixels;
 };
 
-/// Which densities are black and white.
+/// The densities that are drawn black and white.
 struct WindowLevel {
   double black = 0;
   double white = 1;
 };
 
-/// From just below the surroundings to nearly the densest bone (the 0.2 % above are white too).
+/// Returns a range from just below the surroundings to nearly the densest bone (the 0.2 % above are white
+/// too).
 WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density);
 
 /// The densities where the plane meets the grid, a pixel a voxel but no more than `max_pixels` along a side,

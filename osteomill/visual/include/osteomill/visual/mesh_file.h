@@ -15,7 +15,7 @@ enum class MeshFormat : unsigned char { stl, ply, obj };
 /// By the file name's extension, in capitals or not. Throws InputError where it is none of these.
 MeshFormat mesh_format_of(const std::filesystem::path& path);
 
-/// Whether files of this format hold a colour for each vertex.
+/// Returns whether files of this format hold a colour for each vertex.
 bool holds_colours(MeshFormat format);
 
 /// Writes the mesh. With `labels`, those of the bone, each vertex has the colour of the label under it, or

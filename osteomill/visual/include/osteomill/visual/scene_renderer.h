@@ -15,7 +15,7 @@ namespace osteomill {
 
 /// Draws scenes with OpenGL 3.3 core: bone, tool and ghost, contact, arrows, cuts. Used by one thread, in
 /// whose context (offscreen_context.h, or a window's) it was made; that context is current at every call and
-/// at the end. Throws std::runtime_error where OpenGL refuses something.
+/// at the end. Throws std::runtime_error if OpenGL refuses something.
 class SceneRenderer {
  public:
   /// `labels` are those of the bone; null for none.
@@ -25,9 +25,10 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  /// A brick's triangles as they are now; without any the brick is removed.
+  /// Sets a brick's triangles as they are now; without any the brick is removed.
   void set_brick(std::size_t brick, const BrickLevels& levels);
-  /// What the scene's cut of this number lays open; drawn where the other cuts do not cut it away.
+  /// Sets the face that the scene's cut of this number lays open; drawn where the other cuts do not cut it
+  /// away.
   void set_clip_face(std::size_t cut, const ClipFace& face);
 
   /// Draws into a picture of its own, in a time that hardly depends on how many triangles and pixels there
@@ -35,9 +36,9 @@ class SceneRenderer {
   /// full detail and `size`. What lies deep is darkened by the depths of the picture drawn before, so that a
   /// still picture is complete only when it was drawn twice.
   void draw(const ViewScene& scene, const PixelSize& size);
-  /// Whether drawing the same again would change nothing: the picture has full detail.
+  /// Returns whether drawing the same again would change nothing: the picture has full detail.
   bool settled() const;
-  /// The picture drawn last.
+  /// Returns the picture drawn last.
   Image picture() const;
   /// Copies it into the window's framebuffer, which has the size that was asked for.
   void copy_to_window() const;
@@ -49,7 +50,7 @@ class SceneRenderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What an OpenGL framebuffer holds; 0 is the window's.
+/// Reads the picture that an OpenGL framebuffer holds; 0 is the window's.
 Image read_framebuffer(unsigned framebuffer, const PixelSize& size);
 
 }  // namespace osteomill

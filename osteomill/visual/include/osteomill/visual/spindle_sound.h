@@ -8,11 +8,11 @@
 
 namespace osteomill {
 
-/// What a spindle is doing.
+/// The state of a spindle, from which its sound follows.
 struct SpindleState {
   /// Turns a minute that it is set to; 0 is off.
   double speed_rpm = 0;
-  /// How hard the burr cuts, 0 to 1.
+  /// The load of cutting, 0 to 1.
   double load = 0;
 };
 
@@ -22,11 +22,11 @@ class SpindleSound {
  public:
   explicit SpindleSound(double sample_rate_hz) : sample_rate_hz_(sample_rate_hz) {}
 
-  /// The next samples, -1 to 1, one channel. Speed and loudness follow the state within a quarter of a second
-  /// or so, as a motor does, without a click.
+  /// Computes the next samples, -1 to 1, one channel. Speed and loudness follow the state within a quarter of
+  /// a second or so, as a motor does, without a click.
   void render(const SpindleState& state, std::span<float> samples);
 
-  /// The tone's frequency for a speed and a load when it has settled.
+  /// Returns the tone's frequency for a speed and a load when it has settled.
   static double pitch_hz(const SpindleState& state);
 
  private:

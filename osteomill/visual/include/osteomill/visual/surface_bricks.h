@@ -8,10 +8,10 @@
 
 namespace osteomill {
 
-/// How the cells of a grid are dealt out to the bricks in which its surface is kept. A cell lies between
-/// eight neighbouring voxels and is named by the least of them; cells reach one voxel beyond the grid on all
-/// sides, so that the surface is closed where bone touches the border. Bricks are numbered from 0, along i
-/// fastest.
+/// Deals the cells of a grid out to the bricks in which its surface is kept (16 cells a side; not the 8
+/// voxels of BlockRanges and DensityBlock). A cell lies between eight neighbouring voxels and is named by the
+/// least of them; cells reach one voxel beyond the grid on all sides, so that the surface is closed where
+/// bone touches the border. Bricks are numbered from 0, along i fastest.
 class SurfaceBricks {
  public:
   /// Cells along each edge of a brick. The first brick along an axis also has the cell before voxel 0.
@@ -25,10 +25,10 @@ class SurfaceBricks {
   std::size_t index(int bi, int bj, int bk) const { return row_major(dims_, bi, bj, bk); }
   std::array<int, 3> coordinates(std::size_t brick) const;
 
-  /// The cells of a brick, each by its least voxel, which may have coordinates of -1.
+  /// Returns the cells of a brick, each by its least voxel, which may have coordinates of -1.
   VoxelBox cells(std::size_t brick) const;
-  /// The bricks, by their coordinates, whose triangles, normals or densities depend on a voxel of `voxels`
-  /// (in the grid); empty for an empty box.
+  /// Returns the bricks, by their coordinates, whose triangles, normals or densities depend on a voxel of
+  /// `voxels` (in the grid); empty for an empty box.
   VoxelBox touched_by(const VoxelBox& voxels) const;
 
  private:

@@ -10,12 +10,12 @@
 
 namespace osteomill {
 
-/// What a surface is made from: densities, their ranges brick by brick, and where bone begins. Refers to
-/// both.
+/// The densities that a surface is made from, their ranges brick by brick, and the isovalue at which bone
+/// begins. Refers to densities and ranges, which outlive it.
 struct DensityView {
   const DensityGrid& grid;
   const BlockRanges& ranges;
-  /// Bone where the density is greater. The surface may be asked for at any, whatever the volume's own.
+  /// There is bone where the density is greater. It may be any value, whatever the volume's own isovalue.
   double isovalue;
 
   DensityView(const DensityGrid& grid_, const BlockRanges& ranges_, double isovalue_)
@@ -24,13 +24,14 @@ struct DensityView {
       : DensityView(volume.grid(), volume.ranges(), volume.isovalue()) {}
 };
 
-/// The isosurface within one brick of `SurfaceBricks(view.grid.geometry().dims)`, by Marching Cubes (Lorensen
-/// and Cline 1987) with one rule for ambiguous faces, so that the bricks together are closed: each edge of a
-/// triangle belongs to one other, which runs along it the other way. Beyond the grid is no bone. Not for the
-/// tick; any thread that may read the grid.
+/// Makes the isosurface within one brick of `SurfaceBricks(view.grid.geometry().dims)`, by Marching Cubes
+/// (Lorensen and Cline 1987) with one rule for ambiguous faces, so that the bricks together are closed: each
+/// edge of a triangle belongs to one other, which runs along it the other way. Beyond the grid is no bone.
+/// Not for the tick; any thread that may read the grid.
 BrickMesh mesh_brick(const DensityView& view, std::size_t brick);
 
-/// The whole surface as one piece: vertices shared everywhere, so that it is closed by its indices alone.
+/// Makes the whole surface as one piece: vertices shared everywhere, so that it is closed by its indices
+/// alone.
 BrickMesh mesh_in_one_piece(const DensityView& view);
 
 }  // namespace osteomill

@@ -13,11 +13,11 @@
 
 namespace osteomill {
 
-/// Bricks of `SurfaceBricks`, by their numbers, whose triangles are no longer what they were, as they are
-/// now; they may have none. While a brick is being milled all its levels are its mesh (`full_detail`).
+/// Bricks of `SurfaceBricks`, by their numbers, whose triangles have changed, with the new ones; a brick may
+/// have none. While a brick is being milled all its levels are its mesh (`full_detail`).
 using ChangedBricks = std::map<std::size_t, BrickLevels>;
 
-/// Keeps a surface up with changing densities: notes which bricks are to be meshed anew, and meshes them.
+/// Keeps a surface up with changing densities: notes which bricks are to be meshed again, and meshes them.
 /// Holds no densities. For one thread.
 class SurfaceUpkeep {
  public:
@@ -30,9 +30,9 @@ class SurfaceUpkeep {
   /// At first every brick has to be meshed.
   explicit SurfaceUpkeep(const SurfaceBricks& layout);
 
-  /// Densities of these voxels (in the grid) changed, up or down.
+  /// Marks the bricks that depend on these voxels (in the grid), whose densities changed, up or down.
   void mark(const VoxelBox& voxels);
-  /// As after another isovalue.
+  /// Marks every brick, as after another isovalue.
   void mark_all();
   /// Meshes the bricks marked, and returns those that have triangles or had some before; bricks that rest,
   /// once more with their levels.
