@@ -19,7 +19,7 @@ inline constexpr const char* kSpaceMouse = "spacemouse";
 inline constexpr const char* kSimulated = "simulated";
 inline constexpr const char* kNoSpaceMouse = "the daemon spacenavd does not answer";
 
-/// Which device holds the tool, and what of its workspace is to be other than was kept for it.
+/// The device that holds the tool, and the settings of its workspace that replace those kept for it.
 struct DeviceOption {
   /// NAME or NAME:ADDRESS.
   std::string device;
@@ -31,12 +31,12 @@ struct DeviceOption {
   bool is(const char* name) const { return device == name; }
 };
 
-/// Adds --device, which is `option.device` where it is not given, and how its workspace lies.
+/// Adds --device, whose default is `option.device`, and the options of its workspace.
 void add_device_option(CLI::App& command, DeviceOption& option);
 
-/// Where the bone and the tool are sent while it is milled (BoneSender).
+/// The program to which the bone and the tool are sent while it is milled (BoneSender).
 struct SendOption {
-  /// Empty: nowhere.
+  /// HOST:PORT; empty to send nothing.
   std::string address;
   double tool_rate_Hz = 30;
 };
@@ -44,16 +44,15 @@ struct SendOption {
 /// Adds --send-bone and --send-rate.
 void add_send_options(CLI::App& command, SendOption& option);
 
-/// What sends them; null where nothing is to be sent. Throws as BoneSender does.
+/// Makes the sender; null if nothing is to be sent. Throws as BoneSender does.
 std::unique_ptr<BoneSender> send_bone(const BoneFollower& bone, const SendOption& option);
 
 /// Opens the haptic hardware that was asked for and names it on standard error; null for a hand without
 /// hardware. Its workspace is the one kept under the device's name, changed by what the option gives, and
-/// that is then kept. Throws InputError where the device, or the daemon that a SpaceMouse needs, is not
-/// there.
+/// that is then kept. Throws InputError if the device, or the daemon that a SpaceMouse needs, is not there.
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option);
 
-/// What a recording says of who held the tool.
+/// Writes into a recording's description which hand and device held the tool.
 void describe_device(RunDescription& run, const std::string& hand, const ConnectedDevice* device);
 
 }  // namespace osteomill::app

@@ -11,7 +11,7 @@
 
 namespace osteomill::app {
 
-/// What every command that mills has in common.
+/// The options that every command that mills has.
 struct MillingOptions {
   MillingSetup setup;
   std::uint64_t seed = 1;

@@ -14,30 +14,29 @@
 
 namespace osteomill::app {
 
-/// The end of a message about a word that is not known: "; did you mean point-shell?", or where none of the
-/// known words is near and they are few, "; there are milling and wall", else nothing.
+/// Returns the end of a message about a word that is not known: "; did you mean point-shell?", or if none of
+/// the known words is near and they are few, "; there are milling and wall", else nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
-/// Throws std::invalid_argument, "there is no algorithm x; did you mean ...", where `word` is none of
-/// `names`.
+/// Throws std::invalid_argument, "there is no algorithm x; did you mean ...", if `word` is none of `names`.
 void require_word(const std::string& kind, const std::string& word, const std::vector<std::string>& names);
-/// Refuses what is none of `names`; `kind` says what they are ("algorithm").
+/// Makes a check that refuses a text that is none of `names`; `kind` says what they are ("algorithm").
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names);
 
-/// As an option shows its default: "0.3".
+/// Returns a number as an option shows its default: "0.3".
 std::string number_text(double value);
 
-/// The names of a command's options, with their dashes.
+/// Returns the names of a command's options, with their dashes.
 std::vector<std::string> option_names(const CLI::App& command);
 
-/// Throws CLI::ParseError where the command, or any option of it, is not known, naming it and the nearest
-/// that is. Before parsing, which would name what is missing first.
+/// Throws CLI::ParseError if the command, or any option of it, is not known, naming it and the nearest that
+/// is. Called before parsing, which would name a missing option first.
 void require_known_words(const CLI::App& program, int argc, const char* const* argv);
 
 /// Returns what is wrong with a text as a number of this range, "-1 is not a positive number"; empty for
 /// nothing, and `value` is then the number.
 std::string number_fault(const std::string& text, const NumberRange& range, double& value);
-/// Refuses what is not a number of this range.
+/// Makes a check that refuses a text that is not a number of this range.
 CLI::Validator number_of(const NumberRange& range);
 inline CLI::Validator positive_number() {
   return number_of(NumberRange::positive());
@@ -67,14 +66,14 @@ void add_texts(CLI::App& command, Struct& s, unsigned flags = 0) {
     if (flags == 0 || field.has(flags))
       add_text(command, field, [&s, &field](const std::string& text) { field.set(s, text); });
 }
-/// Refuses what is not a whole number within these bounds.
+/// Makes a check that refuses a text that is not a whole number within these bounds.
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max);
-/// Whether it takes no value, or true or false.
+/// Returns whether an option is a switch: it takes no value, or true or false.
 bool is_switch(const CLI::Option& option);
-/// Lets no option of this command take what none can: a number that is not finite, or, of a switch, what is
-/// neither true nor false. Call it when all options are there.
+/// Adds checks to the options of this command: numbers must be finite, and a switch takes only true or false.
+/// Call it when all options are there.
 void check_values(CLI::App& command);
-/// Refuses an empty text.
+/// Makes a check that refuses an empty text.
 CLI::Validator not_empty();
 
 /// Adds an option that holds a positive number in this unit, showing its default.

@@ -17,23 +17,23 @@ void add_quiet_option(CLI::App& command);
 /// that is written over, else in a line each tenth. Silent in the work's first second. From one thread at a
 /// time.
 void show_progress(std::string_view what, double fraction_done);
-/// The work is done: clears the line on a terminal.
+/// Clears the line on a terminal when the work is done.
 void end_progress();
 
-/// Writes to standard error. What cannot be written is dropped: it is no reason to end.
+/// Writes to standard error. A text that cannot be written is dropped: that is no reason to end the program.
 void say(std::string_view text);
 
-/// A warning: one line on standard error, which --quiet silences.
+/// Writes a warning, one line on standard error, which --quiet silences.
 void warn(std::string_view line);
 
 /// Writes tables to standard error, unless --quiet.
 void say_tables(const std::vector<Table>& tables);
 
-/// A warning that --quiet does not silence: a burr that has come into a no-go structure, a recording that
-/// cannot go on.
+/// Writes a warning that --quiet does not silence: a burr that has come into a no-go structure, a recording
+/// that cannot go on.
 void warn_though_quiet(std::string_view line);
 
-/// Progress and warnings as above.
+/// Returns events that report progress and warnings as the functions above do.
 RunEvents events_on_terminal();
 
 }  // namespace osteomill::app

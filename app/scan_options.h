@@ -14,27 +14,28 @@
 
 namespace osteomill::app {
 
-/// Which bone to work on.
+/// The options that choose the bone to work on.
 struct ScanOptions {
-  /// Empty: the built-in tooth.
+  /// The scan; empty for the built-in tooth.
   std::string scan;
-  /// Not given: the built-in tooth's own, or one suggested from the scan's values.
+  /// The isovalue; if not given, the built-in tooth's own, or one suggested from the scan's values.
   std::optional<double> isovalue;
   ReadOptions read;
   /// A label map beside the scan, and which of its labels are no-go.
   LabelFiles labels{};
-  /// Whether the scan holds labels in the place of densities. Not given: as it says or looks, and with an
-  /// isovalue given it does not.
+  /// Whether the scan holds labels in the place of densities. If not given, the file's header or its values
+  /// decide; with an isovalue given it holds none.
   std::optional<bool> as_labels{};
   /// The fingerprint (fingerprint_of) of the bone that an earlier run made of this scan, 0 for none. It tells
   /// whether the scan was then taken for densities or for labels.
   std::uint64_t made_into = 0;
-  /// Of the built-in tooth (builtin_tooth).
+  /// The refinement of the built-in tooth (builtin_tooth).
   double refinement = 1;
 };
 
-/// Flags of the fields of a ScanOptions and of what has one: how the scan is read; what of it is bone;
-/// what the burr must not touch; another value makes another bone.
+/// Flags of the fields of a ScanOptions, and of structs that have one. kOfTheSource: how the scan is read.
+/// kOfWhatIsBone: which part of it is bone. kOfNoGo: what the burr must not touch. kOfTheBone: another value
+/// makes another bone.
 inline constexpr unsigned kOfTheSource = 1u << 8, kOfWhatIsBone = 1u << 9, kOfNoGo = 1u << 10,
                           kOfTheBone = 1u << 11;
 
@@ -42,7 +43,7 @@ inline constexpr unsigned kOfTheSource = 1u << 8, kOfWhatIsBone = 1u << 9, kOfNo
 
 namespace osteomill {
 
-/// Returns the numbers and the texts of a scan's options but the scan itself.
+/// Return the numbers and the texts of a scan's options, without the scan itself.
 template <>
 const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>();
 template <>
@@ -52,31 +53,31 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
 
 namespace osteomill::app {
 
-/// The bone's name where no scan is named.
+/// The bone's name if no scan is named.
 inline constexpr const char* kBuiltinTooth = "built-in tooth";
 
 /// Adds SCAN and what it takes to read it: --series, --as, --max-memory.
 void add_scan_source(CLI::App& command, ScanOptions& options);
 
-/// Adds what of it is bone, and where its labels are: --iso, --labels, --label-table.
+/// Adds the options for which part of it is bone and for its labels: --iso, --labels, --label-table.
 void add_bone_options(CLI::App& command, ScanOptions& options);
 
 /// All of these and --no-go.
 void add_scan_options(CLI::App& command, ScanOptions& options);
 
-/// The scan, or the built-in tooth. Where it is taken for labels, the first of its warnings says so. Throws
-/// InputError as `read_scan` does.
+/// Reads the scan, or makes the built-in tooth. If it is taken for labels, the first of its warnings says so.
+/// Throws InputError as `read_scan` does.
 Scan open_scan(const ScanOptions& options);
 
-/// The isovalue for this scan where the user has given none.
+/// Returns the isovalue for this scan if the user has given none.
 SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan);
 
-/// The bone of a scan: its densities with the isovalue, or, of one that holds labels, whatever is labelled
-/// above the isovalue, all of one density.
+/// Makes the bone of a scan: its densities with the isovalue, or, if it holds labels, all voxels labelled
+/// above the isovalue, at one density.
 Volume bone_of(Scan scan, double isovalue);
 
-/// The labels of a scan, if it has any: those of the label map that is named, or, where the scan is itself a
-/// label map, its own. Their warnings name the file.
+/// Reads the labels of a scan, if it has any: those of the label map that is named, or, if the scan is itself
+/// a label map, its own. Their warnings name the file.
 /// Throws InputError as `read_labels` does.
 LabelsRead labels_of(const ScanOptions& options, const Scan& scan);
 
@@ -85,14 +86,14 @@ struct LoadedBone {
   Volume volume;
   /// The scan as the user named it, or kBuiltinTooth.
   std::string name;
-  /// Where its isovalue came from: "given", or how it was suggested; half a sentence.
+  /// The source of its isovalue: "given", or how it was suggested; half a sentence.
   std::string isovalue_from;
-  /// Of the scan and the isovalue, each naming the scan.
+  /// Warnings about the scan and the isovalue, each naming the scan.
   std::vector<std::string> warnings;
   bool in_hounsfield_units = false;
 };
 
-/// Throws InputError where the scan or the isovalue is at fault.
+/// Reads the bone with its labels. Throws InputError if the scan or the isovalue is at fault.
 LoadedBone read_bone(const ScanOptions& options);
 
 /// Reads the bone as `read_bone` does and prints its warnings to standard error, one line each.

@@ -17,11 +17,11 @@
 
 namespace osteomill::app {
 
-/// What is set of a trial: the options of `compare`, and those that only a study has.
+/// The settings of a trial: the options of `compare`, and those that only a study has.
 struct AskedTrial {
   ScanOptions scan;
   TrialOptions trial;
-  /// Of the built-in tooth.
+  /// The voxel size of the built-in tooth.
   double voxel_mm = 0.125;
   double rate_hz = 1000;
   double device_damping_Ns_per_mm = 0.005;
@@ -33,11 +33,11 @@ struct AskedTrial {
 const std::vector<Field<AskedTrial>>& numbers_of_a_trial();
 const std::vector<Field<AskedTrial, std::string>>& texts_of_a_trial();
 
-/// Sets what a study says of a trial. Throws std::invalid_argument, or a CLI::Error, if a value is out of its
-/// range.
+/// Returns the settings that a study gives a trial. Throws std::invalid_argument, or a CLI::Error, if a value
+/// is out of its range.
 AskedTrial asked_trial(const StudySettings& settings);
 
-/// Says which bone a trial has: its fields that have kOfTheBone, in words. Trials whose words are the same
+/// Returns which bone a trial has: its fields that have kOfTheBone, in words. Trials whose words are the same
 /// share a bone.
 std::string bone_text(const AskedTrial& asked);
 
@@ -53,18 +53,17 @@ class StudyTrials {
   const std::string& file() const { return file_; }
   const StudyDesign& design() const { return design_; }
 
-  /// Bones are then to have these fingerprints, by their words (bone_text).
+  /// Sets the fingerprints that bones must have from then on, by their words (bone_text).
   void expect(const std::vector<std::pair<std::string, std::uint64_t>>& bones) {
     fingerprints_ = {bones.begin(), bones.end()};
   }
   const std::map<std::string, std::uint64_t>& fingerprints() const { return fingerprints_; }
 
-  /// Trials that follow each other. They hold on to this object's bones: until the next call. Throws
-  /// InputError, naming the file and the trial, where a setting is out of its range or does not go with the
-  /// others, or where its scan is at fault or has changed.
+  /// Returns trials that follow each other. They refer to this object's bones, until the next call. Throws
+  /// InputError, naming the file and the trial, if a setting is out of its range or does not go with the
+  /// others, or if its scan is at fault or has changed.
   std::vector<TrialPlan> make(std::size_t first, std::size_t count);
-  /// Returns a line on what is poor of the settings of trials that were made (doubts_about); empty for
-  /// nothing.
+  /// Returns a line on the poor settings of trials that were made (doubts_about); empty if there are none.
   std::string doubt() const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace osteomill::app {
 
-/// A TOML file as a table. Throws InputError naming the file, and the line where there is one.
+/// Reads a TOML file as a table. Throws InputError naming the file, and the line if there is one.
 toml::table read_toml(const std::string& file);
 
 /// A key of a table and what stands behind it, as long as the table lives.
@@ -17,19 +17,19 @@ struct TomlEntry {
   std::string key;
   const toml::node* value;
 };
-/// In the order of the file: the library sorts them by name.
+/// Returns the entries in the order of the file, because the library sorts them by name.
 std::vector<TomlEntry> entries_of(const toml::table& table);
-/// Of a table of options: a table that is named after an algorithm holds that one's own settings, which
-/// become entries behind its name, "point-shell.scale".
+/// Returns the entries of a table of options. A table in it that is named after an algorithm holds that
+/// algorithm's own settings, which become entries behind its name, "point-shell.scale".
 std::vector<TomlEntry> options_of(const toml::table& table);
 bool is_own_setting(const std::string& key);
 
-/// The error of a place in a file, with its line.
+/// Returns the error of a place in a file, with its line.
 InputError error_at(const toml::node& place, const std::string& file, const std::string& reason);
 
-/// What the command line would have said in the place of this value: one text a value, of a list several.
-/// Throws InputError, naming file, line and `key`, where it is neither a text, a number, true, false, nor a
-/// list of at least one of them.
+/// Returns the texts that the command line would have in the place of this value: one text a value, for a
+/// list several. Throws InputError, naming file, line and `key`, if it is neither a text, a number, true,
+/// false, nor a list of at least one of them.
 std::vector<std::string> option_values(const toml::node& value, const std::string& file,
                                        const std::string& key);
 

@@ -14,7 +14,7 @@
 
 namespace osteomill::app {
 
-/// What the commands that run section 8.2 have in common: milling, and the simulated hand with its task.
+/// The options that the commands that run section 8.2 share: milling, and the simulated hand with its task.
 struct TrialOptions {
   MillingOptions milling;
   OperatorSettings hand;
@@ -39,17 +39,18 @@ void add_trial_options(CLI::App& command, TrialOptions& options);
 
 TrialSettings trial_settings(const TrialOptions& options);
 
-/// Where the tool enters this bone. Throws InputError where it cannot.
+/// Returns where the tool enters this bone. Throws InputError if it cannot.
 MillingEntry entry_into(const Volume& bone, const TrialOptions& options);
 
-/// As entry_into, and warns on standard error where that place is unlikely to be what the user wants.
+/// Returns the same place as entry_into, and warns on standard error if it is unlikely to be what the user
+/// wants.
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options);
 
-/// Warns of what is poor of these settings in a scan of this grid (doubts_about), and throws as that does.
+/// Warns of settings that are poor in a scan of this grid (doubts_about), and throws as that does.
 void warn_of_doubts(const MillingSetup& setup, const GridGeometry& scan);
 
-/// The trial on a bone, which outlives it. Throws std::invalid_argument where the tool cannot work in that
-/// bone, and as entry_into.
+/// Returns the plan of a trial on a bone, which outlives it. Throws std::invalid_argument if the tool cannot
+/// work in that bone, and as entry_into.
 TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const std::string& command_line);
 
 }  // namespace osteomill::app

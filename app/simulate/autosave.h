@@ -39,7 +39,7 @@ class AutosaveFile {
   std::shared_ptr<FileLock> lock_;
 };
 
-/// Milled bone that an earlier run of the program kept and nobody saved.
+/// Milled bone that an earlier run of the program kept and the user did not save.
 struct LeftoverMilling {
   AutosaveFile file;
   SessionStart start;
@@ -61,7 +61,7 @@ class Autosave {
   void update(LiveMilling& milling);
   /// The bone of this version (BoneFollower::version) was saved by the user.
   void saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
-  /// Whether bone was milled that is not saved.
+  /// Returns whether bone was milled that is not saved.
   bool unsaved(const LiveMilling& milling) const {
     return milling.follower().touched() && milling.follower().version() != saved_version_;
   }
@@ -81,7 +81,7 @@ class Autosave {
   bool kept_ = false;
   Clock::time_point next_;
   std::string complaint_;
-  // How long it took. Last, so that it is waited for at the end.
+  // The work under way, which returns how long it took. Last, so that it is waited for at the end.
   std::future<Clock::duration> work_;
 };
 

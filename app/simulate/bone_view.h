@@ -33,7 +33,8 @@ Camera first_camera(const BoneBox& box, const PixelSize& size);
 /// The tool free of bone, before the point of bone that is seen at a pixel; nothing where no bone is.
 std::optional<Pose> tool_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
                                 const PixelSize& size, double x_px, double y_px);
-/// The same in the middle of the view, or `above_px` above it; where no bone is, where it would be.
+/// Returns the same in the middle of the view, or `above_px` above it; if there is no bone, the pose as if
+/// there were.
 Pose tool_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
                         const PixelSize& size, double above_px = 0);
 

@@ -45,7 +45,7 @@ class DialogueQueue {
   /// be called between two pictures, since it may destroy what they show.
   void proceed();
 
-  /// The complaints that nobody has read.
+  /// The complaints that the user has not read yet.
   std::vector<std::string> complaints() const;
 
  private:

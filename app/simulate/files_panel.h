@@ -33,9 +33,9 @@ class FilesPanel {
   /// Ends a recording that still goes on.
   void end_recording(ViewState& view, Simulation& simulation);
   bool busy() const { return work_.valid(); }
-  /// Whether the last thing that was to be written was written without an error.
+  /// Returns whether the last file was written without an error.
   bool written() const { return written_; }
-  /// Whether there is a recording without a report.
+  /// Returns whether there is a recording without a report.
   bool unreported(const Simulation& simulation) const {
     return simulation.milling.recording() || last_recording_ != reported_;
   }
@@ -67,7 +67,7 @@ class FilesPanel {
   struct Done {
     std::string message;
     std::filesystem::path result;
-    /// Of which recording the result is the report; empty for any other file.
+    /// The recording of which the result is the report; empty for any other file.
     std::filesystem::path recording;
   };
   std::chrono::steady_clock::time_point recording_since_;

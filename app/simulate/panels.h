@@ -16,7 +16,7 @@ namespace osteomill::app {
 /// The column on the left: everything that can be set.
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
-/// What is left of the right column, pixels from the top.
+/// The free part of the right column, pixels from the top.
 struct Room {
   float top_px;
   float bottom_px;
@@ -43,7 +43,7 @@ void draw_annotations(const ViewState& view, const PixelSize& size, bool patient
 std::string recording_text(double recording_s);
 void draw_recording(double recording_s);
 
-/// Whether a dialogue is seen, so that pointer and keys are nobody else's.
+/// Returns whether a dialogue is open, which alone takes pointer and keys then.
 bool dialogue_open();
 /// The dialogue that is to be seen, if any. Takes down what is chosen.
 void draw_dialogue(DialogueQueue& dialogues);
@@ -57,15 +57,16 @@ bool draw_loading(const std::string& what, double share_done, double passed_s, c
 /// help tells.
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size);
 
-/// Where bone came back (a cut undone, another isovalue) or the tool grew while it was in a hole: brings it
-/// out, before the bone where it is seen. Does nothing to a tool that only presses on bone.
+/// Brings the tool out of bone that came back (a cut undone, another isovalue), or if it grew while it was in
+/// a hole: puts it before the bone where it is seen. Does nothing to a tool that only presses on bone.
 void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size);
 
-/// What the slider of stiffness sets, in force: nothing where the algorithm has none.
+/// The option that the slider of stiffness sets; and the value in force, which is nothing if the algorithm
+/// has no such setting.
 inline constexpr const char* kStiffnessOption = "stiffness";
 std::optional<double> stiffness_of(const MillingSetup& setup);
 
-/// Where the isovalue in force came from.
+/// Returns where the isovalue in force came from.
 std::string isovalue_text(const Simulation& simulation);
 
 }  // namespace osteomill::app

@@ -11,10 +11,11 @@
 
 namespace osteomill::app {
 
-/// What is to be drawn now.
+/// Returns the scene to be drawn now.
 ViewScene scene_of(const ViewState& view, Simulation& simulation);
 
-/// Samples the grey values on the cuts anew as their planes move, and a few times a second as bone is milled.
+/// Samples the grey values on the cuts again as their planes move, and a few times a second as bone is
+/// milled.
 class CutUpdates {
  public:
   void update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer);

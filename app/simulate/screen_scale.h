@@ -9,13 +9,13 @@ struct Screen {
   PixelSize size;
   /// 0 where it is not known.
   double height_mm = 0;
-  /// How much larger than usual the system wants text.
+  /// The factor by which the system wants text larger than usual.
   double content_scale = 1;
 };
 
-/// How much larger than on an ordinary screen (96 dots an inch) text and all that is measured by it must be
-/// to be read: what the system wants, or, where it wants nothing, what the density of the screen's dots asks
-/// for.
+/// Returns how much larger than on an ordinary screen (96 dots an inch) text and all that is measured by it
+/// must be to be read: the factor that the system wants, or, if it wants none, the one that the density of
+/// the screen's dots asks for.
 double scale_for(const Screen& screen);
 
 /// The scale asked for, or the greatest at which both columns and a view between them have room in the

@@ -57,7 +57,7 @@ struct Holder {
   std::string name = kMouse;
   ConnectedDevice* hardware = nullptr;
 
-  /// What moves the tool is mouse, keyboard or SpaceMouse.
+  /// Returns whether mouse, keyboard or SpaceMouse move the tool.
   bool is_pointer() const { return hardware == nullptr && name != kSimulated; }
 };
 
@@ -70,7 +70,7 @@ struct Simulation {
 
   /// To be called once a picture: LiveMilling::update, with the ticks' history, the counts and the autosave.
   void update();
-  /// What a recording that is begun now says of it.
+  /// Returns what a recording that is begun now says about it.
   RunDescription describe() const;
 
   OpenScan scan;
@@ -86,10 +86,10 @@ struct Simulation {
   Device& device;
   LiveMilling milling;
   Autosave autosave;
-  /// What the burr met of the labels, and how much of each has gone (LiveMilling::removed_by_label).
+  /// The labels that the burr met, and how much of each has gone (LiveMilling::removed_by_label).
   LabelCount label_count;
   std::vector<double> removed_by_label_mm3;
-  /// What to tell of the no-go contact that began last.
+  /// The text to show on the no-go contact that began last.
   std::string no_go_text;
   /// The ticks of the last 5 seconds.
   std::deque<TickRecord> history;

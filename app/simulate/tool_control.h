@@ -6,7 +6,7 @@
 
 namespace osteomill::app {
 
-/// What mouse, keyboard and SpaceMouse tell the tool to do in one picture.
+/// The input of mouse, keyboard and SpaceMouse to the tool in one picture.
 struct ToolInput {
   /// Pixels to the right and down: moves, or with `turning` turns.
   Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();
@@ -18,12 +18,12 @@ struct ToolInput {
   /// A SpaceMouse, which always moves and turns.
   SpaceMouseState space_mouse;
   double passed_s = 0;
-  /// Whether bone holds the tool back.
+  /// True if bone holds the tool back.
   bool touching = false;
 };
 
-/// Where the hand pulls the tool: it moves in the view's plane, along the view, and turns about the burr's
-/// centre. Never far from where the device is, so that pulling back is felt at once.
+/// Returns the pose that the hand pulls the tool to: it moves in the view's plane, along the view, and turns
+/// about the burr's centre. Never far from where the device is, so that pulling back is felt at once.
 Pose moved_target(const Pose& X_W_target, const Pose& X_WD, const Camera& camera, const PixelSize& size,
                   const ToolInput& input);
 

@@ -16,22 +16,22 @@ namespace osteomill::app {
 /// The three planes across the patient and a free one.
 inline constexpr std::array<const char*, kMaxClipPlanes> kCutNames{"axial", "coronal", "sagittal", "free"};
 
-/// What the window shows and how, beside the simulation itself.
+/// All that the window shows, and how, beside the simulation itself.
 struct ViewState {
   Camera camera;
   BoneBox box;
   Pose X_W_target;
-  /// Where the tool is brought to, until it is there.
+  /// The pose that the tool is brought to, until it is there.
   std::optional<Pose> X_W_brought;
   bool bring_asked = false;
   /// The pointer moves the tool without a button.
   bool holding_tool = false;
-  /// What the left button drags; decided where it was pressed.
+  /// Whether the left button drags the tool; decided by the place where it was pressed.
   bool dragging_tool = false;
   bool dragging_view = false;
   /// The left button is the spindle's pedal as long as it is down.
   bool pedal_down = false;
-  /// How far the operator is with telling by two moves how the device stands; the tool stays meanwhile.
+  /// The progress of the operator in showing by two moves how the device stands; the tool stays meanwhile.
   struct Calibration {
     enum class Step { none, right, up };
     Step step = Step::none;
@@ -39,10 +39,10 @@ struct ViewState {
     Vec3 right_D_mm = Vec3::Zero();
   };
   Calibration calibration;
-  /// What the controls are set to, and whether milling is still to be changed to it.
+  /// The setup that the controls are set to, and whether milling is still to be changed to it.
   MillingSetup wanted;
   bool wanted_is_new = false;
-  /// How often `wanted` was changed.
+  /// The number of changes of `wanted`.
   int changes = 0;
   bool ghost = true;
   bool arrows = true;
@@ -55,14 +55,14 @@ struct ViewState {
   /// By how many steps text is to become larger; negative: smaller.
   int text_steps = 0;
   bool reset_asked = false;
-  /// What waits until nothing else is being prepared.
+  /// Requests that wait until nothing else is being prepared.
   bool undo_asked = false;
   bool reset_confirmed = false;
   std::optional<double> isovalue_asked;
   bool full_screen_asked = false;
   bool picture_asked = false;
   DialogueQueue dialogues;
-  /// What was done last, and the file or folder that it made, if any.
+  /// The text on what was done last, and the file or folder that it made, if any.
   std::string message;
   std::filesystem::path result;
   /// The page of the report that was made last.

@@ -24,12 +24,12 @@ std::map<std::string, Place>& places();
 /// Pixels for a length that is `length` pixels where text has its usual size.
 float px(float length);
 void set_scale(double scale);
-/// Of the column on the right, at the usual size of text.
+/// The width of the column on the right, at the usual size of text.
 inline constexpr float kRightWidth_px = 250;
 /// The colour of warnings.
 inline const ImVec4 kWarning{1.0f, 0.72f, 0.25f, 1};
 
-/// Whether the key (GLFW's number) went down in this picture.
+/// Returns whether the key (GLFW's number) went down in this picture.
 bool pressed(int key);
 
 /// Begins a panel of the right column, with its upper edge at `y_px`.

@@ -24,31 +24,31 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// As the window's own button does.
+  /// Asks to close the window, as its own button does.
   void ask_to_close();
-  /// Whether closing was asked for since the last call.
+  /// Returns whether closing was asked for since the last call.
   bool take_close_asked();
   void set_title(const std::string& title);
-  /// Of the framebuffer.
+  /// Returns the size of the framebuffer.
   PixelSize size() const;
   void toggle_full_screen();
   void resize(const PixelSize& size);
 
-  /// How much larger than usual text is drawn: what was asked for, as far as the window has room for it. Of
-  /// this picture, from `begin_frame` on.
+  /// Returns how much larger than usual text is drawn: what was asked for, as far as the window has room for
+  /// it. It holds for this picture, from `begin_frame` on.
   double ui_scale() const { return scale_; }
   void ask_ui_scale(double scale) { asked_scale_ = scale; }
 
   /// The files and folders that were dropped onto the window since the last call.
   std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
-  /// As if it had been dropped.
+  /// Takes a file as if it had been dropped on the window.
   void drop(const std::string& path) { dropped_.push_back(path); }
 
   /// Takes the events in and begins ImGui's frame.
   void begin_frame();
   /// Draws ImGui over what is in the framebuffer.
   void end_frame();
-  /// What is in the framebuffer.
+  /// Returns the picture in the framebuffer.
   Image picture() const;
   void show();
 
