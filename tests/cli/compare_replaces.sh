@@ -17,7 +17,7 @@ echo mine >c/notes.txt
 "$osteomill" compare --no-stability --quiet --out c --seconds 30 --algorithm point-shell --seed 2 --burr-radius 2 \
   --seeds 3 >out &
 killed=$!
-for n in $(seq 300); do
+for n in $(seq 1200); do
   if [ -n "$(find c -path '*point-shell-milling.h5')" ]; then break; fi
   sleep 0.1
 done
