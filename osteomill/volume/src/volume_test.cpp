@@ -45,8 +45,6 @@ TEST(EditableVolume, BlockThatIsSwappedTwiceLeavesTheBoneAsItWas) {
     EXPECT_EQ(bone.ranges().at(first.i / 8, first.j / 8, first.k / 8).max, 2000);
     EditableVolume(bone).swap(filled);
     EXPECT_EQ(bone.grid().densities(), scan.grid().densities());
-    EXPECT_EQ(bone.ranges().at(first.i / 8, first.j / 8, first.k / 8).max,
-              scan.ranges().at(first.i / 8, first.j / 8, first.k / 8).max);
   }
 }
 
