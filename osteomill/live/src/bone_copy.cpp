@@ -77,7 +77,7 @@ BoneCopy::NextBone BoneCopy::with_emptied(double surroundings, double removed_mm
   return {copy_, removed_mm3, densities};
 }
 
-void BoneCopy::swap() {
+void BoneCopy::exchange() {
   if (undone_ == Undone::last_cut) history_.drop_last();
   if (undone_ == Undone::all) history_.drop_all();
   undone_ = Undone::nothing;

@@ -38,13 +38,13 @@ class BoneCopy {
 
   /// Sets the copy's isovalue, not the bone's.
   void set_isovalue(double isovalue);
-  /// Makes the copy the bone that is to be next; `swap` or `give_up` ends that. Each is as the function of
-  /// the same name of BoneFollower; the last one lowers what milling had emptied once the copy has its
-  /// isovalue, at which `densities` were estimated.
+  /// Makes the copy the bone that is to be next; `exchange` or `give_up` ends that. Each is as the function
+  /// of the same name of BoneFollower (`exchange` as its `swap`); the last one lowers what milling had
+  /// emptied once the copy has its isovalue, at which `densities` were estimated.
   NextBone without_last_cut();
   NextBone as_at_the_beginning();
   NextBone with_emptied(double surroundings, double removed_mm3, const BoneDensities& densities);
-  void swap();
+  void exchange();
   void give_up();
 
  private:

@@ -188,7 +188,7 @@ BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double surro
 
 void BoneFollower::swap() {
   const std::lock_guard lock(parts_->mutex);
-  parts_->copy.swap();
+  parts_->copy.exchange();
 }
 
 void BoneFollower::give_up() {
