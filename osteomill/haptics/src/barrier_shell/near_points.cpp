@@ -47,7 +47,7 @@ EnergySum side_sum(const Lanes<SideSum>& lanes) {
       if (row % 2 == column % 2) sum.rest(at[row], at[column]) = -both * q[power];
     }
   }
-  // What turns the side's tangent about the axis: r x t = (-z u, -z v, rho), t = (-v, u, 0).
+  // Terms that turn the side's tangent about the axis: r x t = (-z u, -z v, rho), t = (-v, u, 0).
   const double rho_uu = total(S::p_rho_uu), rho_uv = total(S::p_rho_uv), rho_vv = total(S::p_rho_vv);
   const double rho = rho_uu + rho_vv;
   const auto add = [&](int row, int column, double value) {

@@ -25,7 +25,7 @@ struct NearPoints {
   std::vector<float> x, y, z, area;
 };
 
-/// The same points as measured from one pose: the sum of their pushes and its derivatives by a move of the
+/// Near points as measured from one pose: the sum of their pushes and its derivatives by a move of the
 /// tool, and for each point its distance to the part and the direction out of it. `x`, `y` and `z` hold the
 /// places of points near the cylinder alone.
 struct MeasuredPoints {

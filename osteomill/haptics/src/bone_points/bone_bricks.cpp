@@ -42,7 +42,7 @@ void BoneBricks::look(int level, const VoxelIndex& node, BrickTree::Place place)
   }
 }
 
-// Of making a brick, in points.
+// Returns what making the slot's brick costs, in points.
 int BoneBricks::cost_of(std::uint32_t slot) const {
   return lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(fine().brick(slot).count);
 }

@@ -83,7 +83,7 @@ struct RunFigure {
   const char* caption;
 };
 
-// What a reader wants to know at once: figures and the metrics beside them, by their columns.
+// A topic of the report: its figures and the metrics beside them, by their columns.
 struct Topic {
   const char* title;
   std::vector<RunFigure> figures;

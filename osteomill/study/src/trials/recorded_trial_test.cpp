@@ -45,7 +45,7 @@ void expect_same(const Struct& restored, const Struct& made_with) {
     EXPECT_EQ(field.get(restored), field.get(made_with)) << field.name << field.option;
 }
 
-// What the trial was made with, by the recording alone.
+// Returns the settings that the recording alone says the trial was made with.
 TrialSettings settings_of(const RunDescription& run) {
   TrialSettings settings;
   static_cast<MillingSetup&>(settings) = session_settings(run, "a.h5").setup;

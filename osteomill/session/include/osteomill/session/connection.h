@@ -32,7 +32,7 @@ struct DeviceInput {
   /// Why no force may be sent to the device now, and what helps, to be read after "it" ("is not calibrated:
   /// ..."); null if force may be sent. Until then it is sent zero.
   const char* not_driven = nullptr;
-  /// What else the operator should know about the device, in the same form; null if there is nothing.
+  /// A remark on the device for the operator, in the same form; null if there is nothing.
   const char* remark = nullptr;
 };
 

@@ -81,7 +81,7 @@ class MillingSession {
   /// Returns what another session takes over, after the last tick.
   TakenOver left() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back()}; }
   /// Lets the next tick count as one that reaches no hand (Device::is_driven), as after a time without ticks.
-  /// As safe as `tick`.
+  /// The call is as safe as `tick`.
   void hold_back() noexcept { hold_back_asked_ = true; }
 
   /// Brings the wrench down to zero slowly, from the next tick on, and keeps it there until the tool is

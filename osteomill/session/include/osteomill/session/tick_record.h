@@ -37,7 +37,7 @@ struct TickRecord {
   /// The energy given to the hand less what it gave, up to this tick's pose (PassivityObserver), in N mm.
   double energy_given_Nmm = 0;
   int contacts = 0;
-  /// As HapticStep::owed_bricks.
+  /// The bricks that were not up to date (HapticStep::owed_bricks).
   int owed_bricks = 0;
   /// The force with which the burr pressed on the bone, in W.
   Vec3 burr_force_W_N = Vec3::Zero();

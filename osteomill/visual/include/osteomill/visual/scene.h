@@ -32,7 +32,7 @@ struct ViewScene {
   std::optional<Pose> X_WD;
   /// The wrench as it acts on the hand, drawn as arrows from the simulated burr.
   Wrench wrench;
-  /// As HapticStep::intersection_W, if the algorithm has one.
+  /// The intersection point (HapticStep::intersection_W), if the algorithm has one.
   std::optional<Vec3> intersection_W;
   std::array<std::optional<ClipPlane>, kMaxClipPlanes> cuts;
   /// Bone that has a label is shown in the label's colour.
