@@ -10,8 +10,7 @@ namespace osteomill {
 template <typename F>
 void for_each_point(BoneBricks& bricks, const BrickPoints& kind, F&& f) {
   const auto everywhere = [](const Vec3&, double) { return true; };
-  bricks.make(everywhere);
-  bricks.visit(everywhere, [&](const VoxelIndex& brick, std::uint32_t slot) {
+  bricks.make_and_visit(everywhere, [&](const VoxelIndex& brick, std::uint32_t slot) {
     const Vec3 origin_G = bricks.lattice().brick_origin_G(brick);
     kind.for_each_of(slot, [&](const ShellPoint& point) { f(point, origin_G); });
   });

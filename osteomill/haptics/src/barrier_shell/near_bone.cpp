@@ -66,16 +66,9 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
       gather_near_cylinder(at_cylinder, at_cylinder.brick(slot).first_chunk, frame, reach, cylinder_);
     }
   };
-  const auto gather_all = [&] {
-    ball_.count = cylinder_.count = brick_count_ = 0;
-    ball_.overflowed = cylinder_.overflowed = false;
-    brick_missing_ = !bricks.visit(meets_node, gather_brick);
-  };
-  gather_all();
-  if (brick_missing_) {
-    bricks.make(meets_node);
-    gather_all();
-  }
+  ball_.count = cylinder_.count = brick_count_ = 0;
+  ball_.overflowed = cylinder_.overflowed = false;
+  brick_missing_ = !bricks.make_and_visit(meets_node, gather_brick);
   close_gathering(ball_);
   close_gathering(cylinder_);
 }

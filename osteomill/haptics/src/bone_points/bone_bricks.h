@@ -32,32 +32,24 @@ class BoneBricks {
   const BrickPoints& coarse() const { return store_.coarse(); }
 
   /// Goes down the octree, leaving out every node for whose bounding sphere (in the grid's frame)
-  /// `meets(middle_G, radius_mm)` is false, and calls `use(brick, slot)` for each brick with points that it
-  /// reaches, in a fixed order. The brick's points are those of `slot` in `fine` and `coarse`. Returns
-  /// whether no brick is missing.
+  /// `meets(middle_G, radius_mm)` is false, makes each missing brick that it reaches, as far as there is room
+  /// and this tick may make more, and calls `use(brick, slot)` for each brick with points, in a fixed order.
+  /// The brick's points are those of `slot` in `fine` and `coarse`. Returns whether no brick is missing.
   template <typename Meets, typename Use>
-  bool visit(const Meets& meets, const Use& use) const {
+  bool make_and_visit(const Meets& meets, const Use& use) {
     bool all = true;
-    tree_.visit(by_sphere(meets), [&](int, const VoxelIndex& brick, BrickTree::Place place) {
-      if (tree_.held(place) == BrickTree::kUnseen) {
-        all = false;
-      } else {
-        use(brick, tree_.held(place));
-      }
-    });
-    return all;
-  }
-  /// Makes the missing bricks that `visit` would reach, as far as there is room and this tick may make more.
-  template <typename Meets>
-  void make(const Meets& meets) {
     tree_.visit(by_sphere(meets), [&](int level, const VoxelIndex& node, BrickTree::Place place) {
       look(level, node, place);
       if (level == 0 && tree_.held(place) == BrickTree::kUnseen && queue_.may_make() && store_.has_room())
         queue_.count_made(make_brick(node, place));
+      const std::uint32_t held = tree_.held(place);
+      if (held == BrickTree::kUnseen) all = false;
+      if (level == 0 && BrickTree::is_index(held)) use(node, held);
     });
+    return all;
   }
-  /// Looks at unseen nodes that `visit` would reach, as far as this tick may, until it has found where there
-  /// may be points. Returns whether it has.
+  /// Looks at unseen nodes that `make_and_visit` would reach, as far as this tick may, until it has found
+  /// where there may be points. Returns whether it has.
   template <typename Meets>
   bool look_for_points(const Meets& meets) {
     bool found = false;

@@ -113,8 +113,7 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
     const auto meets = [&](const Vec3& node_G, double radius_mm) {
       return (node_G - middle_G).norm() < radius_mm + 0.6;
     };
-    bricks.make(meets);
-    bricks.visit(meets, [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
+    bricks.make_and_visit(meets, [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
   };
   make_all(kept);
   const auto heights = [&](BoneBricks& bricks) {
@@ -163,8 +162,7 @@ TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
   int ticks = 0;
   for (bool all = false; !all; ++ticks) {
     bricks.begin_tick({}, {});
-    bricks.make(everywhere);
-    all = bricks.visit(everywhere, [](const VoxelIndex&, std::uint32_t) {});
+    all = bricks.make_and_visit(everywhere, [](const VoxelIndex&, std::uint32_t) {});
     EXPECT_LE(bricks.fine().total(), before + UpdateQueue::kMadePerTick + SurfaceLattice::kMaxPointsOfBrick);
     before = bricks.fine().total();
     ASSERT_LT(ticks, 1000);
@@ -201,9 +199,8 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
       return (node_G - middle_G).norm() < within_mm + radius_mm;
     };
     std::size_t made = 0;
-    bricks.make(meets);
-    bricks.visit(meets,
-                 [&](const VoxelIndex&, std::uint32_t slot) { made += bricks.fine().brick(slot).count > 0; });
+    bricks.make_and_visit(
+        meets, [&](const VoxelIndex&, std::uint32_t slot) { made += bricks.fine().brick(slot).count > 0; });
     return made;
   };
   const Vec3 last_G = Vec3::Constant(223 * 0.13);
@@ -226,8 +223,7 @@ TEST(BoneBricks, NeitherTimeNorRoomGrowsWithTheScan) {
       return (middle_G - at_G).norm() < radius_mm + 0.1;
     };
     int found = 0;
-    bricks.make(meets);
-    bricks.visit(meets, [&](const VoxelIndex&, std::uint32_t slot) {
+    bricks.make_and_visit(meets, [&](const VoxelIndex&, std::uint32_t slot) {
       found += static_cast<int>(bricks.fine().brick(slot).count);
     });
     ASSERT_GT(found, 10) << n;
