@@ -5,12 +5,16 @@
 
 namespace osteomill {
 
-/// For tests. Calls `f(point, origin_G)` for every point of one kind (`bricks.fine()` or `bricks.coarse()`),
+/// For tests. Meets every node of an octree.
+inline BrickTree::EightBits every_node(int, const VoxelIndex&) {
+  return 0xff;
+}
+
+/// Calls `f(point, origin_G)` for every point of one kind (`bricks.fine()` or `bricks.coarse()`),
 /// which lies at `origin_G` + its place in the grid's frame. Makes all bricks.
 template <typename F>
 void for_each_point(BoneBricks& bricks, const BrickPoints& kind, F&& f) {
-  const auto everywhere = [](const Vec3&, double) { return true; };
-  bricks.make_and_visit(everywhere, [&](const VoxelIndex& brick, std::uint32_t slot) {
+  bricks.make_and_visit(every_node, [&](const VoxelIndex& brick, std::uint32_t slot) {
     const Vec3 origin_G = bricks.lattice().brick_origin_G(brick);
     kind.for_each_of(slot, [&](const ShellPoint& point) { f(point, origin_G); });
   });

@@ -31,14 +31,14 @@ class BoneBricks {
   const BrickPoints& fine() const { return store_.fine(); }
   const BrickPoints& coarse() const { return store_.coarse(); }
 
-  /// Goes down the octree, leaving out every node for whose bounding sphere (in the grid's frame)
-  /// `meets(middle_G, radius_mm)` is false, makes each missing brick that it reaches, as far as there is room
-  /// and this tick may make more, and calls `use(brick, slot)` for each brick with points, in a fixed order.
-  /// The brick's points are those of `slot` in `fine` and `coarse`. Returns whether no brick is missing.
+  /// Goes down the octree into the nodes that `meets` lets through (BrickTree::visit), makes each missing
+  /// brick that it reaches, as far as there is room and this tick may make more, and calls `use(brick, slot)`
+  /// for each brick with points, in a fixed order. The brick's points are those of `slot` in `fine` and
+  /// `coarse`. Returns whether no brick is missing.
   template <typename Meets, typename Use>
   bool make_and_visit(const Meets& meets, const Use& use) {
     bool all = true;
-    tree_.visit(by_sphere(meets), [&](int level, const VoxelIndex& node, BrickTree::Place place) {
+    tree_.visit(meets, [&](int level, const VoxelIndex& node, BrickTree::Place place) {
       look(level, node, place);
       if (level == 0 && tree_.held(place) == BrickTree::kUnseen && queue_.may_make() && store_.has_room())
         queue_.count_made(make_brick(node, place));
@@ -53,10 +53,11 @@ class BoneBricks {
   template <typename Meets>
   bool look_for_points(const Meets& meets) {
     bool found = false;
-    const auto if_not_yet = [&](const Vec3& middle_G, double radius_mm) {
-      return !found && meets(middle_G, radius_mm);
+    const auto if_not_yet = [&](int level, const VoxelIndex& node) {
+      return found ? BrickTree::EightBits{0} : meets(level, node);
     };
-    tree_.visit(by_sphere(if_not_yet), [&](int level, const VoxelIndex& node, BrickTree::Place place) {
+    tree_.visit(if_not_yet, [&](int level, const VoxelIndex& node, BrickTree::Place place) {
+      if (found) return;
       look(level, node, place);
       const std::uint32_t held = tree_.held(place);
       found = held == BrickTree::kUnseen || (level == 0 && BrickTree::is_index(held));
@@ -89,12 +90,6 @@ class BoneBricks {
   std::uint64_t dropped() const { return fine().dropped() + coarse().dropped(); }
 
  private:
-  template <typename Meets>
-  auto by_sphere(const Meets& meets) const {
-    return [this, &meets](int level, const VoxelIndex& node) {
-      return meets(lattice_.middle_G(level, node), lattice_.radius_mm(level));
-    };
-  }
   void look(int level, const VoxelIndex& node, BrickTree::Place place);
   int cost_of(std::uint32_t slot) const;
   int make_brick(const VoxelIndex& brick, BrickTree::Place place);

@@ -14,6 +14,19 @@
 namespace osteomill {
 namespace {
 
+// Meets the nodes whose spheres come within a distance of a place.
+auto near(const SurfaceLattice& lattice, const Vec3& place_G, double within_mm) {
+  return [&lattice, place_G, within_mm](int level, const VoxelIndex& node) {
+    unsigned met = 0;
+    for (int n = 0; n < 8; ++n) {
+      const Vec3 middle_G = lattice.middle_G(level - 1, BrickTree::below(node, n));
+      const bool is_near = (middle_G - place_G).norm() < within_mm + lattice.radius_mm(level - 1);
+      met |= static_cast<unsigned>(is_near) << n;
+    }
+    return static_cast<BrickTree::EightBits>(met);
+  };
+}
+
 using testing_support::uniform;
 
 void make_all(BoneBricks& bricks) {
@@ -110,10 +123,8 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
   BoneBricks kept(volume, 0.13);
   const auto at_the_middle = [](BoneBricks& bricks, const auto& use) {
     const Vec3 middle_G = Vec3::Constant(0.5 * 89 * 0.13);
-    const auto meets = [&](const Vec3& node_G, double radius_mm) {
-      return (node_G - middle_G).norm() < radius_mm + 0.6;
-    };
-    bricks.make_and_visit(meets, [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
+    bricks.make_and_visit(near(bricks.lattice(), middle_G, 0.6),
+                          [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
   };
   make_all(kept);
   const auto heights = [&](BoneBricks& bricks) {
@@ -157,12 +168,11 @@ TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(150, 0.13),
                                                       testing_support::ball(Vec3::Zero(), 8));
   BoneBricks bricks(volume, 0.13);
-  const auto everywhere = [](const Vec3&, double) { return true; };
   std::size_t before = 0;
   int ticks = 0;
   for (bool all = false; !all; ++ticks) {
     bricks.begin_tick({}, {});
-    all = bricks.make_and_visit(everywhere, [](const VoxelIndex&, std::uint32_t) {});
+    all = bricks.make_and_visit(every_node, [](const VoxelIndex&, std::uint32_t) {});
     EXPECT_LE(bricks.fine().total(), before + UpdateQueue::kMadePerTick + SurfaceLattice::kMaxPointsOfBrick);
     before = bricks.fine().total();
     ASSERT_LT(ticks, 1000);
@@ -195,12 +205,10 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
       });
   BoneBricks bricks(volume, 0.13);
   const auto made_about = [&](const Vec3& middle_G, double within_mm) {
-    const auto meets = [&](const Vec3& node_G, double radius_mm) {
-      return (node_G - middle_G).norm() < within_mm + radius_mm;
-    };
     std::size_t made = 0;
     bricks.make_and_visit(
-        meets, [&](const VoxelIndex&, std::uint32_t slot) { made += bricks.fine().brick(slot).count > 0; });
+        near(bricks.lattice(), middle_G, within_mm),
+        [&](const VoxelIndex&, std::uint32_t slot) { made += bricks.fine().brick(slot).count > 0; });
     return made;
   };
   const Vec3 last_G = Vec3::Constant(223 * 0.13);
@@ -219,11 +227,8 @@ TEST(BoneBricks, NeitherTimeNorRoomGrowsWithTheScan) {
   std::mt19937 bits(3);
   for (int n = 0; n < 6000; ++n) {
     const Vec3 at_G(uniform(bits, 1, 999), uniform(bits, 1, 999), 510);
-    const auto meets = [&](const Vec3& middle_G, double radius_mm) {
-      return (middle_G - at_G).norm() < radius_mm + 0.1;
-    };
     int found = 0;
-    bricks.make_and_visit(meets, [&](const VoxelIndex&, std::uint32_t slot) {
+    bricks.make_and_visit(near(bricks.lattice(), at_G, 0.1), [&](const VoxelIndex&, std::uint32_t slot) {
       found += static_cast<int>(bricks.fine().brick(slot).count);
     });
     ASSERT_GT(found, 10) << n;

@@ -29,9 +29,15 @@ class BrickTree {
   explicit BrickTree(const std::array<int, 3>& brick_dims);
 
   std::uint32_t held(Place place) const { return held_[place]; }
-  /// Goes down the octree, leaving out every place for which `meets(level, node)` is false and all that hold
-  /// no surface, and calls `use(level, node, place)` for each unseen place and each brick with a slot, in a
-  /// fixed order. Creates nothing; if `use` opens a place, the walk goes on below it.
+  /// The eight nodes below one, a bit each in the order of `below`.
+  using EightBits = std::uint8_t;
+  static VoxelIndex below(const VoxelIndex& node, int n) {
+    return {2 * node.i + n % 2, 2 * node.j + n / 2 % 2, 2 * node.k + n / 4};
+  }
+  /// Goes down the octree, leaving out every place below `node` whose bit is not set in
+  /// `meets(level, node)` and all that hold no surface, and calls `use(level, node, place)` for each unseen
+  /// place and each brick with a slot, in a fixed order. Creates nothing; if `use` opens a place, the walk
+  /// goes on below it.
   template <typename Meets, typename Use>
   void visit(const Meets& meets, const Use& use) const {
     walk(levels_, {}, kRoot, meets, use);
@@ -55,13 +61,13 @@ class BrickTree {
   template <typename Meets, typename Use>
   void walk(int level, const VoxelIndex& node, std::uint32_t index, const Meets& meets,
             const Use& use) const {
+    const EightBits met = meets(level, node);
     --level;
     for (int n = 0; n < 8; ++n) {
-      const VoxelIndex below{2 * node.i + n % 2, 2 * node.j + n / 2 % 2, 2 * node.k + n / 4};
       const Place place = 8 * index + static_cast<Place>(n);
-      if (held_[place] == kNoBone || held_[place] == kBoneAlone || !meets(level, below)) continue;
-      if (level == 0 || held_[place] == kUnseen) use(level, below, place);
-      if (level > 0 && is_index(held_[place])) walk(level, below, held_[place], meets, use);
+      if ((met >> n & 1) == 0 || held_[place] == kNoBone || held_[place] == kBoneAlone) continue;
+      if (level == 0 || held_[place] == kUnseen) use(level, below(node, n), place);
+      if (level > 0 && is_index(held_[place])) walk(level, below(node, n), held_[place], meets, use);
     }
   }
 

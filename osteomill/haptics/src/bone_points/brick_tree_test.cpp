@@ -7,8 +7,8 @@
 namespace osteomill {
 namespace {
 
-bool everywhere(int, const VoxelIndex&) {
-  return true;
+BrickTree::EightBits everywhere(int, const VoxelIndex&) {
+  return 0xff;
 }
 
 // Gives every place above the bricks a node.

@@ -97,11 +97,6 @@ SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume
   }
 }
 
-Vec3 SurfaceLattice::middle_G(int level, const VoxelIndex& node) const {
-  const double half = 0.5 * brick_nodes_ * static_cast<double>(1 << level);
-  return step_mm_.cwiseProduct(half * Vec3(2 * node.i + 1, 2 * node.j + 1, 2 * node.k + 1) - Vec3::Ones());
-}
-
 float SurfaceLattice::density(const VoxelIndex& voxel) const {
   return volume_->grid().contains(voxel) ? volume_->grid()[voxel] : outside_;
 }

@@ -42,9 +42,17 @@ class SurfaceLattice {
   const Mat3& direction() const { return volume_->geometry().direction; }
 
   /// Middle, in the grid's frame, and radius of a sphere about a node of an octree over the bricks: 2^level
-  /// of them a side, the first at 2^level times `node`.
-  Vec3 middle_G(int level, const VoxelIndex& node) const;
+  /// of them a side, the first at 2^level times `node`. In half bricks from before_first_G the middle is at
+  /// half_bricks_to_middle.
+  Vec3 middle_G(int level, const VoxelIndex& node) const {
+    return before_first_G() + half_brick_mm().cwiseProduct(half_bricks_to_middle(level, node));
+  }
   double radius_mm(int level) const { return brick_radius_mm_ * static_cast<double>(1 << level); }
+  Vec3 half_brick_mm() const { return 0.5 * brick_nodes_ * step_mm_; }
+  Vec3 before_first_G() const { return -step_mm_; }
+  static Vec3 half_bricks_to_middle(int level, const VoxelIndex& node) {
+    return static_cast<double>(1 << level) * Vec3(2 * node.i + 1, 2 * node.j + 1, 2 * node.k + 1);
+  }
 
   /// Names what a node holds. A node without bone stays without; bone alone becomes surface as densities
   /// fall.
