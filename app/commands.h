@@ -9,7 +9,7 @@ namespace osteomill::app {
 class WindowDriver;
 
 /// Runs the program and returns its exit code. `driver`, if there is one, works the window of `simulate`.
-int run_program(int argc, char** argv, WindowDriver* driver = nullptr);
+int run_osteomill(int argc, char** argv, WindowDriver* driver = nullptr);
 
 /// Each adds a command to the program, which runs when the command line has been parsed. `command_line` is
 /// how the program was called, for recordings to say.

@@ -1,5 +1,5 @@
 #include "app/commands.h"
 
 int main(int argc, char** argv) {
-  return osteomill::app::run_program(argc, argv);
+  return osteomill::app::run_osteomill(argc, argv);
 }

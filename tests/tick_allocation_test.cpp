@@ -11,7 +11,7 @@
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/bone_follower.h"
-#include "osteomill/live/live_session.h"
+#include "osteomill/live/haptic_thread.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/bone_densities.h"
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
 
 // The whole loop of the haptic thread, with the hand-over to the follower, the vibration, and commands coming
 // in.
-TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
+TEST(TickAllocation, NoTickOfAHapticThreadAllocates) {
   constexpr double kBallRadius_mm = 6;
   const auto bone = std::make_shared<Volume>(testing_support::shape_volume(
       testing_support::centred_cube(64, 0.25), testing_support::ball(Vec3::Zero(), kBallRadius_mm)));
@@ -118,7 +118,7 @@ TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
   testing_support::ComingDown device(kBallRadius_mm + tool.burr_radius_mm - 0.3);
   device.X_WD.position_mm.z() = kBallRadius_mm + tool.burr_radius_mm + 1;
   BoneFollower follower(bone);
-  LiveSession live(std::move(session), device);
+  HapticThread live(std::move(session), device);
   std::atomic<int> ticks{0};
   std::atomic<long> allocations{-1};
   long before = 0;

@@ -21,7 +21,7 @@
 #include <unistd.h>
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/live/live_session.h"
+#include "osteomill/live/haptic_thread.h"
 
 #include "tests/coming_down.h"
 #include "tests/shapes.h"
@@ -72,8 +72,8 @@ struct End {
   bool replaces_its_session = false;
 };
 
-std::unique_ptr<LiveSession> live_on(const Volume& bone, Device& device) {
-  return std::make_unique<LiveSession>(
+std::unique_ptr<HapticThread> live_on(const Volume& bone, Device& device) {
+  return std::make_unique<HapticThread>(
       std::make_unique<MillingSession>(std::make_shared<Volume>(bone), BoneDensities{0, 1000},
                                        MillingSetup{.algorithm = algorithm_named("point-shell")}),
       device);
@@ -95,7 +95,7 @@ void overflow_the_stack() {
   const Volume bone = flat_bone();
   const CrashStop crash_stop;
   SharedDevice device(sent, end.haptic_thread);
-  std::unique_ptr<LiveSession> live = live_on(bone, device);
+  std::unique_ptr<HapticThread> live = live_on(bone, device);
   // As a program does that opens another bone: the new session is made while the old one is there.
   if (end.replaces_its_session) {
     live->start();
@@ -235,7 +235,7 @@ class HostTest : public ::testing::Test {
  protected:
   // Some ticks of a live session while `signals` come.
   void run(const std::function<void()>& signals) {
-    const std::unique_ptr<LiveSession> live = live_on(bone_, device_);
+    const std::unique_ptr<HapticThread> live = live_on(bone_, device_);
     live->start();
     signals();
     const auto ticks = live->timing().ticks;

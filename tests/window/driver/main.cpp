@@ -29,5 +29,5 @@ int main(int argc, char** argv) {
   }
   const int count = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);
-  return osteomill::app::run_program(count, arguments.data(), script ? &*script : nullptr);
+  return osteomill::app::run_osteomill(count, arguments.data(), script ? &*script : nullptr);
 }

@@ -68,7 +68,7 @@ class BoneFollower {
   std::vector<double> drops_by_label() const;
 
   /// Puts what has arrived into the copy. Returns true if nothing is left to come, so that the copy is the
-  /// bone, provided that the bone is held (LiveSession::hold_bone).
+  /// bone, provided that the bone is held (HapticThread::hold_bone).
   bool catch_up();
 
   /// The copy, made ready to become the bone.

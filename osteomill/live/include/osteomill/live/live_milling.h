@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "osteomill/live/bone_follower.h"
-#include "osteomill/live/live_session.h"
+#include "osteomill/live/haptic_thread.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/session/milling_setup.h"
 
@@ -45,11 +45,11 @@ class LiveMilling {
   LiveMilling(std::shared_ptr<Volume> bone, const MillingSetup& setup, Device& device)
       : LiveMilling(prepare_milling(std::move(bone), setup), device) {}
 
-  /// Starts the haptic thread, as LiveSession::start does, failures included.
+  /// Starts the haptic thread, as HapticThread::start does, failures included.
   void start();
   void stop() { live_.stop(); }
   bool running() const { return live_.running(); }
-  /// Returns the exception with which the device ended the milling (LiveSession::failure).
+  /// Returns the exception with which the device ended the milling (HapticThread::failure).
   std::exception_ptr failure() const { return live_.failure(); }
 
   /// Puts in place what has been prepared. Has to be called often, as once a picture. Throws what a
@@ -63,7 +63,7 @@ class LiveMilling {
   void set_spindle(bool on);
   bool spindle_asked() const { return spindle_; }
   void set_paused(bool paused) { live_.set_paused(paused); }
-  /// Brings the tool and its device to a pose free of bone (LiveSession::place).
+  /// Brings the tool and its device to a pose free of bone (HapticThread::place).
   void place(const Pose& X_WD) { live_.place(X_WD); }
   bool placing() const { return live_.placing(); }
   /// Begins to prepare another algorithm, tool or setting. Returns false, as do the functions below, if
@@ -99,7 +99,7 @@ class LiveMilling {
   bool recording_failed() const { return recorder_ && recorder_->failed(); }
 
   const LiveState& state() { return live_.state(); }
-  /// Every tick in turn (LiveSession::next_record).
+  /// Every tick in turn (HapticThread::next_record).
   std::optional<TickRecord> next_record() { return live_.next_record(); }
   TimingSummary timing() const { return live_.timing(); }
   const std::string& refused_real_time() const { return live_.refused_real_time(); }
@@ -142,7 +142,7 @@ class LiveMilling {
   RunDescription recorded_;
   // The first session that is recorded.
   std::uint32_t recorded_from_ = 0;
-  LiveSession live_;
+  HapticThread live_;
   // Held to start, and to hand over changes while no haptic thread does: they come from one thread at a time.
   std::mutex no_tick_mutex_;
   // After `live_`, so that it is waited for while the bone is still milled.

@@ -22,7 +22,7 @@ namespace osteomill {
 /// it to NAME.part-1.h5, or the first number that is free (`kept`); one that is still being written by
 /// another program is left alone, and the recorder cannot be made.
 ///
-/// If several sessions follow each other on a bone (LiveSession::replace), `begin_session` is told of each;
+/// If several sessions follow each other on a bone (HapticThread::replace), `begin_session` is told of each;
 /// the number in a record names its session.
 ///
 /// One thread pushes; another (or the same) makes, closes and destroys the recorder, after the last push.

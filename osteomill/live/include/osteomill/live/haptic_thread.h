@@ -22,7 +22,7 @@ namespace osteomill {
 /// it changed. Must keep to the rules of the tick: no allocation, lock, log, exception or system call.
 using TickListener = std::function<void(const TickRecord&, const Volume&, const VolumeChange&)>;
 
-/// The state of the haptic thread.
+/// The state after a tick.
 struct LiveState {
   TickRecord record;
   bool spindle_on = false;
@@ -30,17 +30,18 @@ struct LiveState {
   std::optional<Vec3> intersection_W = {};
 };
 
-/// A milling session in real time: a thread of its own ticks it at 1 kHz, with real-time scheduling if the
-/// system allows it. Nothing that other threads do makes a tick wait.
+/// The thread that ticks a milling session at 1 kHz in real time, with real-time scheduling if the system
+/// allows it. Nothing that other threads do makes a tick wait. LiveMilling is what most programs want: it
+/// runs one of these and adds undo, recordings and changes of algorithm, tool and bone.
 ///
 /// One other thread commands and reads the state (the window's). Commands take effect between two ticks and
 /// return when they have, a tick or two later. On stopping, however it comes about, the device is sent a
 /// wrench of zero; so it is when the process ends by a signal, if the program has asked for that
 /// (CrashStop).
-class LiveSession {
+class HapticThread {
  public:
   /// `device` outlives this object. Does not start yet.
-  LiveSession(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {});
+  HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {});
 
   /// Starts the haptic thread and returns when it runs; does nothing if it runs already. Throws
   /// std::system_error if the system gives no thread: the session is then not running, and can be started

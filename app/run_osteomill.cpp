@@ -188,7 +188,7 @@ int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
 
 }  // namespace
 
-int osteomill::app::run_program(int argc, char** argv, WindowDriver* driver) {
+int osteomill::app::run_osteomill(int argc, char** argv, WindowDriver* driver) {
   open_closed_streams();
   // A file as long as a limit allows, or a pipe whose reader has gone, is one that cannot be written, as on a
   // full disk.

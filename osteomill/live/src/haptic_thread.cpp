@@ -1,4 +1,4 @@
-#include "osteomill/live/live_session.h"
+#include "osteomill/live/haptic_thread.h"
 
 #include <algorithm>
 #include <chrono>
@@ -18,10 +18,10 @@ constexpr double kMaxLate_s = 0.02 - kTick_s;
 
 }  // namespace
 
-LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device, TickClock clock)
+HapticThread::HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock)
     : clock_(std::move(clock)), device_(device), driven_(device), session_(std::move(session)) {}
 
-void LiveSession::start() {
+void HapticThread::start() {
   if (running()) return;
   stop();
   failure_ = nullptr;
@@ -41,13 +41,13 @@ void LiveSession::start() {
   while (!ready.load(std::memory_order_acquire)) std::this_thread::sleep_for(100us);
 }
 
-void LiveSession::stop() {
+void HapticThread::stop() {
   thread_.request_stop();
   if (thread_.joinable()) thread_.join();
 }
 
 // Commands swap what they replace into the commanding thread's hands, so that it is destroyed there.
-void LiveSession::between_ticks(const std::function<void()>& command) {
+void HapticThread::between_ticks(const std::function<void()>& command) {
   command_.store(&command, std::memory_order_release);
   while (command_.load(std::memory_order_acquire) != nullptr) {
     if (!running()) {
@@ -60,26 +60,26 @@ void LiveSession::between_ticks(const std::function<void()>& command) {
   }
 }
 
-void LiveSession::take_command() {
+void HapticThread::take_command() {
   const auto* const command = command_.load(std::memory_order_acquire);
   if (command == nullptr) return;
   (*command)();
   command_.store(nullptr, std::memory_order_release);
 }
 
-void LiveSession::set_spindle(bool on) {
+void HapticThread::set_spindle(bool on) {
   between_ticks([&] { spindle_ = on; });
 }
 
-void LiveSession::set_paused(bool paused) {
+void HapticThread::set_paused(bool paused) {
   between_ticks([&] { paused_ = paused; });
 }
 
-void LiveSession::hold_bone(bool held) {
+void HapticThread::hold_bone(bool held) {
   between_ticks([&] { bone_held_ = held; });
 }
 
-TakenOver LiveSession::replace(std::unique_ptr<MillingSession> session) {
+TakenOver HapticThread::replace(std::unique_ptr<MillingSession> session) {
   TakenOver left;
   between_ticks([&] {
     std::swap(session_, session);
@@ -91,7 +91,7 @@ TakenOver LiveSession::replace(std::unique_ptr<MillingSession> session) {
   return left;
 }
 
-void LiveSession::place(const Pose& X_WD) {
+void HapticThread::place(const Pose& X_WD) {
   if (placing()) return;
   placing_.store(true, std::memory_order_release);
   between_ticks([&] {
@@ -101,11 +101,11 @@ void LiveSession::place(const Pose& X_WD) {
   });
 }
 
-void LiveSession::listen(TickListener listener) {
+void HapticThread::listen(TickListener listener) {
   between_ticks([&] { std::swap(listener_, listener); });
 }
 
-void LiveSession::run(const std::stop_token& stop) noexcept {
+void HapticThread::run(const std::stop_token& stop) noexcept {
   driven_.started();
   session_->hold_back();
   try {
@@ -122,7 +122,7 @@ void LiveSession::run(const std::stop_token& stop) noexcept {
   running_.store(false, std::memory_order_release);
 }
 
-void LiveSession::tick_until(const std::stop_token& stop) {
+void HapticThread::tick_until(const std::stop_token& stop) {
   constexpr Nanoseconds kTick_ns = 1'000'000;
   NextDeadline next{clock_.now_ns() + kTick_ns, 1};
   while (!stop.stop_requested() && !driven_.end_asked()) {
@@ -137,7 +137,7 @@ void LiveSession::tick_until(const std::stop_token& stop) {
   }
 }
 
-std::optional<TickRecord> LiveSession::next_record() {
+std::optional<TickRecord> HapticThread::next_record() {
   TickRecord record;
   if (!records_.try_pop(record)) return std::nullopt;
   return record;
@@ -145,13 +145,13 @@ std::optional<TickRecord> LiveSession::next_record() {
 
 // Again at every tick until one has placed the tool, since the session may be replaced meanwhile and the
 // device may give no pose for a while.
-void LiveSession::place_when_at_rest() {
+void HapticThread::place_when_at_rest() {
   if (!letting_go_ || !session_->guard().is_at_rest()) return;
   device_.put_at(X_WD_place_);
   session_->place();
 }
 
-TickRecord LiveSession::tick(double late_s) {
+TickRecord HapticThread::tick(double late_s) {
   place_when_at_rest();
   const bool spindle_on = !paused_ && !letting_go_ && (spindle_ || device_.spindle_asked());
   TickRecord record = session_->tick(device_, {.time_s = time_s_,

@@ -1,4 +1,4 @@
-#include "osteomill/live/live_session.h"
+#include "osteomill/live/haptic_thread.h"
 
 #include <atomic>
 #include <chrono>
@@ -59,7 +59,7 @@ std::unique_ptr<MillingSession> session_on(std::shared_ptr<Volume> bone, std::st
                                           MillingSetup{.algorithm = algorithm_named(algorithm)});
 }
 
-class LiveSessionTest : public ::testing::Test {
+class HapticThreadTest : public ::testing::Test {
  protected:
   bool pushes() {
     return comes_true([&] { return live_.state().record.wrench.force_N.z() > 0; });
@@ -67,10 +67,10 @@ class LiveSessionTest : public ::testing::Test {
 
   std::shared_ptr<Volume> bone_ = std::make_shared<Volume>(half_space());
   PressedDevice device_;
-  LiveSession live_{session_on(bone_, "point-shell"), device_};
+  HapticThread live_{session_on(bone_, "point-shell"), device_};
 };
 
-TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
+TEST_F(HapticThreadTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   live_.start();
   EXPECT_TRUE(pushes());
   EXPECT_TRUE(comes_true([&] { return live_.state().record.contacts > 0; }));
@@ -90,7 +90,7 @@ TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
 }
 
 // On a clock that is set, so that it takes no time and holds to the nanosecond.
-TEST(LiveSessionOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
+TEST(HapticThreadOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
   std::atomic<Nanoseconds> now_ns{0};
   const TickClock clock{[&] { return now_ns.load(); },
                         [&](Nanoseconds deadline_ns) {
@@ -107,7 +107,7 @@ TEST(LiveSessionOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
     std::atomic<Nanoseconds>& now_ns;
   } device(now_ns);
   device.throw_at_tick = 30;
-  LiveSession live(session_on(std::make_shared<Volume>(half_space()), "line-proxy"), device, clock);
+  HapticThread live(session_on(std::make_shared<Volume>(half_space()), "line-proxy"), device, clock);
   live.start();
   ASSERT_TRUE(comes_true([&] { return !live.running(); }));
   live.stop();
@@ -116,7 +116,7 @@ TEST(LiveSessionOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
   EXPECT_NEAR(device.time_passed_s, 0.032, 1e-9);
 }
 
-TEST_F(LiveSessionTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
+TEST_F(HapticThreadTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
   GridGeometry geometry;
   geometry.dims = {256, 256, 256};
   const Volume scan(DensityGrid(geometry, std::vector<float>(256 * 256 * 256, 1000.0f)), 500);
@@ -130,7 +130,7 @@ TEST_F(LiveSessionTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
   }
 }
 
-TEST_F(LiveSessionTest, RecordsComeInOrder) {
+TEST_F(HapticThreadTest, RecordsComeInOrder) {
   live_.start();
   std::this_thread::sleep_for(100ms);
   live_.stop();
@@ -144,7 +144,7 @@ TEST_F(LiveSessionTest, RecordsComeInOrder) {
   EXPECT_EQ(count, live_.timing().ticks);
 }
 
-TEST_F(LiveSessionTest, WhatIsToBePlacedIsPlacedByTheSessionThatTicksThen) {
+TEST_F(HapticThreadTest, WhatIsToBePlacedIsPlacedByTheSessionThatTicksThen) {
   live_.start();
   EXPECT_TRUE(pushes());
   device_.gives_pose = false;
@@ -161,7 +161,7 @@ TEST_F(LiveSessionTest, WhatIsToBePlacedIsPlacedByTheSessionThatTicksThen) {
   live_.stop();
 }
 
-TEST_F(LiveSessionTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
+TEST_F(HapticThreadTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   live_.start();
   live_.set_spindle(true);
   EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > 0; }));
@@ -178,7 +178,7 @@ TEST_F(LiveSessionTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   EXPECT_NE(bone_->grid().densities(), held);
 }
 
-TEST_F(LiveSessionTest, APauseSendsZeroAndKeepsTheTool) {
+TEST_F(HapticThreadTest, APauseSendsZeroAndKeepsTheTool) {
   live_.start();
   EXPECT_TRUE(pushes());
   live_.set_spindle(true);
@@ -192,7 +192,7 @@ TEST_F(LiveSessionTest, APauseSendsZeroAndKeepsTheTool) {
 }
 
 // Without ticks the hand may have sunk.
-TEST_F(LiveSessionTest, StartedAgainInBoneItIsHeldBack) {
+TEST_F(HapticThreadTest, StartedAgainInBoneItIsHeldBack) {
   live_.start();
   EXPECT_TRUE(pushes());
   live_.stop();
@@ -211,7 +211,7 @@ TEST_F(LiveSessionTest, StartedAgainInBoneItIsHeldBack) {
   EXPECT_TRUE(pushes());
 }
 
-TEST_F(LiveSessionTest, AnAlgorithmPreparedElsewhereTakesOver) {
+TEST_F(HapticThreadTest, AnAlgorithmPreparedElsewhereTakesOver) {
   live_.start();
   EXPECT_TRUE(pushes());
   live_.hold_bone(true);
@@ -230,7 +230,7 @@ TEST_F(LiveSessionTest, AnAlgorithmPreparedElsewhereTakesOver) {
   EXPECT_EQ(live_.state().record.removed_mm3, removed_mm3);
 }
 
-TEST_F(LiveSessionTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
+TEST_F(HapticThreadTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
   struct Heard {
     int ticks = 0;
     VoxelBox changed;
@@ -264,7 +264,7 @@ TEST_F(LiveSessionTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
   EXPECT_GT(outside, 50000);
 }
 
-TEST_F(LiveSessionTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
+TEST_F(HapticThreadTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
   device_.throw_at_tick = 500;
   live_.start();
   EXPECT_TRUE(comes_true([&] { return !live_.running(); }));
@@ -276,7 +276,7 @@ TEST_F(LiveSessionTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-TEST_F(LiveSessionTest, AStartThatFailsLeavesASessionThatCanBeStarted) {
+TEST_F(HapticThreadTest, AStartThatFailsLeavesASessionThatCanBeStarted) {
   {
     const testing_support::NoMoreThreads none;
     EXPECT_THROW(live_.start(), std::system_error);
