@@ -38,12 +38,12 @@ constexpr double kEnergyRounding = 1e-6;
 constexpr double kNoRise = 1e-5;
 
 // The most that the tool moves between two gatherings, and what a gathering reaches for.
-constexpr Room kMaxRoom{0.4, 0.03};
-constexpr Room kMinRoom{0.05, 0.004};
-constexpr Room kRoomToSpare{0.03, 0.002};
-constexpr double kRoomPerMove = 3;
+constexpr MoveSize kMaxLeeway{0.4, 0.03};
+constexpr MoveSize kMinLeeway{0.05, 0.004};
+constexpr MoveSize kLeewayToSpare{0.03, 0.002};
+constexpr double kLeewayPerMove = 3;
 // In free space: farther than the fastest hand goes in a tick.
-constexpr Room kFarthestFlight{5.0, 0.3};
+constexpr MoveSize kFarthestFlight{5.0, 0.3};
 
 // For a tool that begins in touch with bone: its cores are first made so small that the nearest point lies
 // kStartShare of the skin's width away. They then grow at up to kGrowth_mm_s, as long as the nearest point
@@ -59,11 +59,11 @@ constexpr double kFastestHand_mm_s = 1000;
 constexpr double kFastestHand_rad_s = 100;
 constexpr double kRamp_s = 0.2;
 
-Room room_of(const ToolMove& move) {
+MoveSize size_of(const ToolMove& move) {
   return {move.translation_mm.norm(), move.rotation_rad.norm()};
 }
 
-Room room_of(const Vector6& move_T) {
+MoveSize size_of(const Vector6& move_T) {
   return {move_T.head<3>().norm(), move_T.tail<3>().norm()};
 }
 
@@ -210,9 +210,9 @@ void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
   has_energy_ = false;
 }
 
-void BarrierShell::gather(const Pose& X_WT, const Room& room) {
-  room_ = room_left_ = room;
-  near_.gather(bricks_, cores(), barrier_.width_mm, X_WT, room);
+void BarrierShell::gather(const Pose& X_WT, const MoveSize& leeway) {
+  leeway_ = leeway_left_ = leeway;
+  near_.gather(bricks_, cores(), barrier_.width_mm, X_WT, leeway);
 }
 
 BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) {
@@ -241,7 +241,7 @@ void BarrierShell::watch_energy(const State& state) {
 // Nothing near, nothing held back, and free space all the way.
 bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) {
   const ToolMove move = move_between(X_WT_, X_WD);
-  const Room way = room_of(move);
+  const MoveSize way = size_of(move);
   return near_.is_empty() && share_within(bound, move) >= 1 && way.move_mm <= kFarthestFlight.move_mm &&
          way.turn_rad <= kFarthestFlight.turn_rad &&
          look_if_clear(bricks_, cores(), barrier_.width_mm, X_WT_, way);
@@ -249,16 +249,17 @@ bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) {
 
 void BarrierShell::gather_for_next_move() {
   const auto reach = [](double last, double spare, double min, double max) {
-    return std::clamp(kRoomPerMove * last + spare, min, max);
+    return std::clamp(kLeewayPerMove * last + spare, min, max);
   };
-  gather(X_WT_, {reach(last_move_.move_mm, kRoomToSpare.move_mm, kMinRoom.move_mm, kMaxRoom.move_mm),
-                 reach(last_move_.turn_rad, kRoomToSpare.turn_rad, kMinRoom.turn_rad, kMaxRoom.turn_rad)});
+  gather(X_WT_,
+         {reach(last_move_.move_mm, kLeewayToSpare.move_mm, kMinLeeway.move_mm, kMaxLeeway.move_mm),
+          reach(last_move_.turn_rad, kLeewayToSpare.turn_rad, kMinLeeway.turn_rad, kMaxLeeway.turn_rad)});
 }
 
-// The share of a step for which there is room since the gathering.
-double BarrierShell::share_with_room(const Room& step) const {
-  const double move = step.move_mm > room_left_.move_mm ? room_left_.move_mm / step.move_mm : 1;
-  const double turn = step.turn_rad > room_left_.turn_rad ? room_left_.turn_rad / step.turn_rad : 1;
+// The share of a step for which the gathering gave leeway.
+double BarrierShell::share_with_leeway(const MoveSize& step) const {
+  const double move = step.move_mm > leeway_left_.move_mm ? leeway_left_.move_mm / step.move_mm : 1;
+  const double turn = step.turn_rad > leeway_left_.turn_rad ? leeway_left_.turn_rad / step.turn_rad : 1;
   return std::max(0.0, std::min(move, turn));
 }
 
@@ -271,22 +272,22 @@ NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   Vector6 so_far_T;
   so_far_T << to_T * moved, to_T * turned;
   NewtonStep step = newton_step(best.sum, coupling_, so_far_T, bound);
-  const Room wanted = room_of(step.move_T);
+  const MoveSize wanted = size_of(step.move_T);
   step.is_last = wanted.move_mm <= kDone_mm && wanted.turn_rad <= kDone_rad;
   // Nothing is summed after it: back from the rim of a ball, where the damping is a little too much, it
   // stays.
   const Vector6 slope = best.sum.gradient + 0.5 * (best.sum.convex + best.sum.rest) * step.move_T;
   if (step.is_last && slope.dot(step.move_T) > 0) step.move_T.setZero();
-  if (!step.is_last && share_with_room(wanted) < 1 && room_.move_mm < kMaxRoom.move_mm) {
-    gather(best.X_WT, kMaxRoom);
+  if (!step.is_last && share_with_leeway(wanted) < 1 && leeway_.move_mm < kMaxLeeway.move_mm) {
+    gather(best.X_WT, kMaxLeeway);
     near_.measure(cores(), barrier_, best.X_WT, measured_);
   }
   if (near_.is_incomplete()) return {.move_T = Vector6::Zero(), .is_last = true};
-  const double with_room = share_with_room(wanted);
-  step.move_T *= with_room;
+  const double within_leeway = share_with_leeway(wanted);
+  step.move_T *= within_leeway;
   const double certified = certified_share(measured_.max_use(step.move_T, barrier_));
   step.move_T *= certified;
-  step.reaches_device = best.sum.touching == 0 && !step.is_damped && with_room >= 1 && certified >= 1;
+  step.reaches_device = best.sum.touching == 0 && !step.is_damped && within_leeway >= 1 && certified >= 1;
   return step;
 }
 
@@ -316,8 +317,8 @@ BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
       ++passes;
       taken = trial.sum.energy_Nmm <= best.sum.energy_Nmm * (1 + kEnergyRounding);
       if (taken) {
-        room_left_.move_mm -= step.move_T.head<3>().norm();
-        room_left_.turn_rad -= step.move_T.tail<3>().norm();
+        leeway_left_.move_mm -= step.move_T.head<3>().norm();
+        leeway_left_.turn_rad -= step.move_T.tail<3>().norm();
         best = trial;
       } else {
         step.move_T *= kShorter;
@@ -331,7 +332,7 @@ BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
 }
 
 HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_s) {
-  const Room device = room_of(move_between(X_WD_before_, X_WD));
+  const MoveSize device = size_of(move_between(X_WD_before_, X_WD));
   if (device.move_mm > std::max(kJump_mm, kFastestHand_mm_s * dt_s) ||
       device.turn_rad > std::max(kJump_rad, kFastestHand_rad_s * dt_s)) {
     ramp_ = 0;
@@ -376,7 +377,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
     has_energy_ = true;
     near_.find_bearing(measured_, barrier_.width_mm, bricks_);
     grow_cores(state.sum.nearest_mm, dt_s);
-    last_move_ = room_of(move_between(start, X_WT_));
+    last_move_ = size_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);
   }
   result.owed_bricks = static_cast<int>(bricks_.owed());

@@ -54,10 +54,10 @@ class BarrierShell final : public HapticAlgorithm {
   void grow_cores(double nearest_mm, double dt_s);
   Cores cores() const;
   State evaluated(const Pose& X_WT, const Pose& X_WD);
-  void gather(const Pose& X_WT, const Room& room);
+  void gather(const Pose& X_WT, const MoveSize& leeway);
   void gather_for_next_move();
   bool may_fly(const Pose& X_WD, const MoveBound& bound);
-  double share_with_room(const Room& step) const;
+  double share_with_leeway(const MoveSize& step) const;
   NewtonStep next_step(const State& best, const MoveBound& bound);
   static Pose after(const State& best, const NewtonStep& step, const Pose& X_WD);
   State solve(const Pose& X_WD, double dt_s);
@@ -78,10 +78,10 @@ class BarrierShell final : public HapticAlgorithm {
   Pose X_WT_;
   Pose X_WD_before_;
   // The tool's way in the last tick, which the next gathering reaches for.
-  Room last_move_;
-  // The room that the last gathering gave, and what is left of it.
-  Room room_;
-  Room room_left_;
+  MoveSize last_move_;
+  // The leeway that the last gathering gave, and what is left of it.
+  MoveSize leeway_;
+  MoveSize leeway_left_;
   // Began inside bone and has not yet been outside: with the device, and nothing is felt.
   bool carried_ = false;
   // True once all bone about it was known: until then it stands still.

@@ -81,15 +81,18 @@ class ReachedNodes {
 
 }  // namespace
 
-NearBone::NearBone(std::size_t room, bool fine_at_cylinder)
-    : fine_at_cylinder_(fine_at_cylinder), bricks_(room > 0 ? kBricks : 0), ball_(room), cylinder_(room) {}
+NearBone::NearBone(std::size_t capacity, bool fine_at_cylinder)
+    : fine_at_cylinder_(fine_at_cylinder),
+      bricks_(capacity > 0 ? kBricks : 0),
+      ball_(capacity),
+      cylinder_(capacity) {}
 
 void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-                      const Room& room) noexcept {
+                      const MoveSize& leeway) noexcept {
   X_WT_gathered_ = X_WT;
   const BrickPoints& at_cylinder = fine_at_cylinder_ ? bricks.fine() : bricks.coarse();
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
-  const Reach reach{cores, reach_mm + room.move_mm, room.turn_rad};
+  const Reach reach{cores, reach_mm + leeway.move_mm, leeway.turn_rad};
   const auto gather_brick = [&](const VoxelIndex& brick, std::uint32_t slot) {
     if (brick_count_ < bricks_.size()) bricks_[brick_count_++] = {slot, ball_.count, cylinder_.count};
     const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G(brick);
@@ -147,9 +150,9 @@ double MeasuredBone::max_use(const Vector6& move_T, const Barrier& barrier) cons
 }
 
 bool look_if_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-                   const Room& room) noexcept {
+                   const MoveSize& leeway) noexcept {
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
-  const Reach reach{cores, reach_mm + room.move_mm, room.turn_rad};
+  const Reach reach{cores, reach_mm + leeway.move_mm, leeway.turn_rad};
   return !bricks.look_for_points(ReachedNodes(bricks.lattice(), X_TG, reach));
 }
 

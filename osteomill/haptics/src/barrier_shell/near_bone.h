@@ -9,8 +9,9 @@
 
 namespace osteomill::barrier_shell {
 
-/// The room for the tool to move in before points have to be gathered again.
-struct Room {
+/// The size of a move: how far, and by which angle. The leeway of gathered points is the greatest move for
+/// which they suffice.
+struct MoveSize {
   double move_mm = 0;
   double turn_rad = 0;
 };
@@ -18,7 +19,7 @@ struct Room {
 /// The bone near the tool's parts as measured from one pose.
 struct MeasuredBone {
   /// Makes room for as many points at each part as NearBone has.
-  explicit MeasuredBone(std::size_t room = 0) : ball(room), cylinder(room) {}
+  explicit MeasuredBone(std::size_t capacity = 0) : ball(capacity), cylinder(capacity) {}
 
   MeasuredPoints ball;
   MeasuredPoints cylinder;
@@ -27,18 +28,18 @@ struct MeasuredBone {
   double max_use(const Vector6& move_T, const Barrier& barrier) const noexcept;
 };
 
-/// The bone near a tool's ball and cylinder: gathered once and then good for every pose that the room allows.
+/// The bone near a tool's ball and cylinder: gathered once and then good for every pose within its leeway.
 /// Safe in the haptic tick.
 class NearBone {
  public:
-  /// Makes room for `room` points at each part. The ball meets the bricks' fine points; the cylinder meets
-  /// the coarse ones, or the fine ones if `fine_at_cylinder`.
-  explicit NearBone(std::size_t room = 0, bool fine_at_cylinder = false);
+  /// Makes room for `capacity` points at each part. The ball meets the bricks' fine points; the cylinder
+  /// meets the coarse ones, or the fine ones if `fine_at_cylinder`.
+  explicit NearBone(std::size_t capacity = 0, bool fine_at_cylinder = false);
 
-  /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
+  /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the leeway.
   /// Makes bricks, as many as a tick may.
   void gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-              const Room& room) noexcept;
+              const MoveSize& leeway) noexcept;
   /// Returns whether a point may have been left out, for want of room or because its brick is not made yet:
   /// the tool must not move then.
   bool is_incomplete() const noexcept { return brick_missing_ || ball_.overflowed || cylinder_.overflowed; }
@@ -46,7 +47,7 @@ class NearBone {
   /// Returns how many points a sum goes through.
   std::size_t point_count() const noexcept { return ball_.count + cylinder_.count; }
 
-  /// Measures the points from a pose within the room of the last gathering.
+  /// Measures the points from a pose within the leeway of the last gathering.
   void measure(const Cores& cores, const Barrier& barrier, const Pose& X_WT,
                MeasuredBone& measured) const noexcept;
   /// Lists in `bricks` those that bear the tool: with points that were measured nearer than `within_mm` to a
@@ -71,9 +72,9 @@ class NearBone {
   NearPoints cylinder_;
 };
 
-/// Looks for bone within `reach_mm` of the tool at `X_WT` or anywhere within the room, and returns whether
+/// Looks for bone within `reach_mm` of the tool at `X_WT` or anywhere within the leeway, and returns whether
 /// there is surely none. Makes no bricks.
 bool look_if_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-                   const Room& room) noexcept;
+                   const MoveSize& leeway) noexcept;
 
 }  // namespace osteomill::barrier_shell

@@ -69,7 +69,7 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
                        const IsNear& is_near, NearPoints& near) {
   for (std::uint32_t c = first_chunk; c != BrickPoints::kNoChunk; c = points.next_chunk(c)) {
     const PointChunk& chunk = points.chunk(c);
-    if (near.count + PointChunk::kSlots + kGroup > near.room()) {
+    if (near.count + PointChunk::kSlots + kGroup > near.capacity()) {
       near.overflowed = true;
       return;
     }

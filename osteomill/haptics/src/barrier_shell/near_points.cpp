@@ -118,13 +118,13 @@ void add_point(EnergySum& sum, const Barrier::Value& push, const Vec3& point_T,
   sum.rest.bottomLeftCorner<3, 3>() += p * cross(n);
 }
 
-NearPoints::NearPoints(std::size_t room) {
-  for (std::vector<float>* row : {&x, &y, &z, &area}) row->resize(room);
+NearPoints::NearPoints(std::size_t capacity) {
+  for (std::vector<float>* row : {&x, &y, &z, &area}) row->resize(capacity);
 }
 
-MeasuredPoints::MeasuredPoints(std::size_t room) {
-  for (std::vector<float>* row : {&distance, &out_x, &out_y, &out_z, &x, &y, &z}) row->resize(room);
-  at_end.resize(room);
+MeasuredPoints::MeasuredPoints(std::size_t capacity) {
+  for (std::vector<float>* row : {&distance, &out_x, &out_y, &out_z, &x, &y, &z}) row->resize(capacity);
+  at_end.resize(capacity);
 }
 
 Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept {

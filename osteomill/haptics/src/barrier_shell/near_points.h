@@ -16,8 +16,8 @@ struct NearPoints {
   /// Sums run in so many lanes whatever the width of the machine's registers, and so have the same bits.
   static constexpr std::size_t kLanes = 16;
 
-  explicit NearPoints(std::size_t room);
-  std::size_t room() const { return area.size(); }
+  explicit NearPoints(std::size_t capacity);
+  std::size_t capacity() const { return area.size(); }
 
   std::size_t count = 0;
   /// True if points found no room.
@@ -29,7 +29,7 @@ struct NearPoints {
 /// tool, and for each point its distance to the part and the direction out of it. `x`, `y` and `z` hold the
 /// places of points near the cylinder alone.
 struct MeasuredPoints {
-  explicit MeasuredPoints(std::size_t room);
+  explicit MeasuredPoints(std::size_t capacity);
 
   EnergySum sum;
   std::size_t count = 0;
