@@ -95,8 +95,8 @@ void add_other_grips(std::vector<TrialPlan>& others, const TrialPlan& trial) {
   for (const TrialPlan& grip : trials_in_other_grips(trial)) others.push_back(grip);
 }
 
-std::vector<MeasuredRun> try_other_hands(const CompareOptions& options,
-                                         const std::vector<TrialPlan>& trials) {
+// The trials beside those that are recorded.
+std::vector<TrialPlan> other_hands(const CompareOptions& options, const std::vector<TrialPlan>& trials) {
   std::vector<TrialPlan> others;
   for (const TrialPlan& trial : trials) add_other_grips(others, trial);
   for (int n = 1; n < options.seeds; ++n) {
@@ -106,14 +106,30 @@ std::vector<MeasuredRun> try_other_hands(const CompareOptions& options,
       add_other_grips(others, other);
     }
   }
-  return run_study_trials(others, static_cast<std::size_t>(options.threads), events_on_terminal());
+  return others;
 }
 
-std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
+// Events whose progress is that of a part of the whole, between two shares.
+RunEvents events_of_a_part(double from, double to) {
+  RunEvents events = events_on_terminal();
+  events.progress = [=](std::string_view what, double fraction) {
+    show_progress(what, from + (to - from) * fraction);
+  };
+  return events;
+}
+
+void probe_algorithms(std::vector<TrialPlan>& trials) {
+  const MillingTool& tool = trials.front().settings.tool;
+  const Volume wall = flat_wall(tool), edge = sharp_edge(tool);
+  for (TrialPlan& trial : trials) trial.probed = probe(trial.settings, wall, edge);
+}
+
+std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings,
+                                         const RunEvents& events) {
   const Volume wall = flat_wall(settings.tool);
   std::vector<PassivityRow> rows = run_trials(
       passivity_cases(options.algorithms, settings), "stability", static_cast<std::size_t>(options.threads),
-      events_on_terminal(), [&](const TrialSettings& device) { return measure_passivity(device, wall); });
+      events, [&](const TrialSettings& device) { return measure_passivity(device, wall); });
   end_progress();
   return rows;
 }
@@ -123,19 +139,32 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const LoadedBone bone = load_bone(options.scan);
   std::vector<TrialPlan> trials = trials_of(options, bone, command_line);
   if (options.match_stiffness) match_stiffness(options, trials);
+  probe_algorithms(trials);
   const EntryPictures pictures(bone.volume, trials.front().densities.reference, trials.front().entry,
                                events_on_terminal(), !options.scan.scan.empty());
   std::vector<fs::path> paths;
   ReportExtras extras;
+  // The walls take about as long as the first hand's trials.
+  const std::vector<TrialPlan> others = other_hands(options, trials);
+  const double threads = options.threads;
+  const double recorded = static_cast<double>(trials.size()), walls = options.no_stability ? 0 : recorded;
+  const double whole = recorded + (static_cast<double>(others.size()) + walls) / threads;
   // What an earlier comparison left there goes when this one is done, and not before.
   write_folder_atomically(
       options.out,
       [&](const fs::path& beside) {
-        for (const TrialPlan& trial : trials)
-          for (const fs::path& path : record_trial(trial, pictures, beside, events_on_terminal()))
+        for (std::size_t n = 0; n < trials.size(); ++n) {
+          const double begun = static_cast<double>(n);
+          for (const fs::path& path : record_trial(trials[n], pictures, beside,
+                                                   events_of_a_part(begun / whole, (begun + 1) / whole)))
             paths.push_back(options.out / path.filename());
-        extras.others = try_other_hands(options, trials);
-        if (!options.no_stability) extras.passivity = press_on_walls(options, trials.front().settings);
+        }
+        extras.others = run_study_trials(others, static_cast<std::size_t>(options.threads),
+                                         events_of_a_part(recorded / whole, 1 - walls / threads / whole));
+        if (!options.no_stability) {
+          extras.passivity = press_on_walls(options, trials.front().settings,
+                                            events_of_a_part(1 - walls / threads / whole, 1));
+        }
       },
       is_of_a_comparison);
   std::vector<Recording> recordings;

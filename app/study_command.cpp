@@ -14,6 +14,7 @@
 #include "osteomill/base/file_lock.h"
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/machine.h"
+#include "osteomill/study/page.h"
 #include "osteomill/study/study_report.h"
 #include "osteomill/study/study_slices.h"
 
@@ -32,7 +33,6 @@ namespace {
 constexpr std::uint64_t kMaxSlices = 1'000'000;
 // A scheduler takes a second or two for a task; a slice that is lost is run again as a whole.
 constexpr double kSlice_s = 60;
-constexpr double kSecondsPerHour = 3600;
 
 struct StudyOptions {
   std::string study;
@@ -41,7 +41,7 @@ struct StudyOptions {
   std::size_t slices = 0;
   std::optional<std::size_t> slice;
   int threads = static_cast<int>(allowed_threads());
-  bool list = false, estimate = false, status = false, resume = false, report = false;
+  bool list = false, estimate = false, status = false, resume = false, report = false, drop_unreached = false;
 };
 
 struct BegunStudy {
@@ -104,14 +104,15 @@ std::vector<double> time_three_trials(StudyTrials& study) {
 
 void estimate(StudyTrials& study, int threads) {
   const std::vector<double> taken_s = time_three_trials(study);
-  const auto hours = [&](double trial_s) {
-    return trial_s * static_cast<double>(study.design().trial_count()) / kSecondsPerHour;
+  const auto all = [&](double trial_s) {
+    return trial_s * static_cast<double>(study.design().trial_count());
   };
   fmt::print(
       "{} trials; three of them took {:.3g}, {:.3g} and {:.3g} s of CPU\n"
-      "{:.3g} h of CPU in all by the median ({:.3g} to {:.3g} h by the others), {:.3g} h on {} threads\n",
-      study.design().trial_count(), taken_s[0], taken_s[1], taken_s[2], hours(taken_s[1]), hours(taken_s[0]),
-      hours(taken_s[2]), hours(taken_s[1]) / threads, threads);
+      "{} of CPU in all by the median ({} to {} by the others), {} on {} threads\n",
+      study.design().trial_count(), taken_s[0], taken_s[1], taken_s[2], shown_time(all(taken_s[1])),
+      shown_time(all(taken_s[0])), shown_time(all(taken_s[2])), shown_time(all(taken_s[1]) / threads),
+      threads);
 }
 
 void list(const StudyDesign& design) {
@@ -130,9 +131,9 @@ void status(const StudyFolder& folder) {
   if (now.missing.empty()) return;
   fmt::print("left: slices {}", ranges_text(now.missing));
   if (now.trials_done > 0) {
-    const double trial_h = now.cpu_s / static_cast<double>(now.trials_done) / kSecondsPerHour;
-    fmt::print(", {:.3g} h of CPU by what the others took",
-               trial_h * static_cast<double>(record.trials - now.trials_done));
+    const double trial_s = now.cpu_s / static_cast<double>(now.trials_done);
+    fmt::print(", {} of CPU by what the others took",
+               shown_time(trial_s * static_cast<double>(record.trials - now.trials_done)));
   }
   fmt::print("\n");
 }
@@ -209,7 +210,9 @@ void go_on(BegunStudy& study, const StudyOptions& options) {
   if (options.status) return status(folder);
   if (options.report) {
     const OutputFolder held(folder.path / "report");
-    fmt::print("{}\n", write_study_report(study.trials.design(), folder).string());
+    fmt::print("{}\n", write_study_report(study.trials.design(), folder,
+                                          options.drop_unreached ? Unreached::dropped : Unreached::marked)
+                           .string());
     return;
   }
   require_same_program(folder);
@@ -233,6 +236,8 @@ void run_study(const StudyOptions& options) {
   // where the few bytes that stay of each trial hinder the next from taking the same place (6 GB after 300 on
   // a wall).
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  if (options.drop_unreached && !options.report)
+    throw CLI::ValidationError("--drop-unreached", "goes with --report");
   if (fs::is_directory(options.study)) {
     if (!options.status && !options.report && !options.resume && !options.slice)
       throw CLI::ValidationError("study", "of a folder takes --status, --resume, --report or --slice");
@@ -272,6 +277,9 @@ void add_study_command(CLI::App& program) {
   command->add_flag("--status", options->status, "Of a folder: what is done and what is left");
   command->add_flag("--resume", options->resume, "Of a folder: run what is missing, and nothing else");
   command->add_flag("--report", options->report, "Of a folder: table and maps of what is done so far");
+  command->add_flag("--drop-unreached", options->drop_unreached,
+                    "With --report: leave out trials that did not do all of their test; else they count, "
+                    "hatched in the maps");
   command->option_defaults()->group("How it is run");
   command->add_option("--on", options->on, "Submit it to a cluster's scheduler")
       ->check(one_of("scheduler", {"slurm"}))

@@ -31,6 +31,7 @@ inline MeasuredRun row(std::uint64_t seed, std::string_view algorithm, std::stri
   row.metrics.torque_follows_force = 0.7;
   row.metrics.contacts_mean = 15;
   row.metrics.torque_Nmm.hp_rms = values.torque_hp;
+  row.metrics.torque_Nmm.hp_share = values.torque_hp / 10;
   return row;
 }
 

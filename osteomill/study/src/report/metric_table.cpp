@@ -92,6 +92,9 @@ std::vector<Field<M>> all_figures() {
       "torque above 20 Hz / mean torque");
   add("path_mm", "mm", &M::path_mm, "path of the burr's centre");
   add("put_back_mm3", "mm³", &M::put_back_mm3, "bone put back");
+  add("shaft_from_handle_deg", "degrees", &M::shaft_from_handle_deg, "spread of the shaft against the handle",
+      kLessIsBetter);
+  add("removal_mm3_per_s", "mm³/s", &M::removal_mm3_per_s, "bone removed per second of cutting");
   add("counted_from_s", "s", &M::counted_from_s, "from when on it is counted");
   return all;
 }

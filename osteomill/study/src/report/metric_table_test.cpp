@@ -32,6 +32,8 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   m.path_mm = 25;
   m.put_back_mm3 = 26;
   m.counted_from_s = 27;
+  m.shaft_from_handle_deg = 28;
+  m.removal_mm3_per_s = 29;
   EXPECT_EQ(
       summary_columns(),
       "algorithm,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,force_mean_N,force_max_N,"
@@ -40,10 +42,10 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
       "tick_us_median,tick_us_p99,tick_us_max,"
       "turn_50ms_max_deg,turn_at_torque_step_deg,torque_follows_force,contacts_mean,lost_after_s,"
       "lost_while_milling,force_contact_share,torque_contact_share,force_hp_share,torque_hp_share,path_mm,"
-      "put_back_mm3,counted_from_s,not_reached");
+      "put_back_mm3,shaft_from_handle_deg,removal_mm3_per_s,counted_from_s,not_reached");
   EXPECT_EQ(summary_fields({algorithm_named("point-shell").id, "holding", m, nullptr, "this; that"}),
             "point-shell,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16,0.75,0.5,0.25,22,23,24,17,18,0.19,"
-            "20,21,1,0.625,0.375,0.125,0.25,25,26,27,this; that");
+            "20,21,1,0.625,0.375,0.125,0.25,25,26,28,29,27,this; that");
 }
 
 // A figure without a field would be lost between a trial and its study.

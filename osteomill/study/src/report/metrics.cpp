@@ -192,10 +192,10 @@ DirectionMetrics direction_metrics(std::span<const Vec3> directions) {
 RunMetrics run_metrics(const Recording& recording, std::size_t first) {
   const auto records = std::span(recording.records).subspan(std::min(first, recording.records.size()));
   require_usable(recording, records);
-  std::vector<Vec3> force_N, torque_Nmm, shaft_W;
+  std::vector<Vec3> force_N, torque_Nmm, shaft_W, shaft_D;
   std::vector<bool> touches, shaft_touches;
   std::vector<double> step_us, tick_us;
-  double contacts = 0;
+  double contacts = 0, cutting_s = 0;
   HeldRate held(1e6 * recording.description.tick_period_s);
   for (const TickRecord& record : records) {
     force_N.push_back(record.wrench.force_N);
@@ -205,6 +205,9 @@ RunMetrics run_metrics(const Recording& recording, std::size_t first) {
     shaft_touches.push_back(contact.shaft);
     if (touches.back()) contacts += record.contacts;
     if (touches.back()) shaft_W.push_back(shaft_direction(record.X_WT));
+    if (touches.back() && is_finite(record.X_WD))
+      shaft_D.push_back(record.X_WD.orientation.conjugate() * shaft_W.back());
+    if (contact.burr && record.spindle_on) cutting_s += record.dt_s;
     step_us.push_back(record.compute_us);
     tick_us.push_back(record.busy_us());
     held.add(record.busy_us());
@@ -219,10 +222,14 @@ RunMetrics run_metrics(const Recording& recording, std::size_t first) {
   metrics.contact = contact_shares(records);
   metrics.force_N = metrics.torque_Nmm = kNotFelt;
   metrics.shaft = {kNotMeasured, kNotMeasured};
+  metrics.shaft_from_handle_deg = kNotMeasured;
   const ContactShares& contact = metrics.contact;
   if (is_enough_contact(contact.force)) metrics.force_N = vector_metrics(force_N, rate_hz, touches);
   if (is_enough_contact(contact.torque)) metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
-  if (is_enough_contact(contact.shaft)) metrics.shaft = direction_metrics(shaft_W);
+  if (is_enough_contact(contact.shaft)) {
+    metrics.shaft = direction_metrics(shaft_W);
+    metrics.shaft_from_handle_deg = direction_metrics(shaft_D).spread_deg;
+  }
   metrics.turns = shaft_turns(records, touches, rate_hz);
   metrics.torque_follows_force = torque_following_force(torque_Nmm, force_N, shaft_touches, rate_hz);
   if (is_enough_contact(contact.any)) {
@@ -233,6 +240,7 @@ RunMetrics run_metrics(const Recording& recording, std::size_t first) {
   }
   metrics.put_back_mm3 = put_back_mm3(records);
   metrics.removed_mm3 = records.back().removed_mm3 - records.front().removed_mm3 + metrics.put_back_mm3;
+  if (cutting_s > 0) metrics.removal_mm3_per_s = metrics.removed_mm3 / cutting_s;
   metrics.path_mm = path_mm(records);
   return metrics;
 }

@@ -112,6 +112,39 @@ TEST(RunMetrics, APathIsHowFarTheBurrGotAndNotHowMuchItTrembled) {
 }
 
 // What is felt is measured while something is felt: free air before and after changes nothing but the shares.
+// Handle and tool lean by 20 degrees together; then the tool leans 2 degrees less than the handle, half of
+// the time.
+TEST(RunMetrics, TheLeanThatTheHandCommandsIsNoSpreadAgainstTheHandle) {
+  Recording leaning = simple_recording(1000);
+  const auto leant = [](double degrees) {
+    return quaternion_from_rotation_vector({degrees * kPi / 180, 0, 0});
+  };
+  for (std::size_t n = 0; n < 1000; ++n) {
+    TickRecord& record = leaning.records[n];
+    record.wrench.torque_Nmm = {1, 0, 0};
+    record.X_WD.orientation = record.X_WT.orientation = leant(0.02 * static_cast<double>(n));
+  }
+  EXPECT_NEAR(run_metrics(leaning).shaft_from_handle_deg, 0, 1e-6);
+  EXPECT_GT(run_metrics(leaning).shaft.spread_deg, 5);
+  for (std::size_t n = 0; n < 1000; n += 2)
+    leaning.records[n].X_WT.orientation = leant(0.02 * static_cast<double>(n) - 2);
+  EXPECT_NEAR(run_metrics(leaning).shaft_from_handle_deg, 1, 1e-6);
+}
+
+TEST(RunMetrics, BoneIsRemovedPerSecondOfCutting) {
+  Recording cutting = simple_recording(1000);
+  for (std::size_t n = 0; n < 1000; ++n) {
+    TickRecord& record = cutting.records[n];
+    record.dt_s = 1e-3;
+    record.spindle_on = n < 500;
+    record.burr_force_W_N = {0, 0, n < 250 ? 1.0 : 0.0};
+    record.removed_mm3 = 0.004 * static_cast<double>(std::min<std::size_t>(n, 250));
+  }
+  EXPECT_NEAR(run_metrics(cutting).removal_mm3_per_s, 4, 0.02);
+  for (TickRecord& record : cutting.records) record.spindle_on = false;
+  EXPECT_TRUE(std::isnan(run_metrics(cutting).removal_mm3_per_s));
+}
+
 TEST(RunMetrics, FreeAirIsNotMeasured) {
   const RunMetrics touching = run_metrics(simple_recording(4000));
   Recording longer = simple_recording(10000);

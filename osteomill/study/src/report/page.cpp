@@ -244,6 +244,13 @@ std::string plain_text(const Table& table) {
   return text;
 }
 
+std::string shown_time(double seconds) {
+  constexpr double kMinute = 60, kHour = 3600;
+  if (seconds < 2 * kMinute) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 2 * kHour) return fmt::format("{:.2g} min", seconds / kMinute);
+  return fmt::format("{:.3g} h", seconds / kHour);
+}
+
 std::string shown(double value) {
   if (std::isnan(value)) return "–";
   return std::abs(value) < 1000 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);

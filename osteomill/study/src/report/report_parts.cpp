@@ -281,6 +281,9 @@ std::vector<SettingLine> collect(const std::vector<const Recording*>& recordings
   return lines;
 }
 
+// Values that a cell spells out.
+constexpr std::size_t kFew = 4;
+
 std::string value_of(const SettingLine& line, const std::vector<const Recording*>& recordings) {
   if (std::all_of(line.values.begin(), line.values.end(),
                   [&](const auto& v) { return v == line.values[0]; })) {
@@ -289,16 +292,17 @@ std::string value_of(const SettingLine& line, const std::vector<const Recording*
   std::map<AlgorithmId, std::optional<std::string>> by_algorithm;
   bool algorithm_decides = true;
   std::string each;
+  std::size_t count = 0;
   for (std::size_t n = 0; n < recordings.size(); ++n) {
     const RunDescription& d = recordings[n]->description;
     const auto [entry, is_new] = by_algorithm.emplace(d.algorithm, line.values[n]);
     if (!is_new && entry->second != line.values[n]) algorithm_decides = false;
-    if (line.values[n]) {
+    if (line.values[n] && ++count <= kFew) {
       each += fmt::format("{}{}, {}: {}", each.empty() ? "" : "; ", name_of(d.algorithm), d.phase,
                           *line.values[n]);
     }
   }
-  if (!algorithm_decides) return each;
+  if (!algorithm_decides) return count > kFew ? fmt::format("{}; and {} others", each, count - kFew) : each;
   std::string text;
   for (const auto& [algorithm, value] : by_algorithm) {
     if (value) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name_of(algorithm), *value);
@@ -320,7 +324,7 @@ namespace {
 
 // What an algorithm is set to means nothing to another one.
 bool is_of_the_algorithm(const std::string& key) {
-  return key == kSamplePointsKey || key.starts_with("algorithm.");
+  return key == kSamplePointsKey || key.starts_with("algorithm.") || key.starts_with("probe.");
 }
 
 bool differs(const SettingLine& line, const std::vector<const Recording*>& recordings) {

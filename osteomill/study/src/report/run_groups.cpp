@@ -29,6 +29,10 @@ MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics) 
           .hand_damping_Ns_per_m = of_hand(kHandDampingKey)};
 }
 
+MeasuredRun measured_run(const Recording& recording) {
+  return measured_run(recording, run_metrics(recording));
+}
+
 const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view phase) const {
   for (const MeasuredRun& run : runs) {
     if (run.algorithm == algorithm && run.phase == phase) return &run;
@@ -75,7 +79,7 @@ std::map<std::string, double> beginnings(const std::vector<Recording>& recording
 
 }  // namespace
 
-RunGroup group_runs(const std::vector<Recording>& recordings, RunMetrics (*measure)(const Recording&)) {
+RunGroup group_runs(const std::vector<Recording>& recordings, MeasuredRun (*measure)(const Recording&)) {
   if (recordings.empty()) throw InputError("report", "there are no recordings to report on");
   const std::map<std::string, double> began_s = beginnings(recordings);
   RunGroup group;
@@ -86,7 +90,7 @@ RunGroup group_runs(const std::vector<Recording>& recordings, RunMetrics (*measu
                        fmt::format("is {}, {} as {} is; a report has room for one of them",
                                    name_of(d.algorithm), d.phase, twin->recording->path.string()));
     }
-    group.runs.push_back(measured_run(recording, measure(recording)));
+    group.runs.push_back(measure(recording));
   }
   const auto order = [&](const MeasuredRun& run) {
     return std::tuple(began_s.at(run.phase), run.phase, run.algorithm);

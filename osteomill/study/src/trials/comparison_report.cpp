@@ -1,7 +1,9 @@
 #include "osteomill/study/comparison_report.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -53,12 +55,38 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
          "from each. What differs in force between them is partly this (compare --match-stiffness).";
 }
 
+std::map<std::string, Probe> probes_in(const std::vector<Recording>& recordings) {
+  std::map<std::string, Probe> probes;
+  for (const Recording& recording : recordings) {
+    const double* felt = find_setting<double>(recording.description, kFeltStiffnessKey);
+    const double* error = find_setting<double>(recording.description, kTorqueErrorKey);
+    if (felt != nullptr)
+      probes[recording.description.algorithm.name] = {*felt, error == nullptr ? kNotMeasured : *error};
+  }
+  return probes;
+}
+
+// Empty if the study has no such algorithm.
+std::string about_line_proxy(const Study& study, const MillingTool& tool) {
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    if (algorithm == kPapersAlgorithms.front()) {
+      return fmt::format(
+          "{} feels the tool's centreline alone, as the paper has it: bone is felt when it meets the burr's "
+          "centre, {:.3g} mm after its rim.",
+          algorithm.label, tool.burr_radius_mm);
+    }
+  }
+  return "";
+}
+
 // What was compared, whether that can show anything, and what it shows.
 Section opening(const Study& study, const std::vector<Recording>& recordings) {
-  Section section{.paragraphs = {what_was_compared(study, recordings.front().description.scan_name) + " " +
-                                 about_stiffness(recordings)},
-                  .tables = conclusions(study)};
+  Section section{.tables = conclusions(study, probes_in(recordings))};
   if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};
+  for (const std::string& text :
+       {which_to_take(study), what_was_compared(study, recordings.front().description.scan_name),
+        about_stiffness(recordings), about_line_proxy(study, recordings.front().description.tool)})
+    if (!text.empty()) section.paragraphs.push_back(text);
   return section;
 }
 
@@ -115,7 +143,7 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
                                  const ReportExtras& extras, std::vector<Table>* came_out) {
-  const RunGroup group = group_runs(recordings, phase_metrics);
+  const RunGroup group = group_runs(recordings, measured_phase);
   if (!belong_together(recordings) || !have_the_same_phases(group)) {
     return write_report(group, out_dir, [&](const fs::path&) {
       return PageText{.title = kTitle, .opening = opening_of_a_mix(group)};

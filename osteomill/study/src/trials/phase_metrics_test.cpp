@@ -39,6 +39,35 @@ TEST(PhaseMetrics, AHoldingIsMeasuredForAsLongAsItWasToLast) {
   EXPECT_EQ(phase_metrics(unknown).steps, 3000u);
 }
 
+// In contact and at one place, leaning on the wall, for 2 s.
+Recording steady_holding() {
+  Recording recording = late_holding();
+  recording.records.erase(recording.records.begin(), recording.records.begin() + 1000);
+  return recording;
+}
+
+TEST(PhaseMetrics, AHoldThatIsNoneIsNamed) {
+  EXPECT_EQ(measured_phase(steady_holding()).not_reached, "");
+  Recording away = steady_holding();
+  for (std::size_t n = 0; n < 1200; ++n) away.records[n + 100].wrench = {};
+  EXPECT_EQ(measured_phase(away).not_reached,
+            "the tool touched for less than 90 % of the holding; "
+            "the shaft was against the wall for less than 50 % of the holding");
+  Recording leaps = steady_holding();
+  for (std::size_t n = 1000; n < 1200; ++n)
+    leaps.records[n].X_WT.orientation = quaternion_from_rotation_vector({0.2, 0, 0});
+  EXPECT_EQ(measured_phase(leaps).not_reached, "the shaft turned by more than 3 degrees");
+  Recording wanders = steady_holding();
+  for (std::size_t n = 0; n < wanders.records.size(); ++n)
+    wanders.records[n].X_WT.position_mm.x() = 0.003 * static_cast<double>(n);
+  EXPECT_EQ(measured_phase(wanders).not_reached, "the burr moved by more than 2 mm/s");
+  // What the hand itself did not reach comes first, and milling is no hold.
+  wanders.description.settings.push_back({std::string(kNotReachedKey), std::string("the tool was lost"), ""});
+  EXPECT_EQ(measured_phase(wanders).not_reached, "the tool was lost; the burr moved by more than 2 mm/s");
+  wanders.description.phase = kMilling;
+  EXPECT_EQ(measured_phase(wanders).not_reached, "the tool was lost");
+}
+
 TEST(PhaseMetrics, WhoLostContactIsNotMeasured) {
   Recording lost = late_holding();
   for (std::size_t n = 1900; n < lost.records.size(); ++n) lost.records[n].wrench = {};

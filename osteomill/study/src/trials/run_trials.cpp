@@ -113,7 +113,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
     }
     recorder.close();
   }
-  const MeasuredRun whole = measured_run(milled.phases.back(), {});
+  const MeasuredRun whole = measured_phase(milled.phases.back());
   if (!whole.not_reached.empty())
     events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, whole.not_reached));
   if (milled.faults) events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, *milled.faults));
@@ -128,8 +128,7 @@ TriedTrial try_trial(StudyTest test, const TrialPlan& plan) {
     const MilledTrial milled = mill(plan, trial, {});
     for (std::size_t part = 0; part < milled.phases.size(); ++part) {
       const Recording& phase = milled.phases[part];
-      TrialRow& row =
-          tried.rows.emplace_back(TrialRow{.part = part, .run = measured_run(phase, phase_metrics(phase))});
+      TrialRow& row = tried.rows.emplace_back(TrialRow{.part = part, .run = measured_phase(phase)});
       row.run.recording = nullptr;
       row.run.grip = plan.grip;
     }

@@ -80,8 +80,9 @@ bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
 std::vector<Field<RunMetrics>> key_metrics() {
   std::vector<Field<RunMetrics>> compared;
   for (const char* column :
-       {"force_hp_rms_N", "force_hp_share", "force_step_max_N", "torque_hp_rms_Nmm", "torque_step_max_Nmm",
-        "torque_mean_Nmm", "shaft_spread_deg", "removed_mm3", "tick_us_median", "tick_us_p99"})
+       {"force_hp_rms_N", "force_hp_share", "force_step_max_N", "torque_hp_rms_Nmm", "torque_hp_share",
+        "torque_step_max_Nmm", "torque_mean_Nmm", "shaft_spread_deg", "shaft_from_handle_deg", "removed_mm3",
+        "removal_mm3_per_s", "tick_us_median", "tick_us_p99"})
     compared.push_back(metric(column));
   return compared;
 }

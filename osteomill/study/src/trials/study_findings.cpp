@@ -18,7 +18,7 @@ double chance_of_at_least(std::size_t k, std::size_t n) {
 
 Verdict verdict_of(const StudyFinding& finding, const Study& study) {
   const auto shows = [&](std::size_t hands) {
-    return hands == finding.tested || chance_of_at_least(hands, finding.tested) <= kSignificance;
+    return chance_of_at_least(hands, finding.tested) <= kSignificance;
   };
   if (!is_tested(finding.of_medians.verdict)) return finding.of_medians.verdict;
   if (!study.are_most(finding.tested)) return Verdict::lost_contact;

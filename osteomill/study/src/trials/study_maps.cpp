@@ -199,6 +199,8 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
 struct Point {
   std::size_t panel;
   double x, y, colour;
+  // Its trial did not do all of its test.
+  bool is_unreached;
 };
 
 std::string panel_name(const StudyMap& map, const StudySettings& settings) {
@@ -230,7 +232,7 @@ Gathered gather(const StudyDesign& design, const StudyMap& map, const std::vecto
     if (parts[row.part] != (map.part.empty() ? parts.front() : map.part)) continue;
     const StudySettings settings = design.trial(row.trial);
     const Point point{place_in(all.panels, panel_name(map, settings)), all.x.of(settings, row),
-                      all.y.of(settings, row), all.colour.of(settings, row)};
+                      all.y.of(settings, row), all.colour.of(settings, row), !row.run.not_reached.empty()};
     if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.colour))
       all.points.push_back(point);
   }
@@ -245,20 +247,29 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
   const auto [shown_x, shown_y, colour, panels, points] = gather(design, map, rows);
   if (points.empty()) return std::nullopt;
   const Cells x = cells_along(&Point::x, points, shown_x), y = cells_along(&Point::y, points, shown_y);
-  std::map<std::array<std::size_t, 3>, std::vector<double>> cells;
-  for (const Point& point : points)
-    cells[{point.panel, x.of(point.x), y.of(point.y)}].push_back(point.colour);
-  std::vector<std::string> data(panels.size());
+  struct MapCell {
+    std::vector<double> values;
+    bool has_unreached = false;
+  };
+  std::map<std::array<std::size_t, 3>, MapCell> cells;
+  for (const Point& point : points) {
+    MapCell& cell = cells[{point.panel, x.of(point.x), y.of(point.y)}];
+    cell.values.push_back(point.colour);
+    cell.has_unreached |= point.is_unreached;
+  }
+  std::vector<std::string> data(panels.size()), hatched(panels.size());
   double min = std::numeric_limits<double>::infinity(), max = -min;
-  for (const auto& [place, values] : cells) {
+  for (const auto& [place, cell] : cells) {
     const auto [panel, column, row] = place;
-    const double value = statistic_of(map.statistic, values);
+    const double value = statistic_of(map.statistic, cell.values);
     min = std::min(min, value);
     max = std::max(max, value);
-    data[panel] += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n",
-                               between(x.edges[column], x.edges[column + 1], false),
-                               between(y.edges[row], y.edges[row + 1], false), x.edges[column],
-                               x.edges[column + 1], y.edges[row], y.edges[row + 1], value);
+    const std::string box = fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}",
+                                        between(x.edges[column], x.edges[column + 1], false),
+                                        between(y.edges[row], y.edges[row + 1], false), x.edges[column],
+                                        x.edges[column + 1], y.edges[row], y.edges[row + 1]);
+    data[panel] += fmt::format("{} {:.9g}\n", box, value);
+    if (cell.has_unreached) hatched[panel] += box + "\n";
   }
   PanelGrid grid{.columns = std::min<std::size_t>(panels.size(), 4),
                  .head_px = 118,
@@ -271,20 +282,30 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
   const auto panel = [&, &panels = panels](std::size_t column, std::size_t row, FigureScript& figure) {
     const std::size_t n = row * grid.columns + column;
     if (n >= panels.size() || data[n].empty()) return std::string();
+    std::string over;
+    if (!hatched[n].empty()) {
+      over = fmt::format(
+          ", {} using 1:2:3:4:5:6 with boxxyerror fs transparent pattern 5 noborder lc rgb '#ffffff'",
+          figure.data(hatched[n]));
+    }
+    if (map.line_of_equality) over += ", x with lines dt 2 lw 2 lc rgb '#d32f2f'";
     return fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels[n])) +
            fmt::format(
                "plot {} using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette{}\n"
                "unset label\nunset colorbox\n",
-               figure.data(data[n]), map.line_of_equality ? ", x with lines dt 2 lw 2 lc rgb '#d32f2f'" : "");
+               figure.data(data[n]), over);
   };
   const Figure figure =
       draw_panels(name, grid,
                   begin_panels("") + axis_script('x', x, shown_x) + axis_script('y', y, shown_y) +
                       colour_script(map, colour.label, min, max, grid),
                   panel, folder);
-  return CaptionedFigure{figure.svg, fmt::format("{}: {} of the trials in a cell, by {} and {}. What is "
-                                                 "white was not tried, or could not be measured.",
-                                                 colour.label, map.statistic, shown_x.label, shown_y.label)};
+  const bool is_hatched = std::ranges::any_of(points, &Point::is_unreached);
+  return CaptionedFigure{
+      figure.svg, fmt::format("{}: {} of the trials in a cell, by {} and {}. What is white was not tried, or "
+                              "could not be measured.{}",
+                              colour.label, map.statistic, shown_x.label, shown_y.label,
+                              is_hatched ? " In hatched cells a trial did not do all of its test." : "")};
 }
 
 }  // namespace osteomill

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -122,6 +123,22 @@ Section maps_section(const StudyDesign& design, const std::vector<TrialRow>& row
   return section;
 }
 
+std::set<std::size_t> unreached_trials(const std::vector<TrialRow>& rows) {
+  std::set<std::size_t> trials;
+  for (const TrialRow& row : rows)
+    if (!row.run.not_reached.empty()) trials.insert(row.trial);
+  return trials;
+}
+
+// Empty if all trials did all of their test.
+std::string unreached_words(std::size_t short_of, std::size_t done, Unreached unreached) {
+  if (short_of == 0) return "";
+  return fmt::format(" {} of the {} trials did not do all of their test ({}); {}.", short_of, done,
+                     "not_reached in trials.csv",
+                     unreached == Unreached::dropped ? "they are left out of everything here"
+                                                     : "they count below, hatched in the maps");
+}
+
 std::string share_text(std::size_t done, std::size_t all) {
   return fmt::format("{} of {} trials ({:.3g} %)", done, all,
                      100 * static_cast<double>(done) / static_cast<double>(all));
@@ -142,10 +159,15 @@ std::string list_row(const StudyDesign& design, std::size_t number) {
   return row;
 }
 
-fs::path write_study_report(const StudyDesign& design, const StudyFolder& study) {
+fs::path write_study_report(const StudyDesign& design, const StudyFolder& study, Unreached unreached) {
   std::vector<TrialRow> rows;
   const StudyStatus status = study_status(study, &rows);
   if (rows.empty()) throw InputError(study.path.string(), "has no trial that is done");
+  const std::set<std::size_t> short_of = unreached_trials(rows);
+  if (unreached == Unreached::dropped) {
+    std::erase_if(rows, [&](const TrialRow& row) { return short_of.contains(row.trial); });
+    if (rows.empty()) throw InputError(study.path.string(), "has no trial that did all of its test");
+  }
   const std::string share = share_text(status.trials_done, study.record.trials);
   return write_page(study.path / "report", "report.html", [&](const fs::path& beside) {
     write_text_atomically(beside / "trials.csv", [&](std::ostream& csv) {
@@ -154,8 +176,9 @@ fs::path write_study_report(const StudyDesign& design, const StudyFolder& study)
     });
     const fs::path figures = beside / "figures";
     Page page{design.title.empty() ? "A study" : design.title,
-              {{.paragraphs = {fmt::format("{}, test {}; {:.3g} h of CPU.", share, name_of(design.test),
-                                           status.cpu_s / 3600)},
+              {{.paragraphs = {fmt::format("{}, test {}; {} of CPU.{}", share, name_of(design.test),
+                                           shown_time(status.cpu_s),
+                                           unreached_words(short_of.size(), status.trials_done, unreached))},
                 .tables = {options_table(design, rows)}}}};
     if (status.trials_done < study.record.trials)
       page.sections.front().notices = {fmt::format("This is a part of the study: {}.", share)};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/study/metric_table.h"
+#include "osteomill/study/noticeable.h"
 #include "osteomill/study/paper.h"
 #include "osteomill/study/study_findings.h"
 
@@ -17,7 +18,7 @@ namespace osteomill {
 namespace {
 
 constexpr std::size_t kColumns = 4;
-constexpr std::size_t kMaxPanels = 8;
+constexpr std::size_t kMaxPanels = 12;
 // In units of the distance between two algorithms.
 constexpr double kScatter = 0.2;
 constexpr double kBarHalf = 0.15;
@@ -104,18 +105,30 @@ std::string interval_text(const MedianInterval& interval) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", interval.median, interval.low, interval.high);
 }
 
-// "2 > 1, p = 0.012" with the order strong where it is significant, else "1, 2: p = 0.3", faint; a line each.
+// "by 54 %", "3.2 times", "from 0".
+std::string size_text(const PairedComparison& pair) {
+  if (std::isinf(pair.share)) return fmt::format("by {:.2g}", pair.difference);
+  return pair.share < 1 ? fmt::format("by {:.2g} %", 100 * pair.share)
+                        : fmt::format("{:.2g} times", 1 + pair.share);
+}
+
+// A line for each pair: "2 > 1, 3.2 times, p = 0.012" with the order strong if a hand notices it, "1, 2: same
+// for a hand (2 %), p = 0.02", and "1, 2: not settled, p = 0.3".
 Cell differences(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
   std::vector<Cell::Piece> pieces;
-  for (const PairedComparison& pair : compare_algorithms(study, phase, metric.get)) {
+  for (const PairedComparison& pair : compare_algorithms(study, phase, metric)) {
     const std::string first = short_label(pair.first), second = short_label(pair.second);
     if (!pieces.empty()) pieces.push_back({"\n"});
-    if (pair.p <= kSignificance) {
+    if (!pair.is_settled()) {
+      pieces.push_back({fmt::format("{}, {}: not settled, {}", first, second, p_text(pair.p)), Look::faint});
+    } else if (!pair.is_noticeable) {
+      pieces.push_back(
+          {fmt::format("{}, {}: same for a hand ({}), {}", first, second, size_text(pair), p_text(pair.p)),
+           Look::faint});
+    } else {
       pieces.push_back(
           {pair.second_is_greater ? second + " > " + first : first + " > " + second, Look::strong});
-      pieces.push_back({", " + p_text(pair.p)});
-    } else {
-      pieces.push_back({fmt::format("{}, {}: {}", first, second, p_text(pair.p)), Look::faint});
+      pieces.push_back({fmt::format(", {}, {}", size_text(pair), p_text(pair.p))});
     }
   }
   return pieces;
@@ -214,6 +227,7 @@ std::vector<std::string> how_to_read(const Study& study) {
       kSignificance, n, min_p(n), min_corrected,
       min_corrected > kSignificance ? ", so that no difference can be significant here and none is shown"
                                     : ""));
+  paragraphs.push_back(about_noticeable());
   paragraphs.emplace_back(
       "Compute times are the machine's: those of the first seed were taken with nothing else of this program "
       "running, the others with a trial beside on each further core. Everything else comes out the same on "
@@ -221,7 +235,11 @@ std::vector<std::string> how_to_read(const Study& study) {
   return paragraphs;
 }
 
-Cell verdict_cell(Verdict verdict) {
+// Of one hand, which settles nothing, whether the rule holds in it.
+Cell verdict_cell(const StudyFinding& finding, bool one_hand) {
+  const Verdict verdict = one_hand ? finding.of_medians.verdict : finding.verdict;
+  if (one_hand && verdict == Verdict::agrees) return {"holds in this hand", Look::faint};
+  if (one_hand && verdict == Verdict::does_not_agree) return {"does not hold in this hand", Look::faint};
   return {std::string(name_of(verdict)), verdict == Verdict::agrees           ? Look::agrees
                                          : verdict == Verdict::does_not_agree ? Look::differs
                                                                               : Look::faint};
@@ -230,11 +248,11 @@ Cell verdict_cell(Verdict verdict) {
 Table findings_table(const Study& study) {
   const bool one = study.seeds().size() == 1;
   Table table{{"The paper found", one ? "Measured here" : "Medians over the hands",
-               one ? "In this hand" : "Verdict", "Rule"},
+               one ? "One hand settles nothing" : "Verdict", "Rule"},
               {}};
   if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
   for (const StudyFinding& f : check_study_findings(study)) {
-    std::vector<Cell> row{f.of_medians.paper_says, f.of_medians.measured, verdict_cell(f.verdict)};
+    std::vector<Cell> row{f.of_medians.paper_says, f.of_medians.measured, verdict_cell(f, one)};
     if (!one) row.insert(row.end(), {fmt::format("{} of {}", f.agreeing, f.tested), p_text(f.p)});
     row.emplace_back("agrees where " + f.of_medians.rule);
     table.rows.push_back(std::move(row));
@@ -244,29 +262,165 @@ Table findings_table(const Study& study) {
 
 // How many have which verdict, and which those are that do not agree.
 Table verdicts_table(const Study& study) {
-  std::map<Verdict, std::vector<std::string>> findings;
+  const bool one = study.seeds().size() == 1;
+  struct Findings {
+    Cell verdict;
+    std::vector<std::string> which;
+  };
+  std::map<Verdict, Findings> findings;
   std::size_t all = 0;
   for (const StudyFinding& f : check_study_findings(study)) {
     if (f.of_medians.of_the_machine) continue;
     ++all;
-    findings[f.verdict].push_back(f.of_medians.paper_says);
-    if (study.seeds().size() > 1 && is_tested(f.verdict))
-      findings[f.verdict].back() += fmt::format(", in {} of {}", f.agreeing, f.tested);
+    Findings& alike = findings[one ? f.of_medians.verdict : f.verdict];
+    alike.verdict = verdict_cell(f, one);
+    alike.which.push_back(f.of_medians.paper_says);
+    if (!one && is_tested(f.verdict))
+      alike.which.back() += fmt::format(", in {} of {}", f.agreeing, f.tested);
   }
   Table table{{fmt::format("The paper's {} findings on force, torque and shaft", all), "How many", "Which"},
               {}};
-  for (const auto& [verdict, which] : findings)
-    table.rows.push_back({verdict_cell(verdict), fmt::format("{}", which.size()),
-                          verdict == Verdict::agrees ? "" : fmt::format("{}", fmt::join(which, ";\n"))});
+  for (const auto& [verdict, alike] : findings) {
+    table.rows.push_back(
+        {alike.verdict, fmt::format("{}", alike.which.size()),
+         verdict == Verdict::agrees ? "" : fmt::format("{}", fmt::join(alike.which, ";\n"))});
+  }
   return table;
 }
 
-// "3 of 8 hands", in which the shaft was against the wall for less than half of the holding; empty for none.
-std::string hands_not_leaning(const Study& study, const AlgorithmId& algorithm) {
-  constexpr double kLeans = 0.5;
-  const std::vector<double> shares = study.values(algorithm, kHolding, metric("shaft_contact_share").get);
-  const auto few = std::ranges::count_if(shares, [](double share) { return share < kLeans; });
-  return few == 0 ? "" : fmt::format("{} of {} hands", few, shares.size());
+// What one chooses an algorithm by: a figure of a phase, of which less is better.
+struct Question {
+  const char* name;
+  std::string_view phase;
+  const char* column;
+};
+
+std::vector<Question> questions_of(const Study& study) {
+  std::vector<Question> all{
+      {"calm force while milling", kMilling, "force_hp_share"},
+      {"calm torque while milling", kMilling, "torque_hp_share"},
+      {"calm force while holding", kHolding, "force_hp_share"},
+      {"calm torque while holding", kHolding, "torque_hp_share"},
+      {"a shaft that follows the handle while milling", kMilling, "shaft_from_handle_deg"}};
+  const std::vector<std::string_view> phases = study.phases();
+  std::erase_if(all,
+                [&](const Question& one) { return std::ranges::find(phases, one.phase) == phases.end(); });
+  return all;
+}
+
+// An algorithm's place in a question. Not settled if the hands do not settle it against another one.
+struct Rank {
+  AlgorithmId algorithm;
+  std::size_t place = 1;
+  bool is_settled = true;
+  // Another one is the same for a hand.
+  bool is_shared = false;
+};
+
+std::vector<Rank> ranks_of(const Study& study, const Question& question) {
+  std::vector<Rank> ranks;
+  const Field<RunMetrics>& figure = metric(question.column);
+  // Which lacks the figure in most hands lost contact, and has no place.
+  for (const AlgorithmId& algorithm : study.algorithms())
+    ranks.push_back(
+        {algorithm, 1, study.are_most(study.values(algorithm, question.phase, figure.get).size())});
+  const auto rank_of = [&](const AlgorithmId& algorithm) -> Rank& {
+    return *std::ranges::find(ranks, algorithm, &Rank::algorithm);
+  };
+  for (const PairedComparison& pair : compare_algorithms(study, question.phase, figure)) {
+    Rank &first = rank_of(pair.first), &second = rank_of(pair.second);
+    if (!pair.is_settled()) {
+      first.is_settled = second.is_settled = false;
+    } else if (!pair.is_noticeable) {
+      first.is_shared = second.is_shared = true;
+    } else {
+      ++(pair.second_is_greater ? second : first).place;
+    }
+  }
+  return ranks;
+}
+
+std::string rank_text(const Rank& rank) {
+  constexpr const char* kEndings[] = {"th", "st", "nd", "rd"};
+  if (!rank.is_settled) return "not settled";
+  return fmt::format("{}{}{}", rank.place, kEndings[rank.place < 4 ? rank.place : 0],
+                     rank.is_shared ? ", shared: same for a hand" : "");
+}
+
+// In how many hands the algorithm did all of the test, milling and holding.
+std::size_t hands_that_did_all(const Study& study, const AlgorithmId& algorithm) {
+  std::size_t done = 0;
+  for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
+    done += std::ranges::all_of(study.rows_of_seed(seed), [&](const MeasuredRun& run) {
+      return run.algorithm != algorithm || (run.not_reached.empty() && !run.metrics.contact.is_lost());
+    });
+  }
+  return done;
+}
+
+// What is less than this is rounding.
+std::string degrees_text(double degrees) {
+  constexpr double kNone_deg = 1e-6;
+  return degrees < kNone_deg ? "0" : fmt::format("{:.2g}", degrees);
+}
+
+std::string share_text(double share) {
+  return std::isnan(share) ? "–" : fmt::format("{:.2g} %", 100 * share);
+}
+
+// The questions' names as the heads of columns, with what stands in their cells.
+std::string head_of(const Question& question) {
+  std::string head = question.name;
+  head[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(head[0])));
+  const Field<RunMetrics>& figure = metric(question.column);
+  return fmt::format("{}\n{}", head,
+                     figure.unit.empty() ? "above 20 Hz, of the mean" : "spread, " + figure.unit);
+}
+
+Table answer_table(const Study& study, const std::map<std::string, Probe>& probes) {
+  Table table{{study.seeds().size() > 1 ? "Median over the hands" : "In this hand"}, {}, true};
+  for (const AlgorithmId& algorithm : study.algorithms()) table.rows.push_back({algorithm.label});
+  for (const Question& question : questions_of(study)) {
+    table.header.push_back(head_of(question));
+    const Field<RunMetrics>& figure = metric(question.column);
+    const std::vector<Rank> ranks = ranks_of(study, question);
+    for (std::size_t n = 0; n < ranks.size(); ++n) {
+      const std::vector<double> values = study.values(ranks[n].algorithm, question.phase, figure.get);
+      if (values.empty()) {
+        table.rows[n].emplace_back(contact_words(study.contact(ranks[n].algorithm, question.phase)),
+                                   Look::words);
+        continue;
+      }
+      const double median = distribution_of(values).median;
+      std::vector<Cell::Piece> cell{{figure.unit.empty() ? share_text(median) : degrees_text(median)}};
+      if (are_compared(study)) {
+        const bool first = ranks[n].is_settled && ranks[n].place == 1;
+        cell.push_back({"\n" + rank_text(ranks[n]), first ? Look::strong : Look::faint});
+      }
+      table.rows[n].emplace_back(std::move(cell));
+    }
+  }
+  table.header.emplace_back("Did all of the test\nhands");
+  if (!probes.empty())
+    table.header.insert(table.header.end(),
+                        {"Torque of the shaft on an edge\nerror", "Felt stiffness of a wall\nN/mm"});
+  table.header.emplace_back("A tick takes\nmedian, µs");
+  const Field<RunMetrics>& cost = metric("tick_us_median");
+  for (std::size_t n = 0; n < table.rows.size(); ++n) {
+    const AlgorithmId algorithm = study.algorithms()[n];
+    std::vector<Cell>& row = table.rows[n];
+    row.emplace_back(fmt::format("{} of {}", hands_that_did_all(study, algorithm), study.seeds().size()));
+    if (!probes.empty()) {
+      const auto probed = probes.find(algorithm.name);
+      const bool is_probed = probed != probes.end();
+      row.emplace_back(!is_probed                                ? "–"
+                       : std::isnan(probed->second.torque_error) ? "not felt"
+                                                                 : share_text(probed->second.torque_error));
+      row.emplace_back(is_probed ? fmt::format("{:.3g}", probed->second.felt_N_per_mm) : "–");
+    }
+    row.emplace_back(shown(distribution_of(study.values(algorithm, kMilling, cost.get)).median));
+  }
+  return table;
 }
 
 std::string phase_title(std::string_view phase) {
@@ -299,21 +453,30 @@ Figure draw_study_figure(const Study& study, std::string_view phase, const std::
 }
 
 std::vector<PairedComparison> compare_algorithms(const Study& study, std::string_view phase,
-                                                 const RunFigure& figure) {
+                                                 const Field<RunMetrics>& figure) {
   const std::vector<AlgorithmId> algorithms = study.algorithms();
   std::vector<PairedComparison> comparisons;
   std::vector<double> p;
   for (std::size_t a = 0; a < algorithms.size(); ++a) {
     for (std::size_t b = a + 1; b < algorithms.size(); ++b) {
-      const std::vector<double> of_first = study.all_values(algorithms[a], phase, figure);
-      const std::vector<double> of_second = study.all_values(algorithms[b], phase, figure);
-      std::vector<double> differences;
-      for (std::size_t n = 0; n < std::min(of_first.size(), of_second.size()); ++n)
+      const std::vector<double> of_first = study.all_values(algorithms[a], phase, figure.get);
+      const std::vector<double> of_second = study.all_values(algorithms[b], phase, figure.get);
+      std::vector<double> differences, first, second;
+      for (std::size_t n = 0; n < std::min(of_first.size(), of_second.size()); ++n) {
+        if (std::isnan(of_first[n] - of_second[n])) continue;
         differences.push_back(of_first[n] - of_second[n]);
-      std::erase_if(differences, [](double difference) { return std::isnan(difference); });
+        first.push_back(of_first[n]);
+        second.push_back(of_second[n]);
+      }
       if (differences.empty()) continue;
       const SignedRank test = signed_rank(differences);
-      comparisons.push_back({algorithms[a], algorithms[b], test.negative > test.positive});
+      PairedComparison& pair = comparisons.emplace_back(
+          PairedComparison{algorithms[a], algorithms[b], test.negative > test.positive});
+      const double lesser =
+          std::min(std::abs(distribution_of(first).median), std::abs(distribution_of(second).median));
+      pair.difference = std::abs(distribution_of(differences).median);
+      pair.share = pair.difference / lesser;
+      pair.is_noticeable = pair.difference >= least_noticeable(figure, lesser);
       p.push_back(test.p);
     }
   }
@@ -326,37 +489,54 @@ std::string what_was_compared(const Study& study, std::string_view scan_name) {
   std::vector<std::string> algorithms;
   for (const AlgorithmId& algorithm : study.algorithms()) algorithms.push_back(algorithm.label);
   const std::size_t hands = study.seeds().size();
+  const bool one = algorithms.size() == 1;
   return fmt::format(
-      "{} milled the same bone ({}) in {} simulated hand{}. Each was to move the burr in until it touched, "
-      "mill a hole and push the shaft against the hole's edge; then, with the spindle off, to stand in that "
-      "hole with the shaft against the wall and keep as still as it could.",
-      fmt::join(algorithms, ", "), scan_name, hands, hands == 1 ? "" : "s");
+      "{} milled {} ({}) in {} simulated hand{}. {} was to move the burr in until it touched, mill a hole "
+      "and "
+      "push the shaft against the hole's edge; then, with the spindle off, to stand in that hole with the "
+      "shaft against the wall and keep as still as it could.",
+      fmt::join(algorithms, ", "), one ? "a bone" : "the same bone", scan_name, hands, hands == 1 ? "" : "s",
+      one ? "It" : "Each");
 }
 
 std::string too_few_hands(const Study& study) {
   const std::size_t hands = study.seeds().size(), needed = study.seeds_needed();
-  if (hands >= needed) return "";
+  if (hands >= needed || study.algorithms().size() == 1) return "";
   return fmt::format(
       "Only {} hand{} tried this, too few to say which algorithm is the better: a difference shows in {} or "
       "more (--seeds {}). The numbers are those of this trial.",
       hands, hands == 1 ? "" : "s", needed, needed);
 }
 
-std::vector<Table> conclusions(const Study& study) {
-  Table table = comparison_table(study);
-  add_not_reached(table, study, kHolding);
-  add_words(table, study, "shaft against the wall for less than half of the holding",
-            [&](const AlgorithmId& algorithm) { return hands_not_leaning(study, algorithm); });
-  const std::vector<std::string_view> phases = study.phases();
-  for (const auto& [phase, column] :
-       {std::pair(kMilling, "force_hp_rms_N"), std::pair(kMilling, "torque_hp_rms_Nmm"),
-        std::pair(kHolding, "shaft_spread_deg"), std::pair(kMilling, "removed_mm3")}) {
-    const Field<RunMetrics>& figure = metric(column);
-    if (std::ranges::find(phases, phase) != phases.end())
-      add_figure(table, study, phase, figure,
-                 with_unit(fmt::format("{}, {}", figure.doc, phase), figure.unit));
+std::vector<Table> conclusions(const Study& study, const std::map<std::string, Probe>& probes) {
+  return {answer_table(study, probes), verdicts_table(study)};
+}
+
+// An algorithm whose test most hands could not do is taken for nothing, however calm it is.
+std::string which_to_take(const Study& study) {
+  if (study.algorithms().size() == 1) return "";
+  if (!are_compared(study)) return "Which to take for what, these hands are too few to settle.";
+  std::map<AlgorithmId, std::vector<std::string>> reasons;
+  std::vector<std::string> same, open;
+  for (const Question& question : questions_of(study)) {
+    std::vector<Rank> first = ranks_of(study, question);
+    std::erase_if(first, [&](const Rank& rank) {
+      return !rank.is_settled || rank.place != 1 ||
+             !study.are_most(hands_that_did_all(study, rank.algorithm));
+    });
+    if (first.empty()) open.push_back(question.name);
+    if (first.size() > 1) same.push_back(question.name);
+    if (first.size() == 1) reasons[first.front().algorithm].push_back(question.name);
   }
-  return {std::move(table), verdicts_table(study)};
+  std::vector<std::string> parts;
+  for (const auto& [algorithm, names] : reasons)
+    parts.push_back(fmt::format("take {} for {}", algorithm.label, fmt::join(names, ", ")));
+  if (!same.empty())
+    parts.push_back(fmt::format("several are the same for a hand at {}", fmt::join(same, ", ")));
+  if (!open.empty()) parts.push_back(fmt::format("not settled is {}", fmt::join(open, ", ")));
+  std::string text = fmt::format("{}.", fmt::join(parts, "; "));
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 Section study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
@@ -376,9 +556,11 @@ Section findings_section(const Study& study) {
           "this project."}};
   if (study.seeds().size() > 1) {
     section.paragraphs.push_back(
-        "Several hands agree with the paper, or do not, where all of them do, or so many more than half that "
-        "tossing a coin would give as many in one of twenty tries at most; else it is not settled. p is the "
-        "chance that as many or more would agree by the toss.");
+        "Hands agree with the paper, or do not, if so many more than half do that tossing a coin would give "
+        "as "
+        "many in one of twenty tries at most, which takes five hands; else it is not settled. p is the "
+        "chance "
+        "that as many or more would agree by the toss.");
   }
   section.tables = {findings_table(study)};
   return section;

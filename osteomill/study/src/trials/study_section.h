@@ -1,12 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "osteomill/study/figure.h"
 #include "osteomill/study/page.h"
+#include "osteomill/study/probe.h"
 #include "osteomill/study/study.h"
+
+#include "trials/statistics.h"
 
 namespace osteomill {
 
@@ -20,14 +25,21 @@ struct PairedComparison {
   AlgorithmId second;
   /// Decided by the sums of signed ranks; false if neither is.
   bool second_is_greater = false;
+  /// The size of the median difference, and that against the lesser of the two medians (infinite if that is
+  /// 0).
+  double difference = 0;
+  double share = 0;
+  /// Whether a hand notices it (least_noticeable).
+  bool is_noticeable = true;
   /// Wilcoxon's signed-rank test, exact, two-sided, after Holm's correction over all comparisons made
   /// together.
   double p = 1;
+  bool is_settled() const { return p <= kSignificance; }
 };
 
 /// Compares every pair of the algorithms that were tried, by the hands in which both could be measured.
 std::vector<PairedComparison> compare_algorithms(const Study& study, std::string_view phase,
-                                                 const RunFigure& figure);
+                                                 const Field<RunMetrics>& figure);
 
 /// Returns a sentence on which algorithms did what, on which bone, in how many hands.
 std::string what_was_compared(const Study& study, std::string_view scan_name);
@@ -36,10 +48,14 @@ std::string what_was_compared(const Study& study, std::string_view scan_name);
 /// where it has enough.
 std::string too_few_hands(const Study& study);
 
-/// Returns the tables that show what a comparison found, for readers of nothing else: a table of force and
-/// torque while milling, the shaft while holding and the bone removed, by algorithm and with their
-/// differences, and one of how many of the paper's findings hold.
-std::vector<Table> conclusions(const Study& study);
+/// Returns the tables that show what a comparison found, for readers of nothing else: a row for each
+/// algorithm with what one chooses by, each figure with its rank if the hands settle it; and how many of the
+/// paper's findings hold. `probes` has the algorithms that were probed, by their names.
+std::vector<Table> conclusions(const Study& study, const std::map<std::string, Probe>& probes = {});
+
+/// Returns one sentence on which algorithm to take for what, by the ranks that the hands settle, and what
+/// they do not settle; empty for one algorithm alone.
+std::string which_to_take(const Study& study);
 
 /// Returns the report's section on a study: medians with their intervals, and which differences between
 /// algorithms are significant.

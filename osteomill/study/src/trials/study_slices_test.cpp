@@ -244,7 +244,7 @@ TEST(StudySlices, ARowEqualsTheRowMeasuredFromItsRecording) {
   ASSERT_EQ(recorded.size(), slice->rows.size());
   for (std::size_t part = 0; part < recorded.size(); ++part) {
     const Recording recording = read_recording(recorded[part]);
-    const TrialRow measured{.part = part, .run = measured_run(recording, phase_metrics(recording))};
+    const TrialRow measured{.part = part, .run = measured_phase(recording)};
     const TrialRow& row = slice->rows[part];
     EXPECT_EQ(row.run.phase, measured.run.phase);
     EXPECT_EQ(row.run.not_reached, measured.run.not_reached);

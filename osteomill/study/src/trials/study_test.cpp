@@ -60,7 +60,7 @@ TEST(Study, SeedsThatWereNotTriedAlikeAreRefused) {
 TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
   for (const std::uint64_t seeds : {6u, 7u}) {
     const Study study(sample_rows(seeds));
-    const auto pairs = compare_algorithms(study, kMilling, force_hp());
+    const auto pairs = compare_algorithms(study, kMilling, metric("force_hp_rms_N"));
     ASSERT_EQ(pairs.size(), 3u);
     EXPECT_TRUE(pairs[0].second_is_greater);
     EXPECT_EQ(pairs[0].second, "surface-points");

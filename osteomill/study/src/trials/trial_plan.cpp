@@ -8,6 +8,7 @@
 
 #include "osteomill/recording/run_description.h"
 #include "osteomill/study/paper.h"
+#include "osteomill/study/run_groups.h"
 
 namespace osteomill {
 
@@ -35,6 +36,11 @@ RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::str
   if (!plan.comparison.empty()) run.settings.push_back({std::string(kComparisonKey), plan.comparison, ""});
   if (plan.matched_N_per_mm) {
     run.settings.push_back({std::string(kMatchedStiffnessKey), *plan.matched_N_per_mm, "N/mm"});
+  }
+  if (plan.probed) {
+    run.settings.push_back({kFeltStiffnessKey, plan.probed->felt_N_per_mm, "N/mm"});
+    if (!std::isnan(plan.probed->torque_error))
+      run.settings.push_back({kTorqueErrorKey, plan.probed->torque_error, ""});
   }
   return run;
 }
@@ -68,10 +74,36 @@ RunMetrics phase_metrics(const Recording& recording) {
   if (metrics.contact.is_lost()) {
     metrics.force_N = metrics.torque_Nmm = kNotFelt;
     metrics.shaft = {kNotMeasured, kNotMeasured};
+    metrics.shaft_from_handle_deg = kNotMeasured;
     metrics.turns = {kNotMeasured, kNotMeasured};
     metrics.torque_follows_force = metrics.contacts_mean = kNotMeasured;
   }
   return metrics;
+}
+
+std::string broken_hold_words(const RunMetrics& metrics, std::string_view phase, double tick_s) {
+  std::vector<std::string> parts;
+  if (phase != kHolding) return "";
+  if (metrics.contact.any < kHeldContact)
+    parts.push_back(fmt::format("the tool touched for less than {:g} % of the holding", 100 * kHeldContact));
+  if (metrics.contact.shaft < kHeldShaft) {
+    parts.push_back(
+        fmt::format("the shaft was against the wall for less than {:g} % of the holding", 100 * kHeldShaft));
+  }
+  if (metrics.shaft.excursion_deg > kHeldTurn_deg)
+    parts.push_back(fmt::format("the shaft turned by more than {:g} degrees", kHeldTurn_deg));
+  if (metrics.path_mm > kHeldPath_mm_per_s * metrics.steps * tick_s)
+    parts.push_back(fmt::format("the burr moved by more than {:g} mm/s", kHeldPath_mm_per_s));
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+MeasuredRun measured_phase(const Recording& recording) {
+  const RunDescription& run = recording.description;
+  MeasuredRun measured = measured_run(recording, phase_metrics(recording));
+  const std::string broken = broken_hold_words(measured.metrics, run.phase, run.tick_period_s);
+  if (!measured.not_reached.empty() && !broken.empty()) measured.not_reached += "; ";
+  measured.not_reached += broken;
+  return measured;
 }
 
 }  // namespace osteomill

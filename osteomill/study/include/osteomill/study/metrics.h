@@ -117,6 +117,9 @@ struct RunMetrics {
   /// The directions of the simulated tool's shaft while in contact; not a number if the shaft did not touch
   /// for long enough.
   DirectionMetrics shaft;
+  /// The spread of those directions as seen from the device's handle, so that the lean which the hand
+  /// commands does not count: what the algorithm adds to it.
+  double shaft_from_handle_deg = 0;
   ShaftTurns turns;
   /// The share of the torque above 20 Hz that follows the force above 20 Hz of the 10 ms about it
   /// (signals.h), while the shaft touches; not a number if it touched for too short a time.
@@ -128,6 +131,9 @@ struct RunMetrics {
   /// back.
   double removed_mm3 = 0;
   double put_back_mm3 = 0;
+  /// Bone removed per second for which the spindle turned and the burr pressed on bone, mm^3/s; not a number
+  /// if it did not. Runs of different length compare by it.
+  double removal_mm3_per_s = kNotMeasured;
   /// The length of the burr's path, by its centre's place every 0.02 s: from tick to tick a trembling hand
   /// goes far without getting anywhere.
   double path_mm = 0;

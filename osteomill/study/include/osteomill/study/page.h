@@ -82,6 +82,9 @@ std::string base64(std::string_view bytes);
 /// scans, and of files, may be of other encodings.
 std::string valid_utf8(std::string_view text);
 
+/// Returns a time as people say it: "11 s", "4.2 min", "3.1 h".
+std::string shown_time(double seconds);
+
 /// Returns a number of four significant digits, or all of its digits before the point; "–" for none.
 std::string shown(double value);
 

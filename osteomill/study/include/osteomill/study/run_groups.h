@@ -10,6 +10,8 @@ namespace osteomill {
 
 /// Returns what a recording says about its run, with these figures; the result points to the recording.
 MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics);
+/// Returns the run with the figures of all its ticks (run_metrics, which says what it throws).
+MeasuredRun measured_run(const Recording& recording);
 
 /// The runs of a report, by phase, then by algorithm.
 struct RunGroup {
@@ -27,6 +29,6 @@ struct RunGroup {
 /// Measures recordings; the runs point into `recordings`. Throws InputError if there are none, if two are of
 /// the same algorithm and phase, or if one cannot be measured (run_metrics).
 RunGroup group_runs(const std::vector<Recording>& recordings,
-                    RunMetrics (*measure)(const Recording&) = run_metrics);
+                    MeasuredRun (*measure)(const Recording&) = measured_run);
 
 }  // namespace osteomill

@@ -8,6 +8,7 @@
 #include "osteomill/recording/run_description.h"
 #include "osteomill/study/metrics.h"
 #include "osteomill/study/milling_trial.h"
+#include "osteomill/study/probe.h"
 
 namespace osteomill {
 
@@ -27,6 +28,8 @@ struct TrialPlan {
   /// The algorithm's stiffness was chosen so that a flat wall is felt as this (match_stiffness.h); nothing if
   /// it has its own.
   std::optional<double> matched_N_per_mm = std::nullopt;
+  /// The algorithm with these settings, felt where the right answer is known; nothing if it was not probed.
+  std::optional<Probe> probed = std::nullopt;
   /// The value of kComparisonKey in its recordings; empty for none.
   std::string comparison = {};
   /// The fingerprint of the bone as scanned (fingerprint_of), by which its recordings can be verified.
@@ -56,5 +59,18 @@ std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettin
 /// that the hand took to come to it (from counted_from_s on). Figures of what is felt are missing if the tool
 /// lost contact and did not find it again.
 RunMetrics phase_metrics(const Recording& recording);
+
+/// What a hold must keep to be one: the least share of the time in contact and of the time with the shaft
+/// against the wall, the furthest that the shaft may turn from its mean direction, and the longest path of
+/// the burr per second. Hands that hold still keep to 0.2 degrees and, by their tremor, 0.9 mm/s.
+inline constexpr double kHeldContact = 0.9, kHeldShaft = 0.5, kHeldTurn_deg = 3, kHeldPath_mm_per_s = 2;
+
+/// Returns which of these a holding of section 8.2 broke: "the tool touched for less than 90 % of the
+/// holding; the shaft turned by more than 3 degrees". Empty for none, and for a milling.
+std::string broken_hold_words(const RunMetrics& metrics, std::string_view phase, double tick_s);
+
+/// Returns the run of a phase of section 8.2 with its figures (phase_metrics). What it did not reach is what
+/// its recording names and broken_hold_words.
+MeasuredRun measured_phase(const Recording& recording);
 
 }  // namespace osteomill

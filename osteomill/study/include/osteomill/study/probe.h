@@ -1,0 +1,30 @@
+#pragma once
+
+#include "osteomill/session/milling_setup.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// An algorithm felt where the right answer is known.
+struct Probe {
+  /// felt_stiffness_N_per_mm: with the burr on a flat wall.
+  double felt_N_per_mm = 0;
+  /// With the shaft across a sharp edge: how far the torque is from lever times force, as a share of it. Not
+  /// a number if the shaft is not felt there.
+  double torque_error = 0;
+};
+
+/// The keys of the settings in which a recording has a Probe's figures; they are missing if it was not
+/// measured.
+inline constexpr const char* kFeltStiffnessKey = "probe.felt_stiffness";
+inline constexpr const char* kTorqueErrorKey = "probe.torque_error";
+
+/// Returns bone with a sharp edge along y (W) at the origin, both its faces falling away at 45 degrees: wide
+/// and fine enough for this tool's shaft to lie across.
+Volume sharp_edge(const MillingTool& tool);
+
+/// Probes the setup's algorithm with its settings on `wall` (flat_wall) and on `edge` (sharp_edge) of its
+/// tool. Throws std::invalid_argument if a setting is out of range.
+Probe probe(const MillingSetup& setup, const Volume& wall, const Volume& edge);
+
+}  // namespace osteomill
