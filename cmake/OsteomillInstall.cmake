@@ -23,5 +23,6 @@ endif()
 configure_file(cmake/osteomill.pc.in osteomill.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/osteomill.pc DESTINATION ${pkgconfig_dir})
 
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md CODE_OF_CONDUCT.md SECURITY.md CITATION.cff
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs examples studies DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -77,11 +77,11 @@ project(copied LANGUAGES CXX)'; cat "$copied"; } >"${copied%.cmake}/CMakeLists.t
     -DSOURCE="$source/examples/press_on_a_ball.cpp" >copied.log 2>&1 || { cat "$copied" copied.log; fail "is not configured"; }
 done
 
-# README's table of components names those that there are.
-mapfile -t named < <(sed -n '/^| to | components |/,/^$/p' "$source/README.md" | awk -F'|' '{ print $3 }' | grep -oE '`[a-z]+`' | tr -d '`' | sort -u)
-[ ${#named[@]} -gt 3 ] || fail "README names only ${#named[@]} components"
+# The table of components names only components that exist.
+mapfile -t named < <(sed -n '/^| to | components |/,/^$/p' "$source/docs/library.md" | awk -F'|' '{ print $3 }' | grep -oE '`[a-z]+`' | tr -d '`' | sort -u)
+[ ${#named[@]} -gt 3 ] || fail "library.md names only ${#named[@]} components"
 for component in "${named[@]}"; do
-  [[ " ${components[*]} " == *" $component "* ]] || fail "README names the component $component, which there is not"
+  [[ " ${components[*]} " == *" $component "* ]] || fail "library.md names the component $component, which does not exist"
 done
 
 # The same bits in a program of any flags, whose objects bring inline functions of their own into the link.
