@@ -130,8 +130,9 @@ Section energy_given_back() {
           "Must hold for 4: a device that is pressed {} mm into bone and drawn back at {:.0f} mm/s gets at "
           "most "
           "5 % more of what was put in than a spring that is sampled at 1 kHz gives, {:.3f}, and one that is "
-          "pressed and leant {} times in a hole, burr and shaft at once, no more either. Watched at the "
-          "device, the wrench of a tick times the movement until the next; {} turns of the scene against the "
+          "pressed and leant {} times in a hole, burr and shaft at once, gets no more either. Measured at "
+          "the device: the wrench of a tick times the movement until the next; {} turns of the scene against "
+          "the "
           "grid; given back / put in, median (worst).",
           kDeep_mm, kSpeed_mm_s, ideal, kPresses, kWays),
       {"algorithm", "burr on a plane", "shaft on an edge", "in a hole", ""},

@@ -80,15 +80,16 @@ void point_shell_rows(Section& section) {
 }  // namespace
 
 Section force_on_planes() {
-  Section section{"Force on a plane",
-                  fmt::format("Reported: how far off `k d` along the normal 1 is, and the contact of 3 off "
-                              "`kA pi (r - d) d^2`, `d` the depth of the simulated tool. {} planes of random "
-                              "slope and place, 0.2 mm voxels, the shaft up "
-                              "to 40 degrees off the normal; errors as shares, median (worst).",
-                              kPlanes),
-                  {"what", "error along the normal", "sideways"},
-                  {},
-                  {}};
+  Section section{
+      "Force on a plane",
+      fmt::format("Reported: the error of 1 against `k d` along the normal, and of the contact of 3 against "
+                  "`kA pi (r - d) d^2`, with the depth `d` of the simulated tool. {} planes of random "
+                  "slope and place, 0.2 mm voxels, the shaft up "
+                  "to 40 degrees off the normal; errors as shares, median (worst).",
+                  kPlanes),
+      {"what", "error along the normal", "sideways"},
+      {},
+      {}};
   line_proxy_rows(section);
   point_shell_rows(section);
   return section;

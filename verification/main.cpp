@@ -1,5 +1,5 @@
 // Measures what osteomill promises of its forces and its milling, and writes the tables of
-// docs/verification.md. Exit code 0 where all that must hold does, 3 where something does not.
+// docs/verification.md. Exit code 0 if everything holds that must, 3 if something does not.
 #include <chrono>
 #include <ctime>
 #include <exception>
@@ -17,33 +17,10 @@
 #include "osteomill/volume/builtin_tooth.h"
 
 #include "verification/sections.h"
+#include "verification/summary.h"
 
 namespace osteomill::verification {
 namespace {
-
-constexpr const char* kPreface =
-    R"(# Verification
-What osteomill promises of forces, torques and milling, and what the paper found, measured and written by `scripts/verify`. Every
-table is of the default settings unless it says otherwise.
-
-**How to read it.** A section says first what *must hold*; a row of it *holds* or **misses**. The promises are those of `barrier-shell`,
-the product's algorithm, which is also 4 here. The paper's 1 `line-proxy`, 2 `surface-points` and 3 `point-shell` are as published, with
-their faults: their rows are *reported* and judge nothing, except that the paper's own findings must come out. Numbers are medians, in brackets the worst, unless the section says otherwise; hands are drawn by
-seed, so that all but times comes out the same on any machine.
-
-| question | section |
-|---|---|
-| Is the force on a wall, the torque at a lever, right? | *Force on a plane* to *Turning scan and poses together* |
-| Does it stay still, and give back no more than it got? | *Dropped on bone* to *How stiff before it is no longer passive* |
-| Does a tool get through bone? | *Pushes from anywhere* to *Breaking through into a hollow* |
-| Is the hole what the burr swept? | *The hole and the voxels*, *What is cut and what the burr sweeps* |
-| Does it keep 1000 Hz, also in fine scans? | *Voxels of 0.031 mm*, *What a tick takes, whatever the burr and the voxels*, *The haptic rate halved and doubled* |
-| How calm is it while a hand mills? | *Milling the tooth* and the sections after it |
-| Does what the paper found come out? | *What the paper found*, *What the paper leaves open* |
-
-A row that misses is a known fault and stands here until it is mended; how each algorithm works is in [algorithms.md](algorithms.md).
-
-)";
 
 struct Options {
   std::string tooth;
@@ -96,18 +73,24 @@ const std::vector<Named>& all_sections() {
 void add_options(CLI::App& program, Options& options) {
   std::vector<std::string> names;
   for (const Named& section : all_sections()) names.push_back(section.name);
-  program.add_option("--tooth", options.tooth, "Scan of a tooth (the built-in one)");
-  program.add_option("--tooth-iso", options.tooth_iso, "Its isovalue")->capture_default_str();
-  program.add_option("--second", options.second, "A second scan, on which nothing was chosen");
-  program.add_option("--second-iso", options.second_iso, "Its isovalue")->capture_default_str();
-  program.add_option("--spongy", options.spongy, "Micro-CT of spongy bone");
-  program.add_option("--spongy-iso", options.spongy_iso, "Its isovalue")->capture_default_str();
-  program.add_option("--out", options.out, "Markdown file (standard output)");
-  program.add_option("--only", options.only, "Sections")->check(CLI::IsMember(names));
-  program.add_option("--pushes", options.effort.pushes, "Random pushes an algorithm")->capture_default_str();
-  program.add_option("--seeds", options.effort.seeds, "Seeds a row")->capture_default_str();
-  program.add_option("--soak", options.effort.soak_min, "min, the long session")->capture_default_str();
-  program.add_option("--seconds", options.effort.phase_s, "s, a milling phase")->capture_default_str();
+  program.add_option("--tooth", options.tooth, "Scan of a tooth (default: the built-in tooth)");
+  program.add_option("--tooth-iso", options.tooth_iso, "Isovalue of the tooth's scan")->capture_default_str();
+  program.add_option("--second", options.second, "Scan of a second bone, on which no setting was chosen");
+  program.add_option("--second-iso", options.second_iso, "Isovalue of the second bone's scan")
+      ->capture_default_str();
+  program.add_option("--spongy", options.spongy, "Micro-CT scan of spongy bone");
+  program.add_option("--spongy-iso", options.spongy_iso, "Isovalue of the spongy bone's scan")
+      ->capture_default_str();
+  program.add_option("--out", options.out, "Markdown file to write (default: standard output)");
+  program.add_option("--only", options.only, "Sections to measure (default: all)")
+      ->check(CLI::IsMember(names));
+  program.add_option("--pushes", options.effort.pushes, "Random pushes for each algorithm")
+      ->capture_default_str();
+  program.add_option("--seeds", options.effort.seeds, "Seeds for each row")->capture_default_str();
+  program.add_option("--soak", options.effort.soak_min, "Length of the long session, min")
+      ->capture_default_str();
+  program.add_option("--seconds", options.effort.phase_s, "Length of a milling phase, s")
+      ->capture_default_str();
 }
 
 Bones load_bones(const Options& options) {
@@ -131,24 +114,23 @@ bool wanted(const Options& options, const Named& section) {
          std::find(options.only.begin(), options.only.end(), section.name) != options.only.end();
 }
 
-// Measures what is wanted; false where something that must hold does not.
-bool measure(const Options& options, std::string& text) {
+// Measures the sections that are wanted and for which the scans are there.
+MeasuredSections measure(const Options& options) {
   const Bones bones = load_bones(options);
-  bool all_hold = true;
+  MeasuredSections measured;
   for (const Named& named : all_sections()) {
     if (!wanted(options, named) || (named.name == "second" && !bones.second) ||
         (named.name == "spongy" && !bones.spongy)) {
       continue;
     }
     const auto begin = std::chrono::steady_clock::now();
-    const Section section = named.measure(bones, options.effort);
+    measured.emplace_back(named.name, named.measure(bones, options.effort));
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    const Section& section = measured.back().second;
     std::cerr << fmt::format("{}: {} of {} rows miss, {:.0f} s\n", named.name, section.misses.size(),
                              section.rows.size(), took.count());
-    all_hold = all_hold && section.misses.empty();
-    text += to_markdown(section);
   }
-  return all_hold;
+  return measured;
 }
 
 int run(int argc, char** argv) {
@@ -160,8 +142,13 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : 2;
   }
-  std::string text = kPreface;
-  const bool all_hold = measure(options, text);
+  const MeasuredSections measured = measure(options);
+  std::string text = summary(measured);
+  bool all_hold = true;
+  for (const auto& [name, section] : measured) {
+    text += to_markdown(section);
+    all_hold = all_hold && section.misses.empty();
+  }
   if (options.out.empty()) {
     std::cout << text;
   } else {

@@ -126,11 +126,10 @@ Section milling_the_tooth(const Bones& bones, const Effort& effort) {
 Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort) {
   Section section{
       "Milling while the cutting pulls at the burr",
-      fmt::format(
-          "The same on {} with `--cutting-reaction`: the hand feels the burr held back along its "
-          "speed, which pushes it aside and turns the handle. Must hold for 4: as calm as without, and what "
-          "is removed is what paid for it, the pole less than the equator.",
-          bones.tooth_name),
+      fmt::format("The same on {} with `--cutting-reaction`: the hand feels the burr held back along its "
+                  "speed, which pushes it aside and turns the handle. Must hold for 4: as calm as without, "
+                  "and the removed bone is what the force paid for, less at the pole than at the equator.",
+                  bones.tooth_name),
       kHeader,
       {},
       {}};

@@ -167,9 +167,10 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
       "What the paper found",
       fmt::format(
           "Must hold: the nine findings of section 8 of the paper, by the rules of a comparison's report. "
-          "The paper's three algorithms, hands drawn by seed ({} to {}, with which what it leaves open was "
-          "chosen on the built-in tooth, and {} to {}), the phases of `compare --seconds {:g}`. "
-          "Medians of the hands in which the tool kept contact, where those are more than half; a finding "
+          "The paper's three algorithms, hands drawn by seed ({} to {}, with which the choices that it "
+          "leaves open were made on the built-in tooth, and {} to {}), the phases of `compare --seconds "
+          "{:g}`. "
+          "Medians of the hands in which the tool kept contact, if those are more than half; a finding "
           "that could not be tested misses.",
           kChosenWith.first, kChosenWith.last, kOthers.first, kOthers.last, effort.phase_s),
       {"bone, hands: the paper found", "medians", "holds in hands", ""},
@@ -186,8 +187,8 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
 Section papers_choices(const Bones& bones, const Effort& effort) {
   Section section{
       "What the paper leaves open",
-      fmt::format("Reported: the same findings, numbered as above from 1 to 9, with one of the choices, "
-                  "or the hand, or the device, another way. Hands {} to {}, medians; force above 20 Hz (rms, "
+      fmt::format("Reported: the same findings, numbered as above from 1 to 9, with one choice, the hand or "
+                  "the device changed. Hands {} to {}, medians; force above 20 Hz (rms, "
                   "N) and torque above 20 Hz (rms, N mm) of 1 / 2 / 3.",
                   kChosenWith.first, kChosenWith.last),
       {"bone, with", "findings that hold", "force milling", "force holding", "torque milling",

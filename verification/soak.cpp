@@ -158,9 +158,9 @@ Section soak(const Bones& bones, const Effort& effort) {
   Section section{
       "A long session",
       fmt::format(
-          "Must hold over {:.0f} minutes of simulated session (milling and holding in turns, by a hand "
-          "that each cycle draws anew, with switches of the algorithm and cuts taken back): memory "
-          "(each time with line-proxy) grows by at most 5 % after the first sixth; everything is finite, "
+          "Must hold over {:.0f} minutes of simulated session (milling and holding in turns, by a hand that "
+          "is drawn again for each cycle, with changes of the algorithm and undone cuts): memory (measured "
+          "with line-proxy) grows by at most 5 % after the first sixth; everything is finite, "
           "force and torque within "
           "the device's 20 N and 500 N mm; the last cycle, which repeats the first, is the same to the "
           "bit; the recording reads back and replays to the bit. On {}.",

@@ -119,15 +119,17 @@ Section swept_holes(const Effort& effort) {
       "What is cut and what the burr sweeps",
       fmt::format(
           "Must hold: the volume cut is what the shown burr sweeps along its path while it presses, within "
-          "{:.0f} %; no bone is left deeper within than half a voxel, none is lost farther outside than a "
+          "{:.0f} %; no bone is left deeper inside the swept volume than half a voxel, and none is lost "
+          "farther outside it than a "
           "quarter of a voxel and 0.03 mm; what is removed is what the burr's force paid for within {:.0f} "
           "%. "
           "Blocks of bone, milled and leant against by the simulated hand (burr of 1.5 mm radius, 1.5 N, "
           "{:.0f} "
-          "s in the middling rows); surfaces by interpolation, counted where bone lay for two voxels around. "
-          "Edges that two passes leave between them are rounded within their voxels, as interpolation has "
-          "it; "
-          "they are reported apart and not judged. With one burr and push the shares cut in all voxels are "
+          "s in the middling rows); surfaces are interpolated, and counted only inside bone that reached two "
+          "voxels around. "
+          "Edges that two passes leave between them are rounded within their voxels, because densities are "
+          "interpolated; they are reported separately and not judged. With one burr and push the shares cut "
+          "in all voxels are "
           "alike "
           "within {:g} %.",
           100 * kVolumeWithin, 100 * kPaidWithin, effort.phase_s / 2, 100 * kAlikeWithin),
