@@ -10,7 +10,7 @@ namespace osteomill {
 
 /// Appends a line if the spring is so soft that a hand reaches no force, or so stiff that it cannot be held.
 void doubt_stiffness(std::vector<std::string>& doubts, const std::string& setting, double N_per_mm);
-/// Appends a line if a tick reads so many densities, at most, that it can take over a millisecond.
+/// Appends a line if a tick may read enough densities (at most `reads`) to take over a millisecond.
 void doubt_reads(std::vector<std::string>& doubts, const std::string& settings, int reads);
 
 }  // namespace osteomill

@@ -19,8 +19,8 @@ using testing_support::shape_volume;
 constexpr double kVoxel_mm = 0.25;
 constexpr double kDeep_mm = 0.5;
 
-// Bone whose surface is a plane, a ball or a ridge there where it is pressed, and by how many voxels it may
-// be felt too high or low where its densities change within so many.
+// Describes bone whose surface is a plane, a ball or a ridge at the contact, and the tolerance, in voxels, of
+// the felt height for a given width of its edge.
 struct Shape {
   struct Allowed {
     double edge_voxels;

@@ -7,7 +7,7 @@ namespace osteomill {
 
 namespace {
 
-// What a tick may release by its length; a longer one (a machine that stood still) counts as this long.
+// Upper bound on a tick's length, s, so that a stalled machine does not release the tool in one jump.
 constexpr double kMaxTick_s = 5e-3;
 
 }  // namespace

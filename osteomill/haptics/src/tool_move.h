@@ -31,7 +31,7 @@ struct Release {
 };
 
 /// Bounds how far the simulated tool may go in a tick. The hand feels the stretch between tool and device,
-/// and this bound keeps the stretch from leaping where bone gives way.
+/// and this bound keeps the stretch from leaping when bone gives way.
 ///
 /// The tool's translation has to end in one ball and its rotation vector in another, both in W's axes. A tool
 /// on a spring, held by frictionless surfaces, moves by some projection of the device's move. All projections
@@ -49,12 +49,12 @@ struct MoveBound {
 MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD, double spring_length_mm,
                      const Release& release, double dt_s) noexcept;
 
-/// The share (0..1) of a change that keeps `from` + share `change` in the ball about `middle`; 0 where `from`
+/// The share (0..1) of a change that keeps `from` + share `change` in the ball about `middle`; 0 if `from`
 /// is not in it.
 double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change) noexcept;
 /// The share of a move from the tick's start that stays within both balls.
 double share_within(const MoveBound& bound, const ToolMove& move) noexcept;
-/// On the way from the tick's start to the target as far as that; the target itself, to the last bit, where
+/// On the way from the tick's start to the target as far as that; the target itself, to the last bit, if
 /// it lies within both balls.
 Pose moved_within(const MoveBound& bound, const Pose& start, const Pose& target) noexcept;
 

@@ -27,14 +27,15 @@ constexpr int kCentrelinePoints = 51;
 
 // Sums over the points a tick, at most.
 constexpr int kPasses = 4;
-// A step that is to be taken shorter for the energy to fall, and how often.
+// Factor by which a step is shortened if the energy did not fall.
 constexpr double kShorter = 0.4;
-// Where the solver is done.
+// A step below both counts as converged: the sums after it would be the same.
 constexpr double kDone_mm = 2e-4;
 constexpr double kDone_rad = 2e-5;
-// Of the energy, which is summed in single precision.
+// Rounding error of the energy, as a share of it: it is summed in single precision.
 constexpr double kEnergyRounding = 1e-6;
-// Less is no rise: the last, least step and another order of summing.
+// Relative rise of the energy attributed to rounding: the last, unevaluated step and another order of
+// summing.
 constexpr double kNoRise = 1e-5;
 
 // The most that the tool moves between two gatherings, and what a gathering reaches for.
@@ -51,8 +52,8 @@ constexpr MoveSize kFarthestFlight{5.0, 0.3};
 constexpr double kStartShare = 0.2;
 constexpr double kGrownShare = 0.02;
 constexpr double kGrowth_mm_s = 5;
-// A device that moved so far in a tick was put there, not moved by a hand; the wrench then changes over so
-// long.
+// A move of the device beyond these in a tick counts as a placement, not as a motion of the hand; the wrench
+// is then blended over kRamp_s.
 constexpr double kJump_mm = 1;
 constexpr double kJump_rad = 0.1;
 constexpr double kFastestHand_mm_s = 1000;
@@ -74,7 +75,7 @@ ToolMove in_world(const Pose& X_WT, const Vector6& move_T) {
 // How often the damping is corrected, and by how much a step may then leave the balls before it is cut short.
 constexpr int kDampings = 6;
 constexpr double kBoundKept = 1.01;
-// Of a radius that is divided by: in a tick of no length nothing is released.
+// Lower bound on a radius that is a divisor, mm: in a tick of length zero nothing is released.
 constexpr double kMinRadius = 1e-9;
 
 // A small tool's skin is thinner with its rounding, so that what is drawn is felt at once. And a burr meets
@@ -92,7 +93,7 @@ double widest_spacing_mm(double core_radius_mm) {
   return kShareOfCore * core_radius_mm;
 }
 
-// Newton's step; where the energy is not convex, that of a convex one above it. Where it would leave one of
+// Newton's step; if the energy is not convex, that of a convex one above it. If it would leave one of
 // the balls in which the tool's move may end, damping in proportion to the coupling's stiffness C keeps it in
 // both, so that force and torque fade together: u = so_far_T + step, with so_far_T the move since the tick's
 // start less the balls' middles, solves (H + mu C) u = H so_far_T - g, and mu is brought to where u lies on
@@ -227,7 +228,7 @@ BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) 
   return state;
 }
 
-// What was stored must not have grown where nobody moved the device.
+// Counts a rise of the stored energy since the last tick, at the device's pose of then.
 void BarrierShell::watch_energy(const State& state) {
   if (!has_energy_) return;
   const double now_Nmm = state.barrier_Nmm + coupling_.energy_Nmm(state.X_WT, X_WD_before_);
@@ -238,7 +239,7 @@ void BarrierShell::watch_energy(const State& state) {
   counts_.worst_rise_Nmm = std::max(counts_.worst_rise_Nmm, rise_Nmm);
 }
 
-// Nothing near, nothing held back, and free space all the way.
+// Returns true if no points are gathered, the move is within the bound, and the path is clear.
 bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) {
   const ToolMove move = move_between(X_WT_, X_WD);
   const MoveSize way = size_of(move);

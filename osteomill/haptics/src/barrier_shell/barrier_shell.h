@@ -92,7 +92,7 @@ class BarrierShell final : public HapticAlgorithm {
   double ramp_ = 1;
   Wrench ramp_from_;
   Wrench sent_;
-  // At the end of the last tick; none where nothing is to be compared.
+  // At the end of the last tick; none if nothing is to be compared.
   double energy_before_Nmm_ = 0;
   bool has_energy_ = false;
   Counts counts_;

@@ -153,7 +153,8 @@ TEST(BarrierShell, TheShaftOnAnEdgeTurnsByForceTimesLever) {
   }
 }
 
-// Where the density passes the isovalue between two voxels, sought apart from the algorithm.
+// Returns the points at which the density passes the isovalue between two voxels, independently of the
+// algorithm.
 std::vector<Vec3> surface_points(const Volume& volume) {
   std::vector<Vec3> points;
   const auto& dims = volume.geometry().dims;
@@ -250,7 +251,7 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
     const double speed_mm_s = 160 + 140 * uniform(bits, -1, 1);
     EXPECT_LT(deepest_of_push(algorithm, surface, tool, from, direction, speed_mm_s, 38), 0.3) << n;
   }
-  // Nobody but the device adds energy to bone that stays as it is.
+  // Only the device adds energy while the bone does not change.
   EXPECT_EQ(algorithm.counts().energy_rises, 0u) << algorithm.counts().worst_rise_Nmm;
   EXPECT_GT(algorithm.counts().nearest_share, 0);
 }

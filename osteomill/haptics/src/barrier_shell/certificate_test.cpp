@@ -47,7 +47,7 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
     const double used =
         is_ball ? distance_used_by_ball(now.outward_T, move) : distance_used(point_T, now.outward_T, move);
     const double share = certified_share(std::max(0.0, used / now.distance_mm));
-    // Where the way is longest, and at a random place of what is certified.
+    // Checks the end of the certified move and a random point of it.
     for (const double t : {share, share * std::abs(uniform(bits, -1, 1))}) {
       const double then = distance_to(cores, after(X_WT, move, t).inverse() * point_W).distance_mm;
       const double bound = now.distance_mm - t * std::max(used, 0.0);
@@ -59,7 +59,8 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
   EXPECT_GE(min_kept, kDistanceKept - 1e-6);
 }
 
-// What slides along a core uses up nothing, however near it is; and straight at it, exactly the way.
+// A point that slides along a core uses up none of its distance, however near it is; one that moves straight
+// at it uses up exactly its way.
 TEST(Certificate, IsTightForSliding) {
   const Cores cores{1.3, 0.8, 24.8};
   const Vec3 beside_ball(0, 0, -1.3001), beside_shaft(0.8001, 0, 12);

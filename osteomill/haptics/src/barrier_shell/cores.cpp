@@ -7,7 +7,7 @@ namespace osteomill::barrier_shell {
 
 namespace {
 
-// Of a length that is divided by, and of a core.
+// Lower bounds on a length that is a divisor, and on a core's radius, mm.
 constexpr double kTiny_mm = 1e-9;
 constexpr double kMinCore_mm = 0.01;
 

@@ -8,7 +8,7 @@ namespace osteomill::barrier_shell {
 
 namespace {
 
-// Of one spring at the stretch s: energy, force, and the force's share of the stretch and its derivative.
+// Holds one spring's energy, force over stretch and stiffness at the stretch s.
 struct Spring {
   double energy;
   double per_stretch;  // force / s

@@ -20,14 +20,14 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace lane_moves = osteomill::HWY_NAMESPACE;
 
-// Never hn::MulAdd: it rounds once where the processor can, and twice elsewhere.
+// Never hn::MulAdd: it rounds once if the processor can, and twice elsewhere.
 using D = hn::CappedTag<float, NearPoints::kLanes>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 constexpr D d;
 constexpr std::size_t kWidth = hn::MaxLanes(d);
 constexpr std::size_t kGroup = NearPoints::kLanes;
-// Of a length that is divided by.
+// Lower bound on a length that is a divisor, mm.
 constexpr float kTiny_mm = 1e-6f;
 
 template <typename Number>

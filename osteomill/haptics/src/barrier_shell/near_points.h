@@ -13,7 +13,8 @@ namespace osteomill::barrier_shell {
 /// The points near one part of the tool as they were gathered, each coordinate in a row of its own: places in
 /// T at that time, and the surface that each stands for.
 struct NearPoints {
-  /// Sums run in so many lanes whatever the width of the machine's registers, and so have the same bits.
+  /// Sums run in this number of lanes, whatever the width of the machine's registers, so they have the same
+  /// bits everywhere.
   static constexpr std::size_t kLanes = 16;
 
   explicit NearPoints(std::size_t capacity);

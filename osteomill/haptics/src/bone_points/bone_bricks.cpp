@@ -13,7 +13,8 @@ constexpr std::size_t kCoarseChunks = 16384;
 // Bricks nearer than this to the tool are not forgotten.
 constexpr double kKept_mm = 2;
 
-// What looking at a brick costs, in points made: passed over, and for so many densities.
+// Cost of visiting a brick, in points built: of one that is skipped, and of each kDensitiesLookedAt densities
+// that are sampled.
 constexpr int kPassedOverCost = 2;
 constexpr int kLookedAtCost = 4;
 constexpr int kDensitiesLookedAt = 60;

@@ -33,8 +33,8 @@ void make_all(BoneBricks& bricks) {
   for_each_point(bricks, [](const Vec3&, double) {});
 }
 
-// Bricks brought up to date by the sweep, a little a tick, hold in the end what bricks made anew hold; on the
-// way no part of the old surface is missing before the new one is there.
+// Bricks that the sweep updates over several ticks hold in the end the same points as newly built bricks;
+// meanwhile no part of the old surface is missing before the new one is there.
 TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
   for (const double voxel_mm : {0.06, 0.125, 0.4}) {
     Volume volume =
@@ -87,8 +87,8 @@ VoxelBox mill_at_random(Volume& volume, std::mt19937& bits) {
   return changed;
 }
 
-// Whatever fell, and while what fell first still waits: in the end all is as if made anew, and on the way
-// every point is finite.
+// Densities fall anywhere, also while earlier changes still wait: in the end all bricks are as if newly
+// built, and meanwhile every point is finite.
 TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
   GridGeometry geometry = testing_support::centred_cube(36, 0.2);
   geometry.spacing_mm = {0.2, 0.25, 0.3};
@@ -152,7 +152,7 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
     BoneBricks anew(volume, 0.13);
     as_made_anew.push_back(heights(anew));
   }
-  // Of one of the last ticks, brick by brick.
+  // Every brick's height must be that of one of the last ticks.
   const std::vector<float> now = heights(kept);
   ASSERT_EQ(now.size(), as_made_anew.back().size());
   for (std::size_t n = 0; n < now.size(); ++n) {

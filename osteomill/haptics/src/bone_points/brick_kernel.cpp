@@ -17,16 +17,16 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Never hn::MulAdd: it rounds once where the processor can, and twice elsewhere.
+// Never hn::MulAdd: it rounds once if the processor can, and twice elsewhere.
 using D = hn::CappedTag<float, CrossingRow::kNodes>;
 using V = hn::Vec<D>;
 constexpr D d;
 constexpr std::size_t kWidth = hn::MaxLanes(d);
 
-// Of the area of a cell's face that a crossing stands for.
+// Smallest share of a cell's face that a crossing stands for, and the share of one without a normal.
 constexpr float kMinSeen = 0.02f;
 constexpr float kSeenWithoutNormal = 0.6f;
-// Of the area: crossings whose normals are against one another.
+// Normals that sum to less than this share of the area cancel each other; the point then has no normal.
 constexpr float kNoNormal = 1e-6f;
 
 HWY_INLINE V constant(float value) {
@@ -122,7 +122,7 @@ HWY_INLINE void add_means_of(const Sums& sums, unsigned cells, PointRows& points
   points.count = n + hn::CountTrue(d, chosen);
 }
 
-// The same of every node of a row.
+// Stores the sums of every node of a row.
 struct StoredSums {
   static constexpr int kSums = 7;
   alignas(64) float rows[kSums][CrossingRow::kMostNodes] = {};
@@ -140,7 +140,8 @@ struct StoredSums {
     const auto row = [&](int n) HWY_ATTR { return hn::Load(d, &rows[n][node]); };
     return {{row(0), row(1), row(2)}, row(3), {row(4), row(5), row(6)}};
   }
-  // Of cells, whose nodes follow one another, at the beginning.
+  // Sums the nodes of each cell, which follow one another, and stores the results at the beginning of the
+  // rows.
   void sum_groups(std::size_t group) {
     for (auto& row : rows) {
       for (std::size_t cell = 0; cell * group < CrossingRow::kMostNodes; ++cell) {

@@ -31,7 +31,7 @@ struct CrossingRow {
 };
 
 /// Adds a point for each of a row's `cells`, a bit each, that has crossings: their mean by the area that each
-/// stands for, that area, and the unit normal (zero where their normals are against one another). `rows` go
+/// stands for, that area, and the unit normal (zero if their normals are against one another). `rows` go
 /// through the row of cells, each of which has `group` nodes of every row: 1, or 2 to 8 of 16. In vector
 /// instructions chosen at run time, with the same bits from all of them. Safe in the haptic tick.
 void add_means(const CrossingLattice& lattice, std::span<const CrossingRow> rows, int group,

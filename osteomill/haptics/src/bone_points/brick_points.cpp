@@ -10,7 +10,7 @@ namespace osteomill {
 
 namespace {
 
-// The points from `first` on, of `count`, and nothing where there are no more.
+// The points from `first` on, of `count`, and nothing if there are no more.
 void fill(PointChunk& chunk, const PointRows& points, std::size_t first, std::size_t count) {
   const auto copy = [&](const std::vector<float>& from, std::array<float, PointChunk::kSlots>& to) {
     std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(first), PointChunk::kSlots, to.begin());
@@ -53,7 +53,7 @@ std::uint32_t BrickPoints::take_chunk() {
   return taken;
 }
 
-// Lengthens or shortens the brick's list of chunks; shorter than wanted where the pool has run out.
+// Lengthens or shortens the brick's list of chunks; shorter than wanted if the pool has run out.
 void BrickPoints::set_chunk_count(Brick& brick, std::size_t wanted) {
   std::uint32_t* link = &brick.first_chunk;
   for (std::size_t n = 0; n < wanted; ++n) {

@@ -11,7 +11,7 @@
 namespace osteomill {
 
 /// A point of the shell: where it lies in its brick's frame (mm) and the area of surface that it stands for
-/// (mm^2), and the unit normal out of that surface in the grid's axes (zero where it is not known).
+/// (mm^2), and the unit normal out of that surface in the grid's axes (zero if it is not known).
 struct ShellPoint {
   float x_mm;
   float y_mm;

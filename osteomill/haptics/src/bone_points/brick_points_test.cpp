@@ -5,7 +5,7 @@
 namespace osteomill {
 namespace {
 
-// A grid of single voxels asks for more points than there is room for only where the pool is too small; then
+// A grid of single voxels asks for more points than there is room for only if the pool is too small; then
 // points are dropped, counted, and taken in again once there is room.
 TEST(BrickPoints, APoolThatRunsOutDropsPointsAndSaysSo) {
   BrickPoints pool(2, 2);

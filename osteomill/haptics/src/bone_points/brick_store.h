@@ -16,7 +16,7 @@ class BrickStore {
   static constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
 
   BrickStore() = default;
-  /// Has room for so many bricks, and for so many chunks of their points.
+  /// Has room for this number of bricks, and of chunks of their fine and coarse points.
   BrickStore(std::size_t slots, std::size_t fine_chunks, std::size_t coarse_chunks);
 
   const BrickPoints& fine() const { return fine_; }
@@ -48,7 +48,8 @@ class BrickStore {
   }
 
  private:
-  // Which brick's points it holds, of which densities they are, and where those had no bone.
+  // Holds the brick, the change counter of the densities from which its points were built, and the rows
+  // without bone.
   struct Slot {
     VoxelIndex brick;
     std::uint32_t changes = 0;

@@ -10,15 +10,15 @@ namespace osteomill {
 
 namespace {
 
-// Points are merged into one where their mean normal is longer than this: they nearly lie in a plane.
+// Points are merged into one if their mean normal is longer than this: they nearly lie in a plane.
 constexpr float kFlat = 0.98f;
 
-// Voxels that are looked at one by one, where ranges of them are too wide to tell; and ranges, of a large
+// Voxels that are looked at one by one, if ranges of them are too wide to tell; and ranges, of a large
 // box.
 constexpr std::size_t kMostVoxels = 6 * 6 * 6;
 constexpr std::size_t kMostRanges = 5 * 5 * 5;
 
-// What was seen of some densities.
+// Accumulates whether some densities contain bone, and whether all are bone.
 struct Seen {
   bool any_bone = false;
   bool all_bone = true;
@@ -101,8 +101,8 @@ float SurfaceLattice::density(const VoxelIndex& voxel) const {
   return volume_->grid().contains(voxel) ? volume_->grid()[voxel] : outside_;
 }
 
-// The voxels on which the nodes at the ends of these bricks' edges depend, or those of so many nodes more on
-// every side; beyond the grid too.
+// Returns the voxels on which the nodes at the ends of this brick's edges depend, and those of `more_nodes`
+// further nodes on every side; the box may reach beyond the grid.
 VoxelBox SurfaceLattice::voxels_of(int level, const VoxelIndex& node, int more_nodes) const {
   const int n = brick_nodes_ << level;
   const auto& s = steps_per_voxel_;
@@ -159,7 +159,7 @@ VoxelBox SurfaceLattice::bricks_touched_by(const VoxelBox& voxels) const {
           {last(voxels.last.i, 0), last(voxels.last.j, 1), last(voxels.last.k, 2)}};
 }
 
-// The scan itself where it can be, else what is put into the block.
+// The scan itself if it can be, else what is put into the block.
 SurfaceLattice::Nodes SurfaceLattice::nodes_of(const VoxelIndex& brick, Block& block) const {
   const DensityGrid& grid = volume_->grid();
   // The first node is one below the brick's, and gradients need one more.
@@ -261,7 +261,7 @@ SurfaceLattice::Found SurfaceLattice::find_surface(const VoxelIndex& brick, RowB
   return found;
 }
 
-// Those that ranges of densities tell of, where nodes are voxels.
+// Those that ranges of densities tell of, if nodes are voxels.
 SurfaceLattice::RowBits SurfaceLattice::rows_of_bone_alone(const VoxelIndex& brick) const {
   RowBits rows{};
   const VoxelBox voxels = voxels_of(0, brick, 0);

@@ -77,7 +77,7 @@ class SurfaceLattice {
   /// Finds fine points alone, and returns what lines meet. `without_bone`: the rows in which no bone was
   /// found before, so that they need not be looked at again; adds those that it finds.
   Found find_surface(const VoxelIndex& brick, RowBits& without_bone, BrickSurface& surface) const;
-  /// Makes the coarse points of the fine ones: one for all in a cell twice as wide where they lie in a plane;
+  /// Makes the coarse points of the fine ones: one for all in a cell twice as wide if they lie in a plane;
   /// along edges all stay.
   static void merge_flat_cells(BrickSurface& surface);
 
@@ -106,7 +106,7 @@ class SurfaceLattice {
   RowBits rows_of_bone_alone(const VoxelIndex& brick) const;
   Found find_bone(const Nodes& nodes, const RowBits& bone_alone, RowBits& without_bone, Rows& rows) const;
   bool on_line(int node) const { return (on_lines_ >> node & 1) != 0; }
-  // The edges along lines from a row's nodes that are crossed; false where none is.
+  // The edges along lines from a row's nodes that are crossed; false if none is.
   bool find_crossed(const Rows& rows, int j, int k, std::uint32_t (&crossed)[3]) const {
     const std::uint32_t lower = (1u << brick_nodes_) - 1;
     const std::uint32_t on_j = on_line(j) ? lower : 0, on_k = on_line(k) ? lower : 0;
@@ -133,7 +133,7 @@ class SurfaceLattice {
   double brick_radius_mm_ = 0;
   // With the isovalue; how nodes lie in memory differs from brick to brick.
   CrossingLattice crossings_{};
-  // Nothing beyond the border, also where the least density is bone's.
+  // Density assumed outside the grid; always below the isovalue, even if the lowest density is bone's.
   float outside_ = 0;
 };
 

@@ -121,7 +121,7 @@ TEST(SurfaceLattice, AThinRodIsNotMissedInAFineScan) {
   }
 }
 
-// What stands in the scan's border is copied before it is looked at, and all else is not.
+// Densities at the scan's border are copied before they are sampled, all others are not.
 TEST(SurfaceLattice, APointNearTheBorderIsFoundAsAnyOther) {
   for (const double voxel_mm : {0.125, 0.0625, 0.031}) {
     const auto slope = testing_support::plane({0.03, 0.1, -0.04}, {0.2, 0.1, 1});

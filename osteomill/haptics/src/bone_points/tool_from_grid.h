@@ -5,7 +5,7 @@
 namespace osteomill {
 
 /// The grid's frame G of points of bone, seen from the tool: a point of G lies at `offset_mm + turn * p_G` in
-/// T. The turn mirrors where the grid is left-handed.
+/// T. The turn mirrors if the grid is left-handed.
 struct ToolFromGrid {
   Mat3 turn;
   Vec3 offset_mm;

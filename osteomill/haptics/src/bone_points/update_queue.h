@@ -38,9 +38,9 @@ class UpdateQueue {
     if (bearing_count_ < kMostBearing) bearing_[bearing_count_++] = slot;
   }
   void clear_bearing() { bearing_count_ = 0; }
-  /// Calls `use(slot)` for the bearing bricks whose turn it is. They take turns over so many calls that each
-  /// does about kBearingPerTick points, a brick costing `cost_of(slot)`. Neighbours, whose slots follow one
-  /// another, have their turns in different calls.
+  /// Calls `use(slot)` for the bearing bricks whose turn it is. They take turns over enough calls that each
+  /// call does about kBearingPerTick points, a brick costing `cost_of(slot)`. Neighbours, whose slots follow
+  /// one another, have their turns in different calls.
   template <typename CostOf, typename Use>
   void take_bearing_turns(const CostOf& cost_of, const Use& use) {
     int cost = 0;

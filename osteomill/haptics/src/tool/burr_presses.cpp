@@ -13,7 +13,7 @@ namespace {
 // How far apart the burr is looked at, and how often at most; it is asked in every tick.
 constexpr double kApart_mm = 0.25;
 constexpr int kMaxLooks = 256;
-// The cosine with the force's direction beyond which the ball, moved on, hardly goes where it was not.
+// Smallest cosine with the force's direction: at smaller ones the moved ball hardly reaches new space.
 constexpr double kRim = 0.25;
 
 }  // namespace

@@ -80,7 +80,7 @@ std::optional<ToolDistance> SampledDistanceField::at(const Vec3& point_T) const 
   }
   const Vec3 gradient(sum[1], sum[2], sum[3]);
   const double length = gradient.norm();
-  // Opposite gradients may cancel on the axis, where tool_distance has no particular direction either.
+  // Opposite gradients may cancel on the axis, for which tool_distance has no particular direction either.
   return ToolDistance{sum[0], length > 1e-6 ? Vec3(gradient / length) : Vec3(-Vec3::UnitZ())};
 }
 

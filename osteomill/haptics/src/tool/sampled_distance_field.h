@@ -15,11 +15,11 @@ namespace osteomill {
 class SampledDistanceField {
  public:
   /// Fills the grid from `tool_distance`; allocates 16 bytes a node. The grid reaches two nodes beyond the
-  /// tool's bounding box. Throws std::invalid_argument where an argument is out of range, or the grid would
+  /// tool's bounding box. Throws std::invalid_argument if an argument is out of range, or the grid would
   /// have more than 16 million nodes.
   SampledDistanceField(const MillingTool& tool, double spacing_mm);
 
-  /// A spacing that suits the (valid) tool: a 25th of its smaller radius, or more where that took over 2
+  /// A spacing that suits the (valid) tool: a 25th of its smaller radius, or more if that took over 2
   /// million nodes.
   static double suitable_spacing_mm(const MillingTool& tool);
 

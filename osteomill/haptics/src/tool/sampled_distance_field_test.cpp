@@ -16,7 +16,7 @@ using testing_support::uniform;
 const MillingTool kTool{1.5, 1.0, 25.0};
 
 // Points of the depths at which contact happens, away from the tool's creases (the seam of burr and shaft,
-// the rim of the flat end, the axis), where interpolation cannot follow the kink.
+// the rim of the flat end, the axis), at which interpolation cannot follow the kink.
 bool is_smooth_near(const Vec3& point, double reach_mm) {
   const double distance = tool_distance(kTool, point).distance_mm;
   if (std::abs(distance) > 0.6) return false;

@@ -78,7 +78,7 @@ struct AlgorithmDescription {
   AlgorithmId id;
   /// One line.
   std::string summary;
-  /// The setting by which its resolution is chosen, and what people call that; empty where there is none.
+  /// The setting by which its resolution is chosen, and what people call that; empty if there is none.
   std::string resolution_setting = {};
   std::string resolution_name = {};
   std::vector<SettingDescription> settings = {};

@@ -17,8 +17,8 @@ bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_
                   const Vec3& force_W_N) noexcept;
 
 /// A burr may swing on the bone that it presses on and lose it for some ticks. It still counts as pressing
-/// for as long as bone was ahead of it before, but for no longer than this; and milling keeps what it could
-/// not spend for as long.
+/// for as long as bone was ahead of it before, and at most for this time. Milling keeps an unspent budget for
+/// the same time.
 inline constexpr double kPressingKept_s = 0.01;
 
 /// Follows `burr_presses` from tick to tick, and keeps it true for kPressingKept_s.

@@ -24,7 +24,7 @@ struct ToolBox {
 ToolBox bounding_box(const MillingTool& tool);
 
 /// The distance of a point to the tool's surface, negative inside, and the unit direction in which it grows
-/// fastest (out of the tool), both in T. On the axis, where there is no such direction, some unit vector.
+/// fastest (out of the tool), both in T. On the axis, which has no such direction, it is some unit vector.
 struct ToolDistance {
   double distance_mm;
   Vec3 outward_T;

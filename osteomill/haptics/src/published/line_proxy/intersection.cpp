@@ -26,7 +26,7 @@ std::optional<WalkHit> most_active_vertex(const Volume& volume, std::span<const 
 
 constexpr int kSubsteps = 4;
 
-// A quarter of the vertices' spacing along b; nothing where b has no direction.
+// A quarter of the vertices' spacing along b; nothing if b has no direction.
 Vec3 substep_along(const Vec3& b, std::span<const Vec3> vertices_T) {
   const double length = b.norm();
   if (vertices_T.size() < 2 || !(length > 0.0) || !std::isfinite(length)) return Vec3::Zero();

@@ -20,8 +20,8 @@ struct WalkHit {
   /// Its places at step n-1 and at step n, in W.
   Vec3 before_W;
   Vec3 at_W;
-  /// Eq. 1, the smallest of the active vertices: 0 to 1 where it was outside before; anything, also not
-  /// finite, where it was in bone already.
+  /// Eq. 1, the smallest of the active vertices: 0 to 1 if it was outside before; anything, also not
+  /// finite, if it was in bone already.
   double fraction;
 
   /// Eq. 2: the intersection point IP.
@@ -31,7 +31,7 @@ struct WalkHit {
 /// The translation/rotation method of section 4.3: from the pose of the tick before to that of this tick,
 /// first the whole translation, then the whole rotation (the shorter way round, about the tip), step by step
 /// until a vertex of the shaft collides. `vertices_T` are the shaft's; the tip's vertex has a proxy of its
-/// own and takes no part. Nothing where none collides on the way. Safe in the haptic tick.
+/// own and takes no part. Nothing if none collides on the way. Safe in the haptic tick.
 std::optional<WalkHit> walk_to_collision(const Volume& volume, std::span<const Vec3> vertices_T,
                                          const Pose& X_WT_before, const Pose& X_WT, const WalkSteps& steps);
 

@@ -28,7 +28,7 @@ std::vector<std::string> LineProxy::doubts_about(const MillingTool&, const GridG
   std::vector<std::string> doubts;
   doubt_stiffness(doubts, "line-proxy: a stiffness", settings_.stiffness_N_per_mm);
   // A tick in which the shaft first touches looks at all vertices in each step of the walk.
-  doubt_reads(doubts, "line-proxy: so many vertices",
+  doubt_reads(doubts, "line-proxy: this number of vertices",
               (kWalk.translation + kWalk.rotation) * settings_.vertices);
   return doubts;
 }

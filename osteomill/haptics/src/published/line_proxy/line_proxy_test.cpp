@@ -43,7 +43,8 @@ Pose standing(const Vec3& tip_W, const Vec3& shaft) {
   return {tip_W, smallest_rotation(Vec3::UnitZ(), shaft)};
 }
 
-// Straight from one place to another in so many ticks and then at rest as long again; the last step.
+// Moves the device straight from one place to another in `ticks` ticks, holds it as long again, and returns
+// the last step.
 HapticStep push(LineProxy& algorithm, const Pose& from, const Vec3& to_W, int ticks) {
   HapticStep step;
   for (int n = 0; n <= 2 * ticks; ++n) {
@@ -177,7 +178,7 @@ Volume block_with_edge() {
 Pose leaning(double tip_x) {
   return standing({tip_x, 0.1, -6.1}, {-0.4, 0, 1});
 }
-// Where the shaft is at the height of the edge, 10.1 mm above its tip, when it just touches.
+// The tip's x when the shaft just touches the edge, 10.1 mm above the tip.
 constexpr double kTouchingTip_x = 0.4 * 10.1;
 
 TEST(LineProxy, TheShaftMeetsAnEdgeAtTheEdge) {

@@ -20,8 +20,8 @@ double voxel_mm(const Volume& volume) {
   return volume.geometry().spacing_mm.minCoeff();
 }
 
-// Where the way from a point in bone along the unit vector leaves it, looked at every `step_mm` up to
-// `reach_mm`.
+// Returns the point at which the ray from a point in bone along the unit vector leaves bone, sampled every
+// `step_mm` up to `reach_mm`.
 std::optional<Vec3> exit_along(const Volume& volume, const Vec3& point_W, const Vec3& out_W, double step_mm,
                                double reach_mm) {
   Vec3 inside_W = point_W;
@@ -40,8 +40,8 @@ std::optional<Vec3> raised_out(const Volume& volume, const Vec3& point_W) {
   return exit_along(volume, point_W, *normal, 0.25 * voxel_mm(volume), 2 * voxel_mm(volume));
 }
 
-// Along the tangent and back to the isosurface. Where the surface falls away by more than 45 degrees the
-// point is left in the air, for the next march; where it rises by more than that the slide ends at the wall.
+// Along the tangent and back to the isosurface. If the surface falls away by more than 45 degrees the
+// point is left in the air, for the next march; if it rises by more than that the slide ends at the wall.
 Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const Vec3& normal) {
   const Vec3 aside = proxy_W + tangent;
   const double reach_mm = tangent.norm() + kTouching_mm;

@@ -21,7 +21,7 @@ bool is_apart(const ToolBox& tool_box, const VoxelShell::NodeBox& node, const To
   return ((X_TG.turn.transpose() * between).cwiseAbs().array() > along_node.array()).any();
 }
 
-// The same sum in the axes of an outer frame, `R` being those of this one in it.
+// Returns the sum in the axes of an outer frame; `R` has this frame's axes in it.
 EnergySum in_outer(const Mat3& R, const EnergySum& sum) {
   const auto turned = [&](const Mat3& K) -> Mat3 { return R * K * R.transpose(); };
   EnergySum outer;

@@ -139,7 +139,7 @@ auto voxel_centres(int scale) {
 const std::vector<Vec3> kNormals{{0, 0, 1},     {1, 0, 0},  {1, 1, 0},      {1, 1, 1},         {1, 2, 3},
                                  {0.05, 0, -1}, {3, -2, 1}, {-0.4, 0.9, 2}, {0.37, 0.61, -0.2}};
 
-// What the paper's way gives: centres lie inside the bone, half a voxel and more, and are fewer where it
+// With the paper's method centres lie inside the bone, by half a voxel and more, and are fewer where it
 // slopes.
 TEST(PlaneContact, PaperIsTooSoftByASlopeDependentPart) {
   const PlaneRatios straight = slide_over_plane(voxel_centres(1), {0, 0, 1}, 0.25, 2);

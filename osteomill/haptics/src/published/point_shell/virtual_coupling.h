@@ -8,8 +8,8 @@
 namespace osteomill::point_shell {
 
 /// A spring and a damper between the simulated tool and the device. Each damper is its spring's stiffness
-/// times one time, which is told in ticks: the stretch counts as if it went on so long as it changed since
-/// the tick before.
+/// times one time, which is given in ticks: the stretch counts as if it continued for this time to change as
+/// since the tick before.
 struct VirtualCoupling {
   double translational_N_per_mm;
   double torsional_Nmm_per_rad;

@@ -30,7 +30,7 @@ std::vector<std::string> SurfacePoints::doubts_about(const MillingTool& tool, co
          << most_N << " N on a burr of " << tool.burr_radius_mm << " mm, beyond which it falls through";
     doubts.push_back(line.str());
   }
-  doubt_reads(doubts, "surface-points: so many slices and vertices",
+  doubt_reads(doubts, "surface-points: this number of slices and vertices",
               2 * (settings_.sphere_vertices + settings_.slices * settings_.circle_vertices));
   return doubts;
 }

@@ -54,7 +54,7 @@ class SurfacePoints final : public HapticAlgorithm {
     Vec3 centre_T = Vec3::Zero();
     // From the centre to each vertex.
     std::vector<Vec3> arms_T;
-    // Of this step or, if the centre is in bone, of the last step when it was not: (17), (19).
+    // The force of this step or, if the centre is in bone, of the last step when it was not: (17), (19).
     Vec3 force_W_N = Vec3::Zero();
     // Always of this step.
     int contacts = 0;
