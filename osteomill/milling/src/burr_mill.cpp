@@ -25,8 +25,8 @@ namespace {
 
 constexpr double kForgetAfter_s = 0.05;
 constexpr double kMaxAhead_mm_s = 20;
-// So many pieces of rows a tick are looked at; up to the second number rather than have some lines cut so
-// much deeper than the others.
+// Target and hard limit for the pieces of rows in a tick. The limit applies if skipping lines would leave
+// differences in height above kMaxUneven_voxels.
 constexpr std::size_t kPiecesOfTick = 1024;
 constexpr std::size_t kMaxPiecesOfTick = 4096;
 constexpr double kMaxUneven_voxels = 0.6;
@@ -53,12 +53,13 @@ double max_ahead(const GridGeometry& geometry) {
   return pressing_reach_mm(geometry) + kFarther_voxels * geometry.spacing_mm.maxCoeff();
 }
 
-// Where the ball's leading half cuts nothing, however deep in bone the burr is.
+// Returns how far back, as a negative distance, the ball's leading half cuts nothing, however deep in bone
+// the burr is.
 double min_ahead(const GridGeometry& geometry, double radius_mm) {
   return -radius_mm - CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
 }
 
-// Of a ball about the burr and the same ball ahead of it.
+// Returns the radius, about the midpoint, that encloses a ball about the burr and the same ball ahead of it.
 double reach_mm(const GridGeometry& geometry, double radius_mm, double ahead_mm) {
   return radius_mm + 0.5 * ahead_mm + CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
 }
@@ -107,7 +108,7 @@ MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N
       advance_within(budget_mm3 / mm3_per_density_, voxels_, ahead_mm_, min_ahead_mm_, max_ahead_mm);
   ahead_mm_ = advance.ahead_mm;
   const MillingStep done = lower_found(voxels_.find_lowered(ahead_mm_, advance.shares));
-  // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.
+  // Below zero by a rounding error if floats were rounded in the burr's favour; the next step pays for it.
   carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kPressingKept_s * rate_mm3_s);
   return done;
 }

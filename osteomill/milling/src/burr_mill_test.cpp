@@ -93,7 +93,7 @@ TEST(BurrMill, ABurrThatIsHeldWhereItIsPressesAsLongAsItCuts) {
           removed_mm3 += mill.step(centre_W, 1.5 * down, 1e-3).removed_mm3;
         }
         EXPECT_LT(last_pressed_s, 0.9) << spacing_mm << ' ' << radius_mm << ' ' << normal.transpose();
-        // But for what is kept for a burr that swings.
+        // The tolerance is the budget that is kept for a burr that swings.
         EXPECT_NEAR(removed_mm3, pressed_mm3, 2 * kPressingKept_s * kMilling.removal_rate_mm3_per_Ns * 1.5)
             << spacing_mm << ' ' << radius_mm << ' ' << normal.transpose();
       }
@@ -140,7 +140,7 @@ bool touches_surface(const Volume& volume, const Vec3& centre) {
 }
 
 TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
-  // As a proxy does, the burr stays on the surface and never sinks in. The denser the bone, the farther its
+  // The burr stays on the surface, like a proxy, and never sinks in. The denser the bone, the farther its
   // voxels lie behind the isosurface.
   for (const double spacing_mm : {0.125, 0.25}) {
     for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(Vec3::Ones().normalized())}) {

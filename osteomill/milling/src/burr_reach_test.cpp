@@ -47,7 +47,7 @@ void for_each_found(const BurrReach& reach, const Visit& visit) {
   }
 }
 
-// As the mill does: what holds nothing is forgotten.
+// Removes empty entries, as the mill does.
 void forget_empty(BurrReach& reach, const Volume& volume) {
   for (const BurrReach::Piece& piece : reach.pieces()) {
     unsigned gone = 0;

@@ -1,4 +1,4 @@
-// What a burr cuts that is driven along a path, against what it sweeps there.
+// Compares what a burr driven along a path cuts with what it sweeps.
 #include <cmath>
 #include <functional>
 
@@ -23,7 +23,7 @@ const MillingSettings kMilling{.removal_rate_mm3_per_Ns = 1.5};
 
 using Shape = std::function<double(const Vec3&)>;
 
-// Where the burr goes through which bone: from `start` on by `length_mm` along `ahead`, pressed that way.
+// Describes a burr's path through bone: from `start` by `length_mm` along `ahead`, pressed in that direction.
 struct Drive {
   const char* name;
   Shape bone;
@@ -159,7 +159,7 @@ TEST(BurrSweep, ByBurrsOfAnySizeAndForce) {
   }
 }
 
-// Where lines of voxels have their turn, as they do in fine voxels, no line is left behind.
+// If lines of voxels take turns, as in fine voxels, no line is left behind.
 TEST(BurrSweep, LeavesNoIslandsInFineVoxels) {
   const Vec3 spacing = Vec3::Constant(0.03125);
   for (const double force_N : {1.5, 9.0}) {

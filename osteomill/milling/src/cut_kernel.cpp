@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Never hn::MulAdd: it rounds once where the processor can, and twice elsewhere.
+// Never hn::MulAdd: it rounds once if the processor can, and twice elsewhere.
 using D = hn::CappedTag<float, CutLists::kLanes>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
@@ -25,7 +25,7 @@ constexpr D d;
 constexpr hn::RebindToSigned<D> di;
 constexpr std::size_t kWidth = hn::MaxLanes(d);
 constexpr std::size_t kGroup = CutLists::kLanes;
-// Of a length that is divided by.
+// Lower bound on a length that is a divisor, mm.
 constexpr float kTiny_mm = 1e-6f;
 
 HWY_INLINE V constant(float value) {
@@ -86,7 +86,7 @@ unsigned GatherPiece(const CutPiece& piece, const CutKernelBall& ball, const Cut
   return denser;
 }
 
-// Of a list's entries: whether the ball's leading half cuts it, and to which density.
+// Holds for a list's entries whether the ball's leading half cuts them, and to which density.
 struct Cut {
   M leads;
   V along, moved, from_centre, per_mm, t, density;
@@ -136,7 +136,7 @@ void LowerDensities(CutLists& lists, float radius, const CutProfile& profile, fl
     const V before = hn::LoadU(d, &lists.before[n]);
     const V drop = hn::Max(hn::Sub(before, c.density), hn::Zero(d));
     const V left = hn::Mul(hn::IfThenElse(c.leads, leading, trailing), drop);
-    // Exactly the profile's where nothing is left of a drop, so that the next cut finds nothing to do.
+    // Exactly the profile's if nothing is left of a drop, so that the next cut finds nothing to do.
     hn::StoreU(hn::Min(before, hn::Add(c.density, left)), d, &lists.after[n]);
   }
 }

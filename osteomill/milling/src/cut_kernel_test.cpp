@@ -48,7 +48,7 @@ Gathered gathered(const Volume& bone, double max_ahead_mm) {
   return g;
 }
 
-// What the leading and the trailing half would cut, voxel by voxel, in doubles.
+// Returns what the leading and the trailing half would cut, voxel by voxel, in doubles.
 CutVoxels::Cost plain_cost(const Volume& bone, const CuttingBall& ball, double ahead_mm) {
   const GridGeometry& geometry = bone.geometry();
   CutVoxels::Cost cost;
@@ -128,7 +128,7 @@ TEST(BurrAdvance, SpendsTheBudgetAndNoMore) {
   for (const double budget : {0.0, -1e-9}) {
     const BurrAdvance none = advance_within(budget, g.voxels, 0, -1, 0.2);
     EXPECT_LE(g.voxels.find_lowered(none.ahead_mm, none.shares), 1e-3)
-        << budget << ", but for how floats round";
+        << budget << ", up to the rounding of floats";
   }
   const BurrAdvance more = advance_within(3 * (all.leading + all.trailing), g.voxels, 0, -1, 0.2);
   EXPECT_EQ(more.ahead_mm, 0.2) << "all that is in reach";

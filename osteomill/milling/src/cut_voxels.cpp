@@ -10,7 +10,7 @@ namespace osteomill {
 namespace {
 
 constexpr std::size_t kLanes = CutLists::kLanes;
-// Of drops summed as floats, before they are added to a double.
+// Number of drops that are summed as floats before the sum is added to a double.
 constexpr std::size_t kBlock = 64 * kLanes;
 
 double sum_of(const float (&lanes)[kLanes]) {
@@ -39,10 +39,10 @@ void put_nothing(CutLists& lists, std::size_t n, float surroundings) {
 constexpr int kMaxPasses = 25;
 constexpr double kTolerance = 0.01;
 constexpr double kNoDistance_mm = 1e-7;
-// Of the budget, for what the trailing half overlaps.
+// Largest share of the budget for the bone that the trailing half overlaps.
 constexpr double kMaxTrailing = 0.5;
 
-// All of nothing where there is nothing; a budget may be below zero by what floats rounded before.
+// All of nothing if there is nothing; a budget may be below zero by what floats rounded before.
 double part(double of, double all) {
   const double spent = std::max(of, 0.0);
   return all > spent ? spent / all : 1.0;

@@ -10,8 +10,8 @@ constexpr double kSmooth_s = 0.01;
 // Less is nothing, so that a tool in free space feels just that.
 constexpr double kNothing_N = 1e-4;
 constexpr double kNothing_Nmm = 1e-4;
-// Of the unit normals n over half a ball, weighted by their cosine to `ahead`: the mean of n . ahead, and in
-// the mean of n n^T what is alike in all directions and what is along `ahead` alone.
+// Means over the unit normals n of half a ball, weighted by their cosine to `ahead`: the mean of n . ahead,
+// and the isotropic part and the part along `ahead` of the mean of n n^T.
 constexpr double kMeanAlong = 2.0 / 3.0;
 constexpr double kAround = 0.25;
 constexpr double kAlong = 0.25;

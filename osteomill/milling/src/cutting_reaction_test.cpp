@@ -65,8 +65,8 @@ TEST(CuttingReaction, IsThatOfItsPiecesHeldBackAgainstTheirSpeed) {
   }
 }
 
-// Seen from the hand it turns clockwise: pressed to the right, where its rim comes towards whoever stands
-// below, it walks off away from them.
+// Seen from the hand it turns clockwise: pressed to the right, where its rim comes towards a person who
+// stands below, it walks off away from that person.
 TEST(CuttingReaction, TheBurrWalksOffAgainstItsTurning) {
   const Wrench wrench = settled({1.5, 0, 0});
   EXPECT_NEAR(wrench.force_N.y(), 2.0 / 3.0 * 0.3 * 1.5, 1e-9);
@@ -108,7 +108,7 @@ TEST(CuttingReaction, IsBoundedAndHasNoSteps) {
   EXPECT_EQ(reaction.wrench().force_N.norm(), 0) << "the spindle is off";
 }
 
-// What the spindle's torque gave is what the bone cost, however the burr stands.
+// The work of the spindle's torque equals the cost of the bone, whatever the burr's orientation.
 TEST(CuttingReaction, TheSpindlePaysForTheBone) {
   using testing_support::centred_cube;
   using testing_support::plane;

@@ -39,7 +39,7 @@ TEST(LabelTally, TellsOfEveryLabelInItsTurn) {
   EXPECT_DOUBLE_EQ(sum, added);
 }
 
-// What lies above a plane at height z of a ball of this radius about the origin.
+// Returns the volume of the part above a plane at height z of a ball of this radius about the origin.
 double cap_mm3(double radius_mm, double z) {
   const double h = radius_mm - z;
   return std::numbers::pi * h * h * (3 * radius_mm - h) / 3;
@@ -68,7 +68,7 @@ TEST(BurrMill, SharesOutACarvedBallAmongLabelsAsGeometryDoes) {
   const double ball_mm3 = 4 * std::numbers::pi * std::pow(kRadius_mm, 3) / 3;
   const double disc_mm2 = std::numbers::pi * kRadius_mm * kRadius_mm;
   const double ahead_mm = (removed_mm3 - ball_mm3) / disc_mm2;
-  // As far as it goes at most: 0.12 mm and half a voxel.
+  // The farthest that it goes: 0.12 mm and half a voxel.
   EXPECT_NEAR(ahead_mm, 0.17, 0.03);
   const auto above_mm3 = [&](double z) {
     const double segment_mm2 =

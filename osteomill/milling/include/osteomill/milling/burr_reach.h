@@ -51,7 +51,7 @@ class BurrReach {
   static constexpr int kSide = BlockRanges::kBrickVoxels;
   /// A bit a voxel: whether it may be denser than the floor. Byte j + 8 k, bit i.
   using Bits = std::array<std::uint8_t, kSide * kSide>;
-  /// Indices along one axis, both ends among them; none where last < first.
+  /// Indices along one axis, both ends among them; none if last < first.
   struct Span {
     int first = 0;
     int last = -1;

@@ -10,7 +10,7 @@
 
 namespace osteomill {
 
-/// The density that cutting leaves `t` voxels outside a cut surface (inside it where negative), counted along
+/// The density that cutting leaves `t` voxels outside a cut surface (inside it if negative), counted along
 /// the surface's normal: the isovalue on it, the surroundings one voxel inside, as much above the isovalue
 /// one voxel outside, and from there on so steep that bone soon stays as it is. It does not depend on what
 /// was there, so cutting to the same surface again changes nothing. docs/algorithms.md.
@@ -57,7 +57,7 @@ struct CutLists {
 /// the ball that lies ahead of its centre (leading) is moved along `ahead`, the other half (trailing) stays.
 class CutVoxels {
  public:
-  /// Makes room for so many voxels and rows at once.
+  /// Allocates room for `voxels` voxels and `rows` rows at once.
   CutVoxels(const GridGeometry& geometry, std::size_t voxels, std::size_t rows);
 
   /// Gathers, from the rows found about the ball, the voxels that it lowers with the leading half up to
