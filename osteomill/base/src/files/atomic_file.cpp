@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A name beside `path` that `create` makes a file or folder of, which it does not where there is one. Keeps
+// A name beside `path` that `create` makes a file or folder of, which it does not if there is one. Keeps
 // the extension last, since libraries choose a format by it.
 template <typename Create>
 fs::path create_beside(const fs::path& path, const Create& create) {
@@ -53,11 +53,11 @@ bool is_device_or_pipe(const fs::path& path) {
 }
 
 void write_into(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  // Whoever opens a FIFO otherwise waits until somebody reads.
+  // Opening a FIFO otherwise waits until another program reads it.
   const int reader_is_there = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (reader_is_there < 0)
     throw InputError(path.string(),
-                     errno == ENXIO ? "is a pipe that nobody reads" : "cannot be opened for writing");
+                     errno == ENXIO ? "is a pipe that no program reads" : "cannot be opened for writing");
   std::ofstream out(path, std::ios::binary);
   ::close(reader_is_there);
   const TemporaryFolder folder;
@@ -88,7 +88,7 @@ class HeldFolder {
   }
   HeldFolder(const HeldFolder&) = delete;
   HeldFolder& operator=(const HeldFolder&) = delete;
-  // Also false if the file system has no such locks (folders on NFS): there nobody knows.
+  // Also false if the file system has no such locks (folders on NFS): the lock is unknown there.
   bool take() const { return descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0; }
 
  private:
@@ -131,7 +131,7 @@ void remove_stale(const fs::path& folder, const std::function<bool(const std::st
   }
 }
 
-// What is being handled, of a file beside by the name that it was to have.
+// Throws the current exception again, with a temporary file's name replaced by its final one.
 [[noreturn]] void throw_by_its_name(const fs::path& beside, const fs::path& folder) {
   try {
     throw;
@@ -163,7 +163,7 @@ fs::path output_path(const fs::path& path) {
   std::error_code error;
   require_not_input(path);
   if (fs::is_directory(path, error)) throw InputError(path.string(), "cannot be written: it is a folder");
-  // What the system itself calls a link to a pipe (/dev/stdout) has no other name.
+  // A link of the system to a pipe (/dev/stdout) has no other name.
   if (is_device_or_pipe(path)) return path;
   fs::path target = path;
   for (int n = 0; fs::is_symlink(fs::symlink_status(target, error)); ++n) {

@@ -158,7 +158,7 @@ TEST_F(AtomicFileTest, OfFilesThatBelongTogetherNoneIsLeftWhereOneFails) {
   };
   EXPECT_THROW(write_folder_atomically(folder_ / "new", fail), InputError);
   EXPECT_EQ(file_count(), 0);
-  // Nor where it turns out only as they are moved.
+  // Nor if it turns out only as they are moved.
   fs::create_directories(folder_ / "b.csv");
   EXPECT_THROW(write_folder_atomically(folder_,
                                        [](const fs::path& beside) {

@@ -26,7 +26,7 @@ int open_to_look(const fs::path& path) {
   return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 }
 
-// False, with errno EEXIST, where the new name is taken. NFS only has the way by a link.
+// False, with errno EEXIST, if the new name is taken. NFS only has the way by a link.
 bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL) return false;
@@ -50,7 +50,7 @@ bool FileLock::is_at(const fs::path& path) const {
          held.st_ino == named.st_ino && held.st_dev == named.st_dev;
 }
 
-// Whoever held it may have renamed or removed it meanwhile.
+// The former holder may have renamed or removed the file meanwhile.
 std::optional<FileLock> FileLock::of(const fs::path& path) {
   FileLock lock(open_to_look(path));
   if (lock.descriptor_ < 0 || !lock.take() || !lock.is_at(path)) return std::nullopt;

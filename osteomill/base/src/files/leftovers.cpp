@@ -20,7 +20,8 @@ namespace {
 constexpr std::array kSignals{SIGTERM, SIGINT, SIGHUP};
 std::array<struct sigaction, kSignals.size()> actions_before;
 
-// What is taken from a place belongs to whoever took it. More than there are places for are left.
+// A path that is taken from an entry belongs to the thread that took it. Files for which there is no entry
+// are left.
 std::array<std::atomic<char*>, 64> places{};
 
 // From here on only what is safe in a signal's handler. Other threads may still put files into a folder.

@@ -40,8 +40,8 @@ std::string number_of(const addrinfo* found) {
   return number.data();
 }
 
-// Empty where nobody knows it. A name server that does not answer keeps a thread of its own waiting, so that
-// neither opening a device again nor ending the program waits for it.
+// Returns the address of a host; empty if the name is not known. A name server that does not answer keeps a
+// thread of its own waiting, so that neither opening a device again nor ending the program waits for it.
 std::string resolved(const std::string& host) {
   std::promise<std::string> promise;
   std::future<std::string> number = promise.get_future();
@@ -80,7 +80,7 @@ Socket::Socket(const std::string& device, const HostAndPort& at, Kind kind) : ki
       error != 0)
     throw InputError(device, gai_strerror(error));
   socket_ = ::socket(found->ai_family, found->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  // Datagrams too, so that nobody else is heard.
+  // Also for datagrams, so that those of other senders are ignored.
   int reason = ::connect(socket_, found->ai_addr, found->ai_addrlen) == 0 ? 0 : errno;
   freeaddrinfo(found);
   if (reason == EINPROGRESS) {

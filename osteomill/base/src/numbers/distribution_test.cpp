@@ -25,7 +25,7 @@ TEST(Distribution, KnownValues) {
   EXPECT_DOUBLE_EQ(distribution_of({}).max, 0);
 }
 
-// Against counting in whole numbers: the least k with 1000 k >= share in thousandths * n, and where the two
+// Against counting in whole numbers: the least k with 1000 k >= share in thousandths * n, and if the two
 // are equal its neighbour too.
 TEST(Percentile, RanksAreExactOfEveryNumberOfValues) {
   for (std::size_t n = 1; n <= 2000; ++n) {

@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace osteomill {
 namespace HWY_NAMESPACE {
 
-/// The mask as a number: bit n is set where the mask names lane n.
+/// The mask as a number: bit n is set if the mask names lane n.
 template <class D>
 HWY_INLINE unsigned bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
@@ -41,7 +41,7 @@ inline constexpr auto kLaneOrder = [] {
 
 /// Moves the lanes that a mask names to the front of a vector, in their order; what the other lanes hold
 /// afterwards is undefined. One object serves any number of vectors. Highway's own Compress looks up its
-/// table anew for each vector, and GCC 12 copies that whole table to the stack first: with AVX2, two thirds
+/// table again for each vector, and GCC 12 copies that whole table to the stack first: with AVX2, two thirds
 /// of the time of gathering points.
 template <class D>
 class CompressLanes {

@@ -7,7 +7,7 @@
 namespace osteomill {
 
 /// A percentile, wherever osteomill writes one, is the least value that at least this share (0 to 1) of the
-/// values do not exceed; where exactly that share does not exceed it, it is the mean of that value and the
+/// values do not exceed; if exactly that share does not exceed it, it is the mean of that value and the
 /// next (Hyndman and Fan 1996, type 2). So 0.5 gives the usual median, 0 the least value, 1 the greatest.
 /// The percentile is the mean of the values with these two ranks, counted from 1.
 struct PercentileRanks {

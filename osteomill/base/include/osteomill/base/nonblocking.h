@@ -1,6 +1,6 @@
 #pragma once
 
-/// `[[clang::nonblocking]]` where the compiler knows it (clang 20 and later): behind `noexcept` it marks what
+/// `[[clang::nonblocking]]` if the compiler knows it (clang 20 and later): behind `noexcept` it marks what
 /// the haptic tick calls, so that -Wfunction-effects and the real-time sanitizer look into implementations
 /// and programs of others too.
 #ifdef __has_cpp_attribute
