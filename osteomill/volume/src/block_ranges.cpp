@@ -6,7 +6,7 @@ namespace osteomill {
 
 namespace {
 
-// The first brick whose range counts voxel coordinate `v`: its own, or the one below where `v` is the layer
+// The first brick whose range counts voxel coordinate `v`: its own, or the one below if `v` is the layer
 // between.
 int first_counting(int v) {
   const int own = v / BlockRanges::kBrickVoxels;

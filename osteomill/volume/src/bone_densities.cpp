@@ -55,7 +55,7 @@ std::optional<double> median(const ForEach& for_each) {
   return static_cast<double>(std::bit_cast<float>((rank >> 31) != 0 ? rank & ~(1u << 31) : ~rank));
 }
 
-// The density some steps out of the bone along an axis, where all voxels on the way are in the grid and not
+// The density some steps out of the bone along an axis, if all voxels on the way are in the grid and not
 // bone.
 std::optional<float> density_away(const Volume& volume, const VoxelIndex& bone, std::size_t axis, int sign) {
   std::array<int, 3> v{bone.i, bone.j, bone.k};
@@ -67,7 +67,7 @@ std::optional<float> density_away(const Volume& volume, const VoxelIndex& bone, 
   return volume.grid()[{v[0], v[1], v[2]}];
 }
 
-// Of the places around the bone that lie well outside of it.
+// Returns the median density of the voxels around the bone that lie well outside of it.
 std::optional<double> median_around(const Volume& volume) {
   std::vector<float> around;
   {

@@ -186,7 +186,7 @@ double enamel_thickness_mm(double x, double y, double z) {
   return 1.35 * std::sqrt(ramp(up) * (2 - ramp(up))) + 0.65 * smooth_ramp((z - kContour_z) / 2.5);
 }
 
-// Turns an implicit function into mm near its surface, where its slope is not 1.
+// Turns an implicit function into mm near its surface, if its slope is not 1.
 template <typename Shape>
 double in_mm(const Shape& shape, double value, double x, double y, double z) {
   constexpr double kStep = 0.02;
@@ -232,7 +232,7 @@ GridGeometry tooth_geometry(double refinement) {
   return geometry;
 }
 
-// A block of voxels is skipped where the tooth is farther from its centre than any of its voxels.
+// A block of voxels is skipped if the tooth is farther from its centre than any of its voxels.
 constexpr int kBlock = 8;
 constexpr double kSteepest = 2.0;
 

@@ -129,7 +129,7 @@ TEST(BuiltinTooth, IsTheSameToothAtAnyRefinement) {
   EXPECT_EQ(coarse.geometry().dims, (std::array<int, 3>{128, 128, 88}));
   EXPECT_EQ(coarse.geometry().spacing_mm, Vec3::Constant(0.25));
   EXPECT_NEAR(bone_volume_mm3(coarse) / bone_volume_mm3(tooth()), 1, 0.02);
-  // The eight fine voxels about a coarse one have its density for their mean, but for the bends of the edges.
+  // The mean of the eight fine voxels about a coarse one is its density, except at the bends of the edges.
   double worst = 0, sum = 0;
   for (int k = 0; k < 88; ++k)
     for (int j = 0; j < 128; ++j)

@@ -40,7 +40,7 @@ void write_all(int file, const char* bytes, std::size_t count, std::size_t at) {
   }
 }
 
-// What is in the pages that lie wholly in [from, to) is lost, and their memory free for others.
+// Discards the pages that lie wholly in [from, to) and frees their memory.
 void give_back(float* from, float* to) {
   const auto up = (reinterpret_cast<std::uintptr_t>(from) + kPageBytes - 1) / kPageBytes * kPageBytes;
   const auto down = reinterpret_cast<std::uintptr_t>(to) / kPageBytes * kPageBytes;
@@ -97,9 +97,9 @@ class CopyOnWriteFloats::Original {
 
 RowLayout RowLayout::apart(std::size_t row_length, std::size_t slice_rows, std::size_t slices) {
   constexpr std::size_t kLineFloats = 16;
-  // Of a first-level cache of 32 KiB; an odd count of lines goes through all of them.
+  // Sets of a first-level cache of 32 KiB; an odd count of lines goes through all of them.
   constexpr std::size_t kSets = 64;
-  // So many rows of a slice have sets to themselves before the next slice's begin.
+  // Number of rows of a slice with sets of their own before the next slice's begin.
   constexpr std::size_t kRowsTogether = 12;
   constexpr std::size_t kThin = 64;
   if (row_length < kThin || slice_rows < kThin)
@@ -127,7 +127,7 @@ CopyOnWriteFloats::CopyOnWriteFloats(const CopyOnWriteFloats& other)
     auto& made = const_cast<std::uint8_t&>(other.written_[page]);
     written_[page] = std::atomic_ref(made).load(std::memory_order_relaxed);
   }
-  // What both may read counts once in the process's memory until it is read here and there.
+  // Drops the source's private pages, so that both copies map the same physical pages.
   if (std::ranges::count(written_, 0) == std::ssize(written_)) {
     madvise(other.values_, mapped_bytes(size_), MADV_DONTNEED);
   }
@@ -172,7 +172,7 @@ void CopyOnWriteFloats::prepare(std::size_t first, std::size_t last) {
     const std::size_t begin = page;
     while (page < end && !made(page)) std::atomic_ref(written_[page++]).store(1, std::memory_order_relaxed);
 #ifdef MADV_POPULATE_WRITE
-    // Where the system cannot, they are made as they are written.
+    // If the system cannot, they are made as they are written.
     madvise(values_ + begin * kPageFloats, (page - begin) * kPageBytes, MADV_POPULATE_WRITE);
 #endif
   }

@@ -13,7 +13,7 @@ namespace osteomill {
 
 namespace {
 
-// Of what a burr at 20 mm/s reaches in 25 ms.
+// Distance that a burr at 20 mm/s covers in 25 ms.
 constexpr double kAhead_mm = 0.5;
 
 RowLayout layout_of(const GridGeometry& geometry) {
@@ -22,7 +22,7 @@ RowLayout layout_of(const GridGeometry& geometry) {
                           static_cast<std::size_t>(k));
 }
 
-// What the grid is made of, and there is something.
+// Returns the densities. Throws if their number is not that of the voxels, or zero.
 std::vector<float> checked(const GridGeometry& geometry, std::vector<float> densities) {
   if (densities.empty() || densities.size() != geometry.voxel_count()) {
     throw std::invalid_argument("DensityGrid: as many densities as voxels, and at least one");

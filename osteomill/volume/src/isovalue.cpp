@@ -120,12 +120,12 @@ double commonest(std::span<const Sample> samples) {
   return min + (static_cast<double>(best) + 0.5) * width;
 }
 
-// What the densities are of, as far as they tell.
+// Holds the densities of the materials, as far as they can be told apart.
 struct Materials {
   // The commonest density around the bone and in it; of a body, those of air and soft tissue.
   double around = 0;
   double bone = 0;
-  // Of a body: where water lies.
+  // In a body: the density of water.
   std::optional<double> water;
 };
 
@@ -183,7 +183,7 @@ bool touches(const DensityGrid& grid, double isovalue, std::size_t axis, int pla
   return static_cast<double>(bone) > kTouchingShare * dims[across] * dims[up];
 }
 
-// Of samples that ascend.
+// Suggests an isovalue from samples in ascending order.
 SuggestedIsovalue isovalue_of_bone(std::span<const Sample> samples, bool in_hounsfield_units) {
   if (!(samples.back().density > samples.front().density)) {
     return {samples.front().density, "the only density there is"};

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kGreatestLabel = std::numeric_limits<std::int16_t>::max();
 
-// By label its rank among those that occur; nothing where the values are no few whole numbers, or 0 is not
+// By label its rank among those that occur; nothing if the values are no few whole numbers, or 0 is not
 // the commonest.
 std::vector<int> ranks_of(const DensityGrid& grid) {
   std::vector<std::size_t> counts(kGreatestLabel + 1);
@@ -48,8 +48,8 @@ std::vector<int> ranks_of(const DensityGrid& grid) {
 }  // namespace
 
 bool looks_like_labels(const DensityGrid& grid) {
-  // Of real label maps, 0.03 and 0.22; of CTs of 3 to 16 levels the first at least 0.29 or the second at most
-  // 0.014.
+  // Real label maps have at most 0.03 and at least 0.22; CTs of 3 to 16 levels have at least 0.29 for the
+  // first or at most 0.014 for the second.
   constexpr double kOftenBetween = 0.2, kSeldomFar = 0.05;
   const std::vector<int> ranks = ranks_of(grid);
   if (ranks.empty()) return false;
@@ -84,7 +84,7 @@ bool looks_like_labels(const DensityGrid& grid) {
   const auto often = [](double share, std::size_t count, std::size_t of) {
     return static_cast<double>(count) >= share * static_cast<double>(of);
   };
-  // Of two values none can lie between others.
+  // With two values none can lie between others.
   return counts.size() == 2 || (often(kSeldomFar, far, edges) &&
                                 std::none_of(std::next(counts.begin()), counts.end(), [&](const Count& of) {
                                   return often(kOftenBetween, of.between, of.voxels);

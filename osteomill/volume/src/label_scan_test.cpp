@@ -31,7 +31,8 @@ DensityGrid filled(const Shape& value) {
   return DensityGrid(kGrid, std::move(values));
 }
 
-// As segmentations of a brain number it: white matter of either side, the cortex in parcels, nuclei inside.
+// Returns labels as in segmentations of a brain: white matter of either side, the cortex in parcels, nuclei
+// inside.
 double brain(const Vec3& p) {
   const double from_mm = p.norm();
   if (from_mm > 5) return 0;
@@ -49,7 +50,7 @@ TEST(LabelScan, SegmentationsAndMasksLookLikeLabels) {
   })));
 }
 
-// Air, a head of soft tissue and a skull in it, blurred over a voxel, in so many levels.
+// Air, a head of soft tissue and a skull in it, blurred over a voxel, in a few levels.
 TEST(LabelScan, ACtOfFewLevelsIsNone) {
   const auto step = [](double from_mm) { return std::clamp(0.5 - from_mm, 0.0, 1.0); };
   for (const int levels : {3, 4, 8, 16}) {

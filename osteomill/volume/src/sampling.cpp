@@ -44,7 +44,7 @@ inline double interpolate_cell(const float* pair00, const float* pair10, const f
                      interpolate(along_i(pair01), along_i(pair11), fy), fz);
 }
 
-// Of a cell that is not wholly in the grid.
+// Returns the corners of a cell that is not wholly in the grid.
 std::array<float, 8> cell_corners(const DensityGrid& grid, const VoxelIndex& c) {
   std::array<float, 8> corner;
   for (int n = 0; n < 8; ++n) {
@@ -94,7 +94,7 @@ struct Span {
 };
 
 // The part of a line of voxel coordinates, as fractions of `way`, in the grid and the one voxel around it
-// where densities still fall. It ends before it begins where there is none.
+// where densities still fall. It ends before it begins if there is none.
 Span span_in_grid(const GridGeometry& geometry, const Vec3& from, const Vec3& way) {
   Span span;
   for (int axis = 0; axis < 3; ++axis) {
@@ -200,7 +200,7 @@ std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, con
   const auto at = [&](double n) { return Vec3(from_W + (n / steps) * (to_W - from_W)); };
   const double first = std::max(1.0, std::floor(span.first * steps));
   const double last = std::min(steps, std::ceil(span.last * steps));
-  // Of points so far off that their coordinates are not exact there would be any number.
+  // Bounds the loop: for points too far away for exact coordinates the number of steps could be anything.
   const int most = 4 + 2 * (geometry.dims[0] + geometry.dims[1] + geometry.dims[2] + 3);
   Vec3 before = at(first - 1);
   for (int n = 0; n < most && first + n <= last; ++n) {

@@ -13,7 +13,7 @@ namespace osteomill {
 struct DensityBlock {
   static constexpr int kVoxels = 8;
 
-  /// The lowest voxel; the brick may reach beyond the grid, where its densities mean nothing.
+  /// The lowest voxel. The brick may reach beyond the grid; its densities there mean nothing.
   VoxelIndex first;
   VoxelIndex last() const { return {first.i + kVoxels - 1, first.j + kVoxels - 1, first.k + kVoxels - 1}; }
   /// The densities in row-major order, i fastest.

@@ -18,7 +18,7 @@ struct VoxelIndex {
   friend bool operator==(const VoxelIndex&, const VoxelIndex&) = default;
 };
 
-/// A box of voxels, both corners inside it. Empty where `last` lies below `first` along any axis.
+/// A box of voxels, both corners inside it. Empty if `last` lies below `first` along any axis.
 struct VoxelBox {
   VoxelIndex first{0, 0, 0};
   VoxelIndex last{-1, -1, -1};
