@@ -25,7 +25,7 @@ const Vec3 kNotANumber = Vec3::Constant(std::numeric_limits<double>::quiet_NaN()
 const Wrench kNotFinite{kNotANumber, Vec3::Zero()};
 const Pose kNoPose{kNotANumber, Quat::Identity()};
 
-// The bone, where the tool can work in it.
+// The bone, if the tool can work in it.
 std::shared_ptr<Volume> workable(const MillingTool& tool, std::shared_ptr<Volume> bone) {
   require_workable(tool, bone->geometry());
   return bone;
@@ -98,7 +98,7 @@ TickRecord MillingSession::begin_record(Device& device, const TickInput& input) 
   record.let_go = std::exchange(let_go_asked_, false);
   if (record.let_go) guard_.let_go();
   record.X_WD = device.read_pose();
-  // No device is there, and where it is not the indices of voxels would overflow.
+  // No device reaches so far, and indices of voxels would overflow there.
   if (!is_reachable(record.X_WD)) record.X_WD = kNoPose;
   record.given_share = device.given_share();
   record.driven = device.is_driven() && !std::exchange(hold_back_asked_, false);

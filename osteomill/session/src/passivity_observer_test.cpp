@@ -10,7 +10,7 @@ namespace osteomill {
 namespace {
 
 constexpr double kTick_s = 1e-3;
-// So many that the integrator's own gain does not count.
+// Enough substeps that the integrator's own gain is negligible.
 constexpr int kSubsteps = 200;
 
 // A handle at a wall at z = 0 that is far too stiff for it, pressed on it by a hand without a
@@ -49,7 +49,7 @@ TEST(PassivityObserver, CountsTheWorkThatAHandleGains) {
   Wall wall;
   wall.press_N = 2;
   wall.run(400);
-  // All energy that the handle has, but for what the hand's own force did on the way from 1 mm above.
+  // The handle's energy less the work of the hand's own force on the way from 1 mm above.
   const double by_the_hand_Nmm = wall.press_N * (1 - wall.handle.pose().position_mm.z());
   wall.guard.pass({}, wall.handle.read(), kTick_s);
   EXPECT_NEAR(wall.guard.energy_given_Nmm(), wall.kinetic_mJ - by_the_hand_Nmm,
@@ -75,7 +75,7 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
   controlled.run(4000);
   EXPECT_GT(active.most_given_Nmm, 100);
   EXPECT_GT(active.deepest_mm, 10);
-  // What the last tick of a contact gives is taken back at the next: it never adds up.
+  // The next contact takes back the energy that the last tick of a contact gives: it never adds up.
   EXPECT_LT(controlled.most_given_Nmm, 1);
   EXPECT_LT(controlled.deepest_mm, 1);
 }

@@ -8,7 +8,7 @@
 namespace osteomill {
 namespace {
 
-// What the tick calls promises in the language that it does not throw; but a device that has failed may.
+// All functions that the tick calls are noexcept, except those of a device that has failed.
 template <typename T>
 T& a() noexcept;
 

@@ -25,7 +25,7 @@ const Volume& small_bone() {
   return bone;
 }
 
-// What of the tool is put on the bone, and how high its middle then is.
+// Names the part of the tool that is put on the bone, and returns the height of the tool's origin then.
 struct Put {
   const char* name;
   Quat orientation;
@@ -97,7 +97,7 @@ void expect_held_or_told(const MillingSetup& setup, const std::string& setting) 
     return;
   }
   for (const std::string& doubt : doubts) EXPECT_TRUE(says(doubt, setting)) << doubt;
-  // Of the paper's, the shaft alone is felt as a torque.
+  // With the paper's algorithms the shaft alone gives only a torque.
   for (const Put& put : is_ours ? std::span(kPuts) : std::span(kPuts).first(1)) {
     const Pressed pressed = press(setup, put, false);
     EXPECT_TRUE(pressed.finite) << put.name;

@@ -12,7 +12,8 @@ double usual_tick_s(double dt_s) {
   return dt_s > 0 ? std::min(dt_s, kUsualTick_s) : 0;
 }
 
-// What a handle of 0.1 kg read once a millisecond shows without shaking: a third of m / T.
+// Largest damping with which a handle of 0.1 kg that is read once a millisecond does not shake: a third of m
+// / T.
 constexpr double kMostDamping_Ns_per_mm = 0.03;
 // How far the hand holds the handle from the burr: by this a turn counts as a motion.
 constexpr double kLever_mm = 30;

@@ -17,7 +17,7 @@ namespace osteomill {
 namespace {
 
 constexpr double kTick_s = 1e-3;
-// What the default allows in a tick: 20 N and 500 N mm are gone in five.
+// The largest change in a tick by default: 20 N and 500 N mm fall to zero in five.
 constexpr double kMaxStep_N = 4 + 1e-9;
 constexpr double kMaxStep_Nmm = 100 + 1e-9;
 const Pose kHere{{1, 2, 3}, Quat::Identity()};
@@ -125,7 +125,7 @@ TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
   };
   const Fault faults[] = {{{{nan, 0, 0}, Vec3::Zero()}, kHere, kTick_s, WrenchFault::not_finite},
                           {down(20), {{1, 2, 53}, Quat::Identity()}, kTick_s, WrenchFault::pose_jumped},
-                          // A grip that is centred anew.
+                          // A grip that is centred again.
                           {down(20),
                            {kHere.position_mm, quaternion_from_rotation_vector({0, 0.3, 0})},
                            kTick_s,
@@ -136,7 +136,7 @@ TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
     double sent_N = 20;
     Pose X_WD = fault.X_WD;
     for (int n = 0; n < 5; ++n) {
-      // A device that jumps to and fro.
+      // A device that jumps back and forth.
       if (n % 2 == 1 && fault.name == WrenchFault::pose_jumped)
         X_WD = kHere;
       else
@@ -256,7 +256,7 @@ TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
   EXPECT_LT(step_N_, 0.3);
 }
 
-// Also where the algorithm finds nothing to push against, and on the way out.
+// Also if the algorithm finds nothing to push against, and on the way out.
 TEST_P(GuardedSession, AStartInBoneIsNotFeltUntilTheToolIsOut) {
   for (const double height_mm : {0.5, -2.0, -6.0}) {
     session_ = make(GetParam());

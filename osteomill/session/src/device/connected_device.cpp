@@ -25,7 +25,7 @@ using State = DeviceReport::State;
 // Age at which an input or a wrench expires: the haptic thread then has no pose and sends zero, or the device
 // is sent zero, whatever the haptic thread is doing.
 constexpr double kMaxAge_s = 5e-3;
-// How long it takes to come up where the device may be driven (again).
+// How long it takes to come up when the device may be driven (again).
 constexpr double kBlend_s = 0.1;
 // After this long without a pose the tool goes on from where it is, not from where the hand is by then.
 constexpr double kGone_s = 0.1;
@@ -388,7 +388,7 @@ Pose ConnectedDevice::read_pose() noexcept {
   const Exchange::Heard& heard = exchange_->heard.read();
   const std::uint64_t gate = exchange_->gate.load(std::memory_order_acquire);
   const std::uint64_t stops = exchange_->stops.load(std::memory_order_acquire);
-  // False for a tick also where it was not driven between this one and the last.
+  // False for a tick also if it was not driven between this one and the last.
   is_driven_ = gate % 2 == 1 && gate == gate_ && stops == stops_ &&
                !exchange_->is_let_go.load(std::memory_order_acquire);
   gate_ = gate;

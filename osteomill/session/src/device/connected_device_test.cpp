@@ -131,7 +131,7 @@ TEST_F(ConnectedDeviceTest, AHandleThatIsHeldStillIsFelt) {
   EXPECT_NEAR(felt_N(), 2, 1e-9);
 }
 
-// What is milled in the tick in which the bone is met is paid by what was given before.
+// In the tick that meets bone, milling is paid with the share that was given before.
 TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesNothingInTheAirEither) {
   EXPECT_EQ(device_.given_share(), 1);
   hardware_.input.not_driven = "is not calibrated";

@@ -8,7 +8,7 @@ namespace osteomill {
 
 namespace {
 
-// What the daemon sends for a device pushed as far as it goes.
+// The daemon's value for a device pushed as far as it goes.
 constexpr double kFull = 350;
 constexpr double kPush_mm_s = 20;
 constexpr double kTwist_rad_s = 1.2;

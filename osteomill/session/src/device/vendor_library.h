@@ -33,7 +33,7 @@ class VendorCallsNamed {
 class VendorLibrary {
  public:
   /// Opens the file that the environment's `variable` names, else the first of `names` that the system has.
-  /// Throws InputError about `device` where there is none.
+  /// Throws InputError about `device` if there is none.
   VendorLibrary(std::string device, const char* variable, std::initializer_list<const char*> names);
 
   /// A function, of whatever type it is put into a VendorFunction of.
@@ -41,7 +41,7 @@ class VendorLibrary {
     const char* name;
     void* address;
   };
-  /// Throws InputError where the library has none of that name, which lives as long as the program.
+  /// Throws InputError if the library has none of that name, which lives as long as the program.
   Function operator[](const char* name) const;
 
  private:

@@ -56,7 +56,7 @@ TEST(FreePose, ComesOutOfWhatIsTooNarrow) {
   }
 }
 
-// Where it stands nothing is felt, whichever algorithm begins there.
+// No algorithm that begins at the pose feels anything.
 TEST(FreePose, NoAlgorithmFeelsAnythingThere) {
   const Volume bone = shape_volume(centred_cube(41, 0.5), testing_support::ball(Vec3::Zero(), 6));
   const Pose X_WT = free_pose_before(bone, {}, {0, -6, 0}, -Vec3::UnitY(), Vec3::UnitZ());

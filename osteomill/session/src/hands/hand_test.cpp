@@ -45,7 +45,7 @@ TEST(Hand, TheSpringNeverPushesHarderThanItsLimitAndKeepsItsDirection) {
   EXPECT_NEAR(fast.force_N.x(), 1.5 + 2.0, 1e-12);
 }
 
-// The same scene seen in turned axes must give the same wrench, turned.
+// A scene described in turned axes must give the same wrench, turned.
 TEST(Hand, TurningEverythingTurnsTheWrench) {
   const Pose turn = turned({3, -4, 5}, {0.4, -0.8, 0.3});
   const Pose target = turned({1, 2, 0.5}, {0.01, 0.02, -0.005});

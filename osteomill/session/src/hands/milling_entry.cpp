@@ -31,8 +31,8 @@ BoundingBall ball_around(const GridGeometry& geometry) {
           0.5 * geometry.spacing_mm.cwiseProduct(voxels).norm() + 2 * geometry.spacing_mm.maxCoeff()};
 }
 
-// The first bone from `from_W` along the direction, or, where `from_W` lies in bone, the point at which the
-// way back leaves it. Nothing where the line meets none.
+// The first bone from `from_W` along the direction, or, if `from_W` lies in bone, the point at which the
+// way back leaves it. Nothing if the line meets none.
 std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, const Vec3& direction_W) {
   const BoundingBall ball = ball_around(volume.geometry());
   const double middle_mm = direction_W.dot(ball.centre_W - from_W);
@@ -62,7 +62,7 @@ std::pair<Vec3, Vec3> across(const Vec3& direction_W) {
   return {first_W, direction_W.cross(first_W)};
 }
 
-// Where the bone is first met by lines along the direction, a square lattice across it.
+// Holds the points at which lines along the direction, in a square lattice across it, first meet bone.
 struct Lattice {
   Vec3 corner_W;
   Vec3 first_W;
@@ -112,7 +112,7 @@ bool is_pit(const Lattice& lattice, int a, int b, const Vec3& direction_W) {
 constexpr double kBefore_mm = 3.0;
 // Further than this from a body's bone there is none.
 constexpr double kFarthest_mm = 1e4;
-// What algorithms feel ahead of the bone ends within it.
+// Distance from bone within which an algorithm may feel it, mm.
 constexpr double kRoom_mm = 1.0;
 
 struct Tilt {
@@ -157,7 +157,7 @@ bool can_stay(const Volume& volume, const MillingTool& tool, const MillingEntry&
 }
 
 // The highest place, seen against the direction, at which a tool can enter a face that looks at it and stay,
-// and which is no pit. Nothing where there is none.
+// and which is no pit. Nothing if there is none.
 std::optional<MillingEntry> find_entry(const Volume& volume, const MillingTool& tool,
                                        const Vec3& direction_W) {
   constexpr double kLooksAtIt = 0.7;
@@ -194,7 +194,7 @@ Vec3 unit_direction(const std::optional<Vec3>& direction) {
 
 struct Top {
   Vec3 highest_W = Vec3::Zero();
-  // Of all bone near the top, in W; its height is the top's.
+  // The middle of all bone near the top, in W, at the top's height.
   Vec3 middle_W = Vec3::Zero();
 };
 
@@ -286,7 +286,7 @@ MillingEntry top_entry(const Volume& volume, const MillingTool& tool, const Top&
   return entry;
 }
 
-// The top, where the tool can stay in bone there, else the highest place where it can, else seen from another
+// The top, if the tool can stay in bone there, else the highest place where it can, else seen from another
 // side, unless a direction was asked for; and if there is none the top all the same.
 MillingEntry default_entry(const Volume& volume, const MillingTool& tool, const Top& top,
                            const Vec3& direction_W, bool given_direction) {

@@ -14,7 +14,7 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(std::string("milling script: ") + what);
 }
 
-// What the hand wants of its push, or of the limit of its torque, in each stage.
+// Share of its push, or of its torque limit, that the hand aims for in each stage.
 constexpr double kFeedPush = 0.9;
 constexpr double kLeanPush = 0.6;
 constexpr double kHoldPush = 0.5;
@@ -23,7 +23,7 @@ constexpr double kHoldPush = 0.5;
 // edge.
 constexpr double kSide = 0.6;
 // With `until_leant` only until the shaft meets the wall, and from there by what its spring takes for the
-// torque: no further, where the wall gives way.
+// torque: no further, if the wall gives way.
 constexpr double kTorque = 0.8;
 constexpr double kApproach_s = 1.0;
 constexpr double kFeed_mm_s = 2.0;
@@ -40,9 +40,10 @@ constexpr double kLongestSettleShare = 0.5;
 constexpr double kPushCorrection_per_s = 4.0;
 constexpr double kTorqueCorrection_per_s = 8.0;
 
-// Of what the hand wants to feel, enough to say that it does.
+// Share of the intended force or torque from which on the hand counts as feeling it.
 constexpr double kFelt = 0.8;
-// What a hand feels of force and of torque (twice a step of the encoder), and for how long it is sure of it.
+// Smallest force and torque that a hand feels (twice a step of the encoder), and the time after which it is
+// sure of it.
 constexpr double kFelt_N = 0.02;
 constexpr double kFelt_Nmm = 0.2;
 constexpr double kWallGone_s = 0.2;
@@ -85,7 +86,7 @@ double MillingScript::shown_depth_mm(const Pose& X_WT) const {
   return entry_.direction_W.dot(X_WT.position_mm - entry_.point_W) + tool_.burr_radius_mm;
 }
 
-// Of the hand's push and of its torque, what its springs give.
+// Returns the share of the hand's push that its spring gives.
 double MillingScript::felt_push_share(const Pose& X_WD) const {
   const double stretch_mm = along_mm_ - entry_.direction_W.dot(X_WD.position_mm - entry_.point_W);
   return hand_.push_N > 0 ? stretch_mm * hand_.stiffness_N_per_mm / hand_.push_N : 0;
@@ -175,7 +176,7 @@ void MillingScript::push_sideways(double dt_s, const Pose& X_WD) {
   const double felt_mm = sideways_mm_ - entry_.lateral_W.dot(X_WD.position_mm - entry_.point_W);
   const double rate_mm_s = kPushCorrection_per_s * (wanted_mm - felt_mm);
   sideways_mm_ += dt_s * std::clamp(rate_mm_s, -kFeed_mm_s, kFeed_mm_s);
-  // Where nothing resists (a burr that slides over bone too hard for it) the target must not wander off.
+  // If nothing resists (a burr that slides over bone too hard for it) the target must not wander off.
   sideways_mm_ = std::clamp(sideways_mm_, 0.0, wanted_mm);
 }
 

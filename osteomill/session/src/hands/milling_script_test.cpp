@@ -186,7 +186,7 @@ TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
   EXPECT_LT(leant_rad(50), 1.2 * twist_rad);
 }
 
-// The floor goes from under the tool while it leans, as where it leaves the tooth at its side.
+// The floor goes from under the tool while it leans, as when it leaves the tooth at its side.
 TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 8;

@@ -9,7 +9,7 @@ namespace osteomill {
 namespace {
 
 constexpr double kLongestTick_s = 1.0;
-// Of the seed that makes a hand's turning another random signal than its displacement.
+// Makes the random signal of a hand's rotation differ from that of its displacement.
 constexpr std::uint64_t kTurning = 0x9e3779b97f4a7c15;
 
 // The bound of semi-implicit Euler (simulated_handle.h), with a fourth of it left for the wall.

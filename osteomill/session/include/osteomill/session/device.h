@@ -21,7 +21,7 @@ inline double share_sent(const Vec3& asked, const Vec3& sent) noexcept {
 class Device {
  public:
   virtual ~Device() = default;
-  /// The handle's pose now, as a tool pose in W. Not finite where the device has none to give.
+  /// The handle's pose now, as a tool pose in W. Not finite if the device has none to give.
   virtual Pose read_pose() OSTEOMILL_NONBLOCKING = 0;
   /// Sends a wrench that is already safe (finite, within the limits).
   virtual void write_wrench(const Wrench& wrench) OSTEOMILL_NONBLOCKING = 0;

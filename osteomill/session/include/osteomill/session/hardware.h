@@ -12,7 +12,7 @@ namespace osteomill {
 /// The result of looking for a device.
 struct FoundDevice {
   bool there = false;
-  /// What is there, or why nothing is, in half a sentence.
+  /// The device that was found, or why none was, in half a sentence.
   std::string text;
 };
 
@@ -33,28 +33,28 @@ struct HardwareKind {
 };
 
 /// A device of Force Dimension (delta, omega, sigma, lambda) or a Novint Falcon, by the maker's libdhd or
-/// libdrd, opened at run time (docs/devices.md). `address` is its number among those connected, 0 where
+/// libdrd, opened at run time (docs/devices.md). `address` is its number among those connected, 0 if
 /// empty. It is driven once it is calibrated, by the maker's tool. Its base D: x towards the operator, y to
-/// the right, z up. Throws InputError where the library or the device cannot be had.
+/// the right, z up. Throws InputError if the library or the device cannot be had.
 std::unique_ptr<Connection> open_force_dimension(const std::string& address);
 std::string look_for_force_dimension(const std::string& address);
 
-/// A Haply Inverse3 by the maker's Inverse service, at HOST:PORT (127.0.0.1:10001 where empty): versions 3.1
+/// A Haply Inverse3 by the maker's Inverse service, at HOST:PORT (127.0.0.1:10001 if empty): versions 3.1
 /// to 3.5 of its simulation channel (docs/devices.md). The first Inverse3 it names, and the first Verse Grip,
 /// wireless before wired, without which position alone is sensed. Its base D: x to the right, y away from the
-/// operator, z up. Throws InputError where no service or no Inverse3 is there.
+/// operator, z up. Throws InputError if no service or no Inverse3 is there.
 std::unique_ptr<Connection> open_haply(const std::string& address);
 std::string look_for_haply(const std::string& address);
 
 /// A device of 3D Systems (Touch, Touch X, Phantom) by the maker's libHD, opened at run time
-/// (docs/devices.md). `address` is the name that it has in the maker's setup, the default device where empty.
+/// (docs/devices.md). `address` is the name that it has in the maker's setup, the default device if empty.
 /// It is driven once it is calibrated. Its base D: x to the right, y up, z towards the operator. Throws
-/// InputError where the library or the device cannot be had. One at a time.
+/// InputError if the library or the device cannot be had. One at a time.
 std::unique_ptr<Connection> open_touch(const std::string& address);
 std::string look_for_touch(const std::string& address);
 
-/// A device that speaks the datagrams of docs/udp-device.md, at HOST:PORT (127.0.0.1:47117 where empty).
-/// Throws InputError naming the address where that is none, nothing answers within half a second, or what
+/// A device that speaks the datagrams of docs/udp-device.md, at HOST:PORT (127.0.0.1:47117 if empty).
+/// Throws InputError naming the address if that is none, nothing answers within half a second, or what
 /// answers does not keep to the protocol.
 std::unique_ptr<Connection> open_udp(const std::string& address);
 std::string look_for_udp(const std::string& address);

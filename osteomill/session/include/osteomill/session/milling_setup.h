@@ -51,8 +51,8 @@ template <>
 const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>();
 
 /// Throws std::invalid_argument, with one line that says why, if a tool cannot work in a scan with this grid:
-/// a size is out of its range, its burr or shaft is wider than the whole scan, or its burr so many voxels
-/// wide that no algorithm follows it at the haptic rate, or so few that the scan has nothing for it to feel.
+/// a size is out of its range, its burr or shaft is wider than the whole scan, or its burr is too many voxels
+/// wide for any algorithm to follow at the haptic rate, or too few for the scan to give anything to feel.
 /// Checked at once, before anything is prepared.
 void require_workable(const MillingTool& tool, const GridGeometry& scan);
 

@@ -23,9 +23,9 @@ struct GuardSettings {
   /// A damper is felt on contact while the hand has been given more energy than it gave (PassivityObserver).
   bool passivity_controller = false;
 
-  /// Returns settings for a wrench that no person feels: it is shortened to `limits`, and nothing else keeps
-  /// it from what the algorithm asks for, but for the controller where it is on. Not for a device that drives
-  /// a hand: a single tick may bring all of 20 N.
+  /// Returns settings for a wrench that no person feels: it is shortened to `limits`, and otherwise is what
+  /// the algorithm asks for, except for the controller if it is on. Not for a device that drives a hand: a
+  /// single tick may bring all of 20 N.
   static GuardSettings for_simulation(const WrenchLimits& limits = {}, bool passivity_controller = false);
 };
 

@@ -22,13 +22,14 @@ constexpr double kMmPerM = 1000;
 // Twice as often as wrenches change; the library itself does not wait for the device.
 constexpr auto kBetweenReadings = 500us;
 constexpr auto kBetweenStatuses = 20ms;
-// What dhd functions return: 0 done, below 0 failed; above 0 done, but the pose is the last one again.
+// Functions of dhd return 0 after success and less than 0 after a failure; more than 0 means success, but the
+// pose is the last one again.
 constexpr int kNotNew = 1;
 // In steps of 125 us, the longest that there is. It does not run before the first wrench.
 constexpr unsigned char kWatchdog = 255;
 constexpr double kWatchdogStep_s = 125e-6;
 
-// Where in the status things stand, and why force is off.
+// Indices into the status, and the causes for a force that is off.
 constexpr std::size_t kStatuses = 17;
 enum Status : std::size_t { kIsReset = 3, kHasForce = 5, kBrakes = 6, kForceOffCause = 14 };
 using StatusOfDevice = std::array<int, kStatuses>;
@@ -75,7 +76,7 @@ struct Dhd {
       file["dhdSetForceAndTorqueAndGripperForce"];
 };
 
-// What the library does not say, from the makers' data sheets.
+// Limits that the library does not give, from the makers' data sheets.
 struct Model {
   int first_type, last_type;
   WrenchLimits limits;
@@ -201,7 +202,7 @@ class ForceDimensionConnection final : public Connection {
 
   static bool is_off(const StatusOfDevice& status) { return status[kHasForce] == 0 || status[kBrakes] != 0; }
 
-  // Force is switched on once the device is calibrated, and again where its watchdog alone had switched it
+  // Force is switched on once the device is calibrated, and again if its watchdog alone had switched it
   // off: then not before it has been said to be off and the wrench has come down, since the device goes on
   // with the last that it was sent.
   const char* why_not_driven() {
@@ -239,7 +240,7 @@ std::unique_ptr<Connection> open_force_dimension(const std::string& address) {
   return std::make_unique<ForceDimensionConnection>(address);
 }
 
-// Without opening it, as that would take it from whoever has it.
+// Does not open the device, because that would take it from another program.
 std::string look_for_force_dimension(const std::string& address) {
   const Dhd dhd;
   require_device(dhd, number_of(address));

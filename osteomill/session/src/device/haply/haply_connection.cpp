@@ -29,12 +29,12 @@ constexpr std::size_t kMostBytes = 1 << 18;
 constexpr auto kInventoryWithin = 100ms;
 constexpr auto kWait = 1500us;
 constexpr auto kBetweenReadings = 500us;
-// One that has not answered for so long is opened again.
+// A service that has not answered for this time is connected to again.
 constexpr auto kAnswersWithin = 1s;
 // By the mean of some twenty answers. A pose that is older than that is none (ConnectedDevice).
 constexpr double kFeltWithin_ms = 5;
 constexpr double kLatencies = 20;
-// The mean of so many answers tells whether the forces are those that were sent.
+// Number of answers whose mean tells whether the forces are those that were sent.
 constexpr double kAnswers = 200;
 constexpr double kOtherForce_N = 0.3;
 constexpr double kOtherShare = 0.25;
@@ -42,7 +42,7 @@ constexpr const char* kOtherForces =
     "gives other forces than it is sent: look at its filters and force scale in the Haply Hub";
 constexpr const char* kGrips[] = {"wireless_verse_grip", "verse_grip"};
 
-// Nothing where a key is missing or something else is there than was expected: never an exception.
+// Nothing if a key is missing or something else is there than was expected: never an exception.
 const Json* member(const Json* of, const char* key) {
   if (of == nullptr || !of->is_object()) return nullptr;
   const auto found = of->find(key);
@@ -84,7 +84,7 @@ bool is_inverse3(const Json& device) {
   return id != nullptr && id->is_string() && (type == nullptr || *type == "inverse3" || *type == "inverse3x");
 }
 
-// By what it says of itself; where it says nothing it is not known to be calibrated.
+// By what it says of itself; if it says nothing it is not known to be calibrated.
 const char* why_not_driven(const Json* status) {
   if (is_false(member(status, "power_supply"))) return "has no power: plug its power supply in";
   if (is_false(member(status, "ready")) || is_false(member(status, "started")))
@@ -193,7 +193,7 @@ class HaplyConnection final : public Connection {
     return service_.socket.is_open() ? status : ConnectionStatus::lost;
   }
 
-  // The force, for which the service answers with the state of all devices. False where it waits to be sent.
+  // The force, for which the service answers with the state of all devices. False if it waits to be sent.
   bool ask(const Vec3& force_N, Json message = Json::object()) {
     const Json force{{force_key_, {{"x", force_N.x()}, {"y", force_N.y()}, {"z", force_N.z()}}}};
     const Json device{{"device_id", id_}, {"commands", {{"set_cursor_force", force}}}};
@@ -252,7 +252,7 @@ class HaplyConnection final : public Connection {
   std::string force_key_;
   bool has_grip_;
   DeviceCapabilities capabilities_;
-  // As it last said.
+  // The device's last reason.
   const char* not_driven_ = nullptr;
   Vec3 force_N_ = Vec3::Zero();
   double mean_asked_N_ = 0;

@@ -31,7 +31,7 @@ class Haply : public ::testing::Test {
       return error.what();
     }
   }
-  // As the device's thread does, until it has what is wanted; not long where it never comes.
+  // Reads as the device's thread does until the wanted status comes, for a short time at most.
   ConnectionStatus go_on_until(ConnectionStatus wanted, DeviceInput& input) {
     const auto until = std::chrono::steady_clock::now() + 5s;
     ConnectionStatus status = connection_->read(input);
@@ -282,7 +282,7 @@ TEST_F(Haply, OneCommandIsOnItsWayAtAnyLatencyAndThatItIsTooLongIsSaid) {
   ASSERT_GT(answered, 3u);
   ASSERT_NE(input.remark, nullptr);
   EXPECT_EQ(std::string(input.remark).substr(0, 14), "answers after ");
-  // No longer where it answers soon.
+  // No longer if it answers soon.
   service_.delay_ms = 0;
   for (int n = 0; n < 2000 && input.remark != nullptr; ++n) go_on_until(ConnectionStatus::fresh, input);
   EXPECT_EQ(input.remark, nullptr);

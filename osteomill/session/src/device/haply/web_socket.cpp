@@ -74,7 +74,7 @@ struct WebSocket::Impl {
   }
 
   // Until something comes or the time is over. Waiting is not left to the library, which sleeps on for half a
-  // minute where its alarm goes off between being set and its falling asleep.
+  // minute if its alarm goes off between being set and its falling asleep.
   void serve(std::chrono::microseconds wait) {
     const timespec time{0, 1000 * std::max<std::int64_t>(wait.count(), 0)};
     pollfd wanted{socket == nullptr ? -1 : lws_get_socket_fd(socket), POLLIN, 0};

@@ -11,7 +11,7 @@ namespace osteomill {
 /// A client's end of a WebSocket that carries texts. For one thread at a time.
 class WebSocket {
  public:
-  /// Connects to HOST:PORT. Throws InputError about `device` where nothing answers within 400 ms. Texts of
+  /// Connects to HOST:PORT. Throws InputError about `device` if nothing answers within 400 ms. Texts of
   /// more than `most_bytes` break the connection off.
   WebSocket(const std::string& device, const std::string& host, int port, std::size_t most_bytes);
   ~WebSocket();
@@ -21,7 +21,7 @@ class WebSocket {
   bool is_open() const;
   /// The newest whole text that has come, or that comes within `wait`.
   std::optional<std::string> receive(std::chrono::microseconds wait);
-  /// Without waiting, and in place of one that could not be sent yet. False where this could not either.
+  /// Without waiting, and in place of one that could not be sent yet. False if this could not either.
   bool send(std::string text);
 
  private:

@@ -19,7 +19,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// Of libHD 3, as its reference gives them: what is asked for and set, and what a frame's function returns.
+// Constants of libHD 3, from its reference: parameters that are read and set, and return values of a frame's
+// function.
 enum Parameter : unsigned {
   kCurrentButtons = 0x2000,
   kCurrentTransform = 0x2052,
@@ -38,7 +39,7 @@ constexpr unsigned kInvalidHandle = 0xffffffff;
 constexpr unsigned kContinue = 1;
 constexpr unsigned kCalibrated = 0x5000;
 constexpr unsigned kCalibratesItself = 0x5001;
-// Styles of calibration that need no operator but for the inkwell; setting the encoders back does.
+// Styles of calibration that need no operator, except to use the inkwell; resetting the encoders needs one.
 constexpr unsigned kByItself = 1 << 1;
 constexpr unsigned kByInkwell = 1 << 2;
 constexpr unsigned short kDefaultPriority = 0xffff / 2;
@@ -47,8 +48,8 @@ constexpr bool is_of_force(unsigned code) {
   return code >> 8 == 2;
 }
 
-// A wrench that nobody has renewed for so long is zero. No watchdog of the device's: the library's thread,
-// which sees to it, ends with the program.
+// A wrench that has not been renewed for this time becomes zero. This is no watchdog of the device: the
+// library's thread, which does it, ends with the program.
 constexpr auto kLapse = 20ms;
 constexpr auto kBetweenLooks = 200us;
 constexpr double kFrame_s = 1e-3;
@@ -114,7 +115,7 @@ struct OpenedDevice {
 struct SentWrench {
   Wrench wrench;
   Clock::time_point time{};
-  // Of the wrenches; of zeros in a row there is one.
+  // Number of the wrench; zeros in a row share one.
   unsigned number = 0;
 };
 
@@ -136,7 +137,7 @@ class TouchConnection final : public Connection {
     }
   }
   ~TouchConnection() override {
-    // No frame sends it where the library hangs.
+    // No frame sends it if the library hangs.
     for (const auto end = Clock::now() + 20ms; !send({}) && Clock::now() < end;)
       std::this_thread::sleep_for(kBetweenLooks);
     close();
@@ -166,7 +167,7 @@ class TouchConnection final : public Connection {
   }
 
  private:
-  // Of zero, whether the motors have it.
+  // Returns, for a wrench of zero, whether the motors have it; true for any other.
   bool send(const Wrench& wrench_D) {
     const bool zero = is_zero(wrench_D);
     if (!zero || !sends_zero_) ++number_;

@@ -26,12 +26,12 @@ constexpr const char* kUsualAddress = "127.0.0.1:47117";
 constexpr auto kWait = 2ms;
 constexpr int kQuestions = 10;
 constexpr auto kWaitForAnswer = 50ms;
-// After a silence this long the device may have begun anew, and counts from anywhere.
+// After a silence this long the device may have restarted, and counts from any number.
 constexpr auto kSilence = 100ms;
 constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
                                                    "is not calibrated: calibrate it as its maker says",
                                                    "has its force off: switch it on as its maker says"};
-// Whoever floods us does not hold us up.
+// Limit of datagrams at once, so that a flood does not block the thread.
 constexpr int kMostAtOnce = 64;
 
 struct Question {

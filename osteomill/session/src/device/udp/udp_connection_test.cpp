@@ -139,7 +139,7 @@ TEST(UdpDevice, TheNewestStateCountsAndWhatWasOvertakenDoesNot) {
   EXPECT_EQ(input.X_DH.position_mm.x(), 2);
   lab.send_state(0, 4);
   EXPECT_EQ(connection->read(input), ConnectionStatus::silent);
-  // A device that was silent may have begun anew.
+  // A device that was silent may have restarted.
   std::this_thread::sleep_for(std::chrono::milliseconds(120));
   lab.send_state(last - 9, 5);
   EXPECT_EQ(connection->read(input), ConnectionStatus::fresh);
@@ -235,7 +235,8 @@ TEST(UdpDevice, ANameServerThatDoesNotAnswerHoldsNobodyUp) {
 TEST(UdpDevice, WithoutOneItSaysWhy) {
   EXPECT_EQ(fault_of([] { open_udp("nowhere"); }), "udp:nowhere: is not of the form HOST:PORT");
   EXPECT_EQ(fault_of([] { open_udp("127.0.0.1:what"); }).find("udp:127.0.0.1:what: "), 0u);
-  EXPECT_EQ(fault_of([] { open_udp("nobody.invalid:9"); }), "udp:nobody.invalid:9: no such host is known");
+  EXPECT_EQ(fault_of([] { open_udp("no-such-host.invalid:9"); }),
+            "udp:no-such-host.invalid:9: no such host is known");
   std::string address;
   {
     const Lab lab;

@@ -42,7 +42,7 @@ struct State {
   std::array<double, 3> position_mm{};
   std::array<double, 4> orientation_wxyz{};
   std::uint32_t buttons = 0;
-  /// 0 where it may be driven, 1 where it is not calibrated, 2 where its force is off.
+  /// 0 if it may be driven, 1 if it is not calibrated, 2 if its force is off.
   std::uint32_t not_driven = 0;
 };
 static_assert(sizeof(State) == 80);
