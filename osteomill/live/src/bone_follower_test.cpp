@@ -105,7 +105,7 @@ class BoneFollowerTest : public ::testing::Test {
   void catch_up() {
     while (!follower_.catch_up()) follower_.bone_changed(*bone_, {});
   }
-  // As a live session does: the bone that was prepared is milled from now on.
+  // Mills the prepared bone from now on, as a live session does.
   void swap(const BoneFollower::NextBone& next) {
     EXPECT_NE(bone_, next.bone);
     bone_ = next.bone;

@@ -11,8 +11,8 @@
 
 namespace osteomill {
 
-// Where handlers find a device. Never destroyed but used again, so that a handler may go through all of them
-// whatever other threads do.
+// Entry through which handlers find a device. Entries are reused and never destroyed, so that a handler may
+// go through all of them whatever other threads do.
 struct Place {
   std::atomic<DrivenDevice*> driven{nullptr};
   Place* next = nullptr;
@@ -40,13 +40,13 @@ std::atomic<Place*> places{nullptr};
 // How many handlers are going through them.
 std::atomic<int> handlers_at_places{0};
 
-// What a signal did before it was taken.
+// Holds the action of a signal before it was handled here.
 struct Taken {
   struct sigaction before {};
   bool is_taken = false;
 };
 std::array<Taken, kSignals.size()> taken;
-// Of the objects of CrashStop, and of what they do to signals.
+// Guards the count of CrashStop objects and their changes to signals.
 std::mutex mutex;
 int objects = 0;
 
@@ -58,7 +58,7 @@ void wait_for(const Condition& condition) {
   for (int n = 0; n < kWaits && !condition(); ++n) nanosleep(&kWait, nullptr);
 }
 
-// A thread's own, until it ends, where nobody (a sanitizer) has given it one.
+// Gives a thread a stack for handlers until it ends, unless it has one already (from a sanitizer).
 class StackOfHandlers {
  public:
   StackOfHandlers() {
@@ -86,7 +86,7 @@ class StackOfHandlers {
 
 }  // namespace
 
-// What handlers do to all devices.
+// Gives handlers access to all devices.
 struct DrivenDevices {
   DrivenDevices() { handlers_at_places.fetch_add(1); }
   ~DrivenDevices() { handlers_at_places.fetch_sub(1); }
@@ -136,7 +136,7 @@ Taken& taken_of(int signal) {
 }
 
 void pass_to(const struct sigaction& before, int signal, siginfo_t* info, void* context) {
-  // As the system would have done it.
+  // Resets the handler as the system would have done.
   if ((before.sa_flags & static_cast<int>(SA_RESETHAND)) != 0) ::signal(signal, SIG_DFL);
   if ((before.sa_flags & SA_SIGINFO) != 0) {
     before.sa_sigaction(signal, info, context);

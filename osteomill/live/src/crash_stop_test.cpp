@@ -31,13 +31,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// What another process can see of a device.
+// Holds what another process can see of a device.
 struct Sent {
   std::atomic<double> force_N;
   std::atomic<double> max_N;
 };
 
-// What is felt before it crashes.
+// Force on the hand before the crash, N.
 constexpr double kPressed_N = 0.2;
 
 class SharedDevice : public testing_support::ComingDown {
@@ -64,7 +64,8 @@ class SharedDevice : public testing_support::ComingDown {
   std::atomic<bool> is_let_go_{false};
 };
 
-// What makes a process end: a signal from elsewhere, or what the main or the haptic thread does.
+// Describes how a process ends: by a signal from another process, or by an action of the main or the haptic
+// thread.
 struct End {
   int signal;
   void (*main_thread)() = nullptr;

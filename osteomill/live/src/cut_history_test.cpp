@@ -120,8 +120,7 @@ TEST_F(CutHistoryTest, NothingIsTouchedOnceTheOnlyCutIsTakenBack) {
   EXPECT_EQ(now(), before_);
 }
 
-// Inside bone of 1000: emptied to 300 and 0, cut in part to 400 and 700; and outside, where nothing was
-// milled.
+// Inside bone of 1000: emptied to 300 and 0, cut in part to 400 and 700; and outside, which was not milled.
 TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPartStaysAsItWas) {
   DensityGrid untouched = bone_.grid();
   const auto mill_to = [&](const VoxelIndex& voxel, float density) {

@@ -140,7 +140,7 @@ TEST_P(DeviceFaults, FallsSilent) {
   expect_slow_return([this] { hardware_.silent = false; });
 }
 
-// What is not felt is not paid: nothing is milled meanwhile.
+// A force that is not felt pays for nothing: no bone is milled meanwhile.
 TEST_P(DeviceFaults, IsNoLongerCalibrated) {
   const double before_mm3 = session_.removed_mm3();
   spindle_on_ = true;
@@ -161,12 +161,12 @@ TEST_P(DeviceFaults, TakesAWrenchWithEveryPoseButRarely) {
   for (int n = 0; n < 1000; ++n) {
     hardware_.silent = hardware_.busy = n % 8 != 0;
     tick();
-    // What was felt before has come down by then.
+    // The force felt before has fallen to zero by then.
     if (n == 50) before_mm3 = session_.removed_mm3();
     if (n > 50) most_N = std::max(most_N, felt_N());
   }
   EXPECT_LT(most_N, 1);
-  // Of what a force of that size pays in a second.
+  // A force of that size pays for at most this in a second.
   EXPECT_LE(session_.removed_mm3() - before_mm3,
             0.01 + most_N * removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm));
   expect_no_step();
@@ -188,7 +188,7 @@ TEST_P(DeviceFaults, JumpsBy50mm) {
   run(2);
   EXPECT_EQ(record_.fault, WrenchFault::pose_jumped);
   run(kTicksToZero);
-  // What comes up again is a hundredth of the limit in each tick.
+  // The returning force rises by a hundredth of the limit in each tick.
   EXPECT_LE(felt_N(), std::min(before_N, 20 * 0.01 * (kTicksToZero + 1)) + 1e-9);
   run(200);
   expect_no_step();
@@ -206,7 +206,7 @@ TEST_P(DeviceFaults, IsSlow) {
       EXPECT_EQ(felt_N(), 0) << n;
     }
   }
-  // What a blend begins with in the few ticks of an input.
+  // In the few ticks of an input a blend only begins.
   EXPECT_LT(most_N, 1.5);
   expect_no_step();
 }

@@ -83,7 +83,7 @@ TEST_F(HapticThreadTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   EXPECT_EQ(device_.sent.torque_Nmm, Vec3::Zero());
   const TimingSummary timing = live_.timing();
   // A loaded machine misses ticks, and says so; for the device no more time passed than they take together,
-  // and less only where more than 20 were missed at once.
+  // and less only if more than 20 were missed at once.
   const double ticked_s = 1e-3 * static_cast<double>(timing.ticks);
   EXPECT_GE(device_.time_passed_s, ticked_s - 1e-9);
   EXPECT_LE(device_.time_passed_s, ticked_s + 1e-3 * static_cast<double>(timing.missed_ticks) + 1e-9);

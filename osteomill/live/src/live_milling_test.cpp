@@ -171,7 +171,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   EXPECT_TRUE(surface_is_the_bones());
 }
 
-// What the haptic thread mills is what its follower shows, also after several exchanges of the two.
+// The follower shows what the haptic thread mills, also after several exchanges of the two.
 TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
   for (int n = 0; n < 3; ++n) {
     mill(0.2);
@@ -235,7 +235,7 @@ TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
   mill(0.1);
 }
 
-// Of a hole whose sides are cut in part, dragged up and back as far as bone goes.
+// Mills a hole whose sides are cut in part, and changes the isovalue up and back over the bone's whole range.
 TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
   mill(0.3);
   const CopyOnWriteFloats milled = bone();
@@ -256,7 +256,7 @@ TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
   EXPECT_TRUE(surface_is_the_bones());
 }
 
-// What a window that ended had milled goes on in another.
+// The bone that an ended window had milled continues in another.
 TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   mill(0.3);
   const double removed_mm3 = milling_.state().record.removed_mm3;
@@ -287,8 +287,8 @@ TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   EXPECT_EQ(bone_again(), untouched_);
 }
 
-// Pressed into the bone, deep in it, and far away: each algorithm lets go without a step and feels nothing
-// where the tool comes to stand.
+// Pressed into the bone, deep in it, and far away: each algorithm lets go without a step and feels nothing at
+// the tool's new place.
 TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
   const Pose X_W_free = pose_above(entry_, setup_.tool, 5.0);
   for (const AlgorithmDescription& algorithm : all_algorithms()) {

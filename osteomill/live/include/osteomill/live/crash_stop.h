@@ -6,18 +6,17 @@
 
 namespace osteomill {
 
-/// Has every device that a live session drives sent zero however the program ends or is stopped, in any
-/// thread, but by SIGKILL and SIGSTOP (then it is for the device to let go). A program asks for that by
-/// making one object of this class, best at the beginning of main(); a library in somebody else's program
-/// takes no signal without one.
+/// Sends zero to every device that a live session drives when the program ends or is stopped, in any thread,
+/// except by SIGKILL and SIGSTOP (then the device must let go by itself). A program asks for that by making
+/// one object of this class, best at the beginning of main(); without one the library handles no signal.
 ///
-/// Only signals that nobody handles are taken, those whose default action would end or stop the process: when
-/// it crashes (with SIGABRT that is an exception that nobody catches), is asked to end, or is stopped from
-/// its terminal, after which SIGCONT goes on with the device. The default action then follows. What the
-/// program ignores or handles itself is left to it, whether it was handled before or is later. Only a fault
-/// (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS) that had a handler before is passed to that one with
-/// the devices at zero, and where it returns, the sessions go on; a program that handles a fault in any other
-/// way calls `let_go` and `take_hold` in its own handler.
+/// It handles only signals that the program does not handle and whose default action would end or stop the
+/// process: after a crash (SIGABRT also comes from an exception that is not caught), a request to end, or a
+/// stop from the terminal, after which SIGCONT continues with the device. The default action then follows.
+/// What the program ignores or handles itself is left to it, whether it was handled before or is later. Only
+/// a fault (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS) that had a handler before is passed to that one
+/// with the devices at zero, and if it returns, the sessions go on; a program that handles a fault in any
+/// other way calls `let_go` and `take_hold` in its own handler.
 ///
 /// When the process ends, the haptic threads are asked to stop and given 50 ms to send zero themselves (one
 /// of them may have crashed); then the devices are let go of from the signal's handler, and given 50 ms to

@@ -39,8 +39,8 @@ struct TickClock {
 };
 
 /// Percentiles (distribution.h) of a histogram of times, microseconds. A time counts as the upper end
-/// of the bin it falls into (1 us wide up to 1 ms, 10 us up to 10 ms), or as the greatest time, where that is
-/// less. All zero where none was counted.
+/// of the bin it falls into (1 us wide up to 1 ms, 10 us up to 10 ms), or as the greatest time, if that is
+/// less. All zero if none was counted.
 struct TimePercentiles {
   double p50_us = 0;
   double p99_us = 0;
@@ -75,7 +75,7 @@ struct TickTimes {
   Nanoseconds deadline_ns = 0;
   Nanoseconds woke_ns = 0;
   Nanoseconds done_ns = 0;
-  /// Periods since the deadline before: more than 1 where ticks were missed.
+  /// Periods since the deadline before: more than 1 if ticks were missed.
   int periods = 1;
 };
 
