@@ -127,7 +127,7 @@ void BoneSender::run(const std::stop_token& stop, Socket& stream) {
       is_last = stop.stop_requested();
       tool = std::exchange(tool_, {});
     }
-    // What the receiver says is not wanted, but would stop it from saying more.
+    // Messages of the receiver are not used, but would block it if they were not read.
     stream.receive(unread);
     if (tool) send_tool(stream, *tool);
     const auto now = std::chrono::steady_clock::now();

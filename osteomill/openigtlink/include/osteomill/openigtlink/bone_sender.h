@@ -16,22 +16,22 @@ namespace osteomill {
 
 class Socket;
 
-/// Sends the bone as it is milled, and the tool, to whoever takes OpenIGTLink (3D Slicer): IMAGE messages
-/// called OsteomillBone, at the beginning all of it, then at most twice a second, where it has changed, the
-/// box of all that was ever milled, as a part of that image, densities as in the scan, as 32-bit floats; and
-/// as often as it is told TRANSFORM messages called OsteomillTool (X_WT) and STRING messages called
-/// OsteomillReadings. All in the patient's axes (RAS, as the protocol has them). On a thread of its own, for
-/// which neither the haptic thread nor anyone else waits longer than such a box takes to be copied.
+/// Sends the bone as it is milled, and the tool, to a receiver of OpenIGTLink (3D Slicer): IMAGE messages
+/// called OsteomillBone, at the beginning all of it, then, at most twice a second and only after a change,
+/// the box of all that was ever milled, as a part of that image, with the scan's densities as 32-bit floats;
+/// and at the rate that it was given TRANSFORM messages called OsteomillTool (X_WT) and STRING messages
+/// called OsteomillReadings. All in the patient's axes (RAS, as the protocol has them). On a thread of its
+/// own, for which neither the haptic thread nor anyone else waits longer than such a box takes to be copied.
 class BoneSender {
  public:
-  /// To HOST:PORT. `bone` outlives this. Throws InputError where the address is none, nothing listens there,
-  /// or the bone does not fit into a message (2 GiB). At its end the bone is sent as it is by then, where
+  /// To HOST:PORT. `bone` outlives this. Throws InputError if the address is none, nothing listens there,
+  /// or the bone does not fit into a message (2 GiB). At its end the bone is sent as it is by then, if
   /// that takes no longer than two seconds.
   BoneSender(const BoneFollower& bone, const std::string& address, double tool_rate_Hz);
 
-  /// What is sent of the tool from now on. Any thread.
+  /// Sets the state of the tool that is sent from now on. Any thread.
   void show_tool(const TickRecord& now);
-  /// Whether the receiver is still there; nothing is sent any more where it is not. Any thread.
+  /// Whether the receiver is still there; nothing is sent any more if it is not. Any thread.
   bool is_connected() const { return is_connected_.load(std::memory_order_relaxed); }
 
  private:
