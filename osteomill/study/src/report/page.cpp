@@ -17,7 +17,7 @@ namespace osteomill {
 
 namespace {
 
-// Of the character that the text begins with; 0 where it begins with none.
+// Returns the length in bytes of the character with which the text begins; 0 if it begins with none.
 std::size_t length_of_first(std::string_view text) {
   const auto byte = [&](std::size_t n) -> std::uint32_t { return static_cast<unsigned char>(text[n]); };
   const std::uint32_t first = byte(0);
@@ -101,7 +101,8 @@ std::string table_row(const std::vector<Cell>& cells, bool header) {
   return row + "</tr>\n";
 }
 
-// As an image and not as elements of the page: the figures' SVGs use the same identifiers.
+// Embeds the figure as an image, not as elements of the page, because the figures' SVGs use the same
+// identifiers.
 std::string html_figure(const CaptionedFigure& figure) {
   const char* type = figure.file.extension() == ".svg" ? "svg+xml" : "png";
   return fmt::format(
@@ -198,7 +199,7 @@ std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-// The text's lines, broken where they are wider than this.
+// The text's lines, broken if they are wider than this.
 std::vector<std::string> lines_of(const std::string& text, std::size_t most) {
   std::vector<std::string> lines;
   std::istringstream in(text);

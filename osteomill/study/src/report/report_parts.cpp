@@ -15,7 +15,7 @@ namespace osteomill {
 
 namespace {
 
-// As wide as a panel of two columns, so that the SVG, which holds the pictures, stays small.
+// Width of a panel in two columns, so that the SVG, which holds the pictures, stays small.
 constexpr int kPanelWidth_px = 560;
 
 Image shrunk(const Recording& recording, const RunPicture& picture) {
@@ -56,7 +56,7 @@ std::vector<Panel> panels_of(const RunGroup& group) {
       const MeasuredRun* run = group.find(algorithm.name, phase);
       const RunPicture* after = run ? picture_named(*run->recording, kPictureAfter) : nullptr;
       if (after == nullptr) continue;
-      // Where the picture before belongs to an earlier part of the session, what this part removed is not all
+      // If the picture before belongs to an earlier part of the session, what this part removed is not all
       // that went between the two.
       const bool whole = picture_named(*run->recording, kPictureBefore) != nullptr;
       panels.push_back(
@@ -145,8 +145,8 @@ void add_rows(const MeasuredRun& run, Table& table) {
   }
 }
 
-// What was removed of a label over time, in points: both ends, and wherever another two-hundredth was
-// removed.
+// Returns the points of the curve of a label's removed volume over time: both ends, and one for each further
+// two-hundredth.
 std::string curve_of(const Recording& recording, LabelMap::Place label, double all_mm3) {
   const double first_s = recording.records.front().time_s;
   std::string data = "0 0\n";
@@ -163,7 +163,7 @@ std::string curve_of(const Recording& recording, LabelMap::Place label, double a
   return data;
 }
 
-// gnuplot commands for one run's panel; empty where the run removed nothing that has a label.
+// gnuplot commands for one run's panel; empty if the run removed nothing that has a label.
 std::string panel(const MeasuredRun& run, FigureScript& figure) {
   const LabelCount count = count_of(*run.recording);
   double all_mm3 = 0;
@@ -260,7 +260,7 @@ std::string raised(std::string unit) {
 struct SettingLine {
   std::string key;
   std::string unit;
-  // One for each recording; nothing where it does not have the setting.
+  // One for each recording; nothing if it does not have the setting.
   std::vector<std::optional<std::string>> values;
 };
 
@@ -322,7 +322,7 @@ Table settings_table(const std::vector<const Recording*>& recordings) {
 
 namespace {
 
-// What an algorithm is set to means nothing to another one.
+// Returns true for a setting of one algorithm, which has no meaning for another.
 bool is_of_the_algorithm(const std::string& key) {
   return key == kSamplePointsKey || key.starts_with("algorithm.") || key.starts_with("probe.");
 }

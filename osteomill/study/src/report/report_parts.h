@@ -42,7 +42,7 @@ std::optional<Section> label_section(const RunGroup& group);
 std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesystem::path& folder);
 
 /// Returns every setting of the recordings, once if it is the same in all, else with the value of each
-/// algorithm or, where that does not tell them apart, of each recording. The command line is left out.
+/// algorithm or, if that does not tell them apart, of each recording. The command line is left out.
 Table settings_table(const std::vector<const Recording*>& recordings);
 
 /// Returns what keeps recordings from being of the same bone, tool, hand and settings: a row for each

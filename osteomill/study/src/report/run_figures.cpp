@@ -14,9 +14,9 @@ namespace osteomill {
 
 namespace {
 
-// What panels show over time.
+// Describes a quantity that panels show over time.
 struct Shown {
-  // Of the y axis, with its unit.
+  // Label of the y axis, with its unit.
   std::string label;
   std::function<double(const TickRecord&)> value;
   // gnuplot commands for its panels alone (scale, range, lines); without any, the range of all runs.
@@ -30,7 +30,7 @@ struct Curve {
   double restlessness = 0;
 };
 
-// From 0, where the tables begin to count; what was before that is negative.
+// Returns the time since the tables begin to count, s; negative before.
 double time_s(const MeasuredRun& run, const TickRecord& record) {
   return record.time_s - run.recording->records.front().time_s - run.metrics.counted_from_s;
 }
@@ -63,7 +63,8 @@ std::string time_range(const std::vector<const MeasuredRun*>& runs) {
       first, last, first);
 }
 
-// Of what the tables count, shared by the panels of a row; from 0 where the least is not far above it.
+// Returns the range of the values that the tables count, shared by the panels of a row; it begins at 0 if the
+// least is not far above.
 std::string value_range(const std::vector<const MeasuredRun*>& runs, const Shown& shown) {
   double min = std::numeric_limits<double>::infinity(), max = 0;
   for (const MeasuredRun* run : runs) {
@@ -73,7 +74,7 @@ std::string value_range(const std::vector<const MeasuredRun*>& runs, const Shown
       max = std::max(max, shown.value(record));
     }
   }
-  // Of six digits, at which a range of nothing is refused.
+  // Smallest share of the maximum that six digits show: gnuplot refuses an empty range.
   constexpr double kLeastShare = 1e-4;
   if (min > max) return "set yrange [0:1]";
   const double above = 0.06 * (max - (min < max / 2 ? 0 : min));
@@ -86,7 +87,7 @@ std::string capitalised(std::string phase) {
   return phase;
 }
 
-// Drawn by hand at the figure's top: gnuplot's own is fitted to one panel, and is broken into rows where that
+// Drawn by hand at the figure's top: gnuplot's own is fitted to one panel, and is broken into rows if that
 // is narrow.
 std::string legend(const RunGroup& group, double height_px) {
   constexpr double kEntry_px = 220, kLine_px = 40, kTop_px = 26;
@@ -107,7 +108,7 @@ std::string legend(const RunGroup& group, double height_px) {
   return script;
 }
 
-// Across the panel; what it stands for is said above, where no curve runs.
+// Draws a line across the panel; its label stands above, clear of the curves.
 std::string dashed_line(double y) {
   return fmt::format(
       "set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dt 2 lw 1.5 lc rgb '#555555' front", y);
@@ -188,7 +189,7 @@ Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& s
 constexpr std::size_t kCloudBins = 700;
 
 struct Cloud {
-  // Of the counted ticks in which the tool touched, or of all where it hardly did.
+  // Directions in the counted ticks in which the tool touched, or in all if it hardly did.
   std::vector<Vec3> directions;
   std::vector<double> times_s;
   Vec3 mean = Vec3::Zero();
@@ -293,7 +294,7 @@ Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& fo
 }
 
 Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  // Where nothing was removed the curve says nothing.
+  // If nothing was removed the curve says nothing.
   RunGroup milled = group;
   std::erase_if(milled.runs, [](const MeasuredRun& run) { return run.metrics.removed_mm3 == 0; });
   if (milled.runs.empty()) milled = group;

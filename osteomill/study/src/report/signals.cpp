@@ -66,7 +66,7 @@ std::vector<Vec3> high_pass(std::span<const Vec3> samples, double rate_hz, doubl
 
 namespace {
 
-// Of the leader's samples: five, evenly spread from `reach` before to `reach` after.
+// Number of the leader's samples: evenly spread from `reach` before to `reach` after.
 constexpr std::size_t kLags = 5;
 constexpr std::size_t kSamplesEach = 20;
 using Leading = Eigen::Matrix<double, 3 * kLags, 1>;

@@ -38,7 +38,7 @@ Section notices(const std::vector<const Recording*>& recordings) {
   return section;
 }
 
-// Of recordings that do not belong together.
+// Returns a section on the differences of recordings that do not belong together.
 std::vector<Section> differences(const std::vector<const Recording*>& recordings) {
   Table table = differences_table(recordings);
   if (table.rows.empty()) return {};
@@ -102,18 +102,18 @@ const Topic kFelt[] = {
      {"torque_mean_Nmm", "torque_max_Nmm", "torque_hp_rms_Nmm", "torque_step_max_Nmm"}},
     {"Shaft",
      {{"shaft", draw_shaft_figure,
-       "Where the simulated tool's shaft points while it touches, in degrees from its mean direction and "
+       "Direction of the simulated tool's shaft while it touches, in degrees from its mean direction and "
        "coloured by time. Each panel has a scale of its own."}},
      {"shaft_spread_deg", "shaft_excursion_deg"}},
     {"Path and bone removed",
      {{"removed", draw_removed_figure,
        "Bone removed since the milling began, in mm³ of bone of the reference density."},
-      {"path", draw_path_figure, "Where the burr's centre was, along the scan's axes."}},
+      {"path", draw_path_figure, "Position of the burr's centre along the scan's axes."}},
      {"removed_mm3", "path_mm", "contact_share", "burr_contact_share", "shaft_contact_share"}}};
 const Topic kTimes{
     "How long the ticks took",
     {{"rate", draw_rate_figure,
-      "Compute time of each tick, the algorithm's and the milling's: CPU time where the trial ran in "
+      "Compute time of each tick, the algorithm's and the milling's: CPU time if the trial ran in "
       "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line."}},
     {"steps", "tick_us_median", "tick_us_p99", "tick_us_max", "rate_hz"}};
 
@@ -144,7 +144,7 @@ Table metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines)
     table.header.push_back(run.phase.empty() ? run.algorithm.label : run.phase + "\n" + run.algorithm.label);
     table.rows.front().emplace_back(run.not_reached, Look::words);
   }
-  // What was not reached stands before all that is compared.
+  // The goals that were not reached stand before everything that is compared.
   if (std::ranges::all_of(group.runs, &std::string::empty, &MeasuredRun::not_reached)) table.rows.clear();
   for (const MetricLine& line : lines) {
     table.rows.push_back({line.label});
@@ -182,7 +182,7 @@ std::vector<Section> pictures_section(const RunGroup& group, const fs::path& fol
   return {section};
 }
 
-// Of a scan with labels.
+// Returns the section of a scan with labels.
 Section labels_section(const RunGroup& group, const fs::path& folder) {
   std::optional<Section> labels = label_section(group);
   if (!labels) return {};
@@ -200,7 +200,7 @@ double spindle_s(const Recording& recording) {
   return on_s;
 }
 
-// What a session was, to whoever held the tool.
+// Returns a summary of a session for the person who held the tool.
 std::string session_in_words(const MeasuredRun& run) {
   const RunMetrics& m = run.metrics;
   const auto& records = run.recording->records;

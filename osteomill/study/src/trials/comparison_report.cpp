@@ -129,7 +129,7 @@ Section hands_section(const Study& study, const fs::path& figures) {
   std::vector<CaptionedFigure> drawn;
   for (const std::string_view phase : study.phases())
     drawn.push_back({draw_study_figure(study, phase, figures).svg,
-                     "Every hand of the study, by algorithm; logarithmic where values lie far apart."});
+                     "Every hand of the study, by algorithm; logarithmic if values lie far apart."});
   return study_section(study, drawn);
 }
 
@@ -150,7 +150,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
     });
   }
   const Study study = study_of(group, extras);
-  // Measured beside the recordings and kept nowhere else: they stay where no figure can be drawn.
+  // Measured beside the recordings and kept nowhere else: they stay if no figure can be drawn.
   const bool has_further_rows = study.rows().size() + study.rows_of_other_grips().size() > recordings.size();
   if (has_further_rows || !extras.passivity.empty()) create_folder(out_dir);
   if (has_further_rows) write_study_csv(out_dir / kStudyCsv, study);

@@ -99,7 +99,7 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
   EXPECT_NE(summary.find("\npoint-shell,holding,20000,"), std::string::npos);
 }
 
-// Of a person at the window it tells what that one did, and nothing of a trial that was none.
+// A report of a session at the window describes what the person did, and mentions no trial.
 TEST_F(ReportTest, ASessionSpeaksOfItself) {
   Recording run = sample_run("point-shell", "milling");
   run.description.phase = "";

@@ -25,7 +25,7 @@ double share_hp(const VectorMetrics& v) {
   return v.hp_rms / v.mean;
 }
 
-// What rules look at.
+// Figures that the rules use.
 using M = RunMetrics;
 constexpr auto force_hp = [](const M& m) { return m.force_N.hp_rms; };
 constexpr auto torque_hp = [](const M& m) { return m.torque_Nmm.hp_rms; };
@@ -39,7 +39,7 @@ constexpr auto shaft_turn = [](const M& m) { return m.turns.max_deg; };
 constexpr auto shaft_turn_at_torque_step = [](const M& m) { return m.turns.at_torque_step_deg; };
 constexpr auto contacts = [](const M& m) { return m.contacts_mean; };
 
-// What a rule needs of one algorithm in one phase.
+// Names a figure of one algorithm in one phase that a rule needs.
 struct Needed {
   std::size_t algorithm;
   std::string_view phase;

@@ -25,7 +25,7 @@ constexpr double kStiffest_N_per_mm = 200;
 // One end of what is left to look at.
 struct Pressed {
   double stiffness_N_per_mm;
-  /// Nothing where it has not been pressed.
+  /// Nothing if it has not been pressed.
   std::optional<double> felt_N_per_mm = std::nullopt;
 };
 
@@ -74,7 +74,7 @@ HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, 
     const double felt = felt_stiffness_N_per_mm(setup, wall);
     if (std::abs(felt - felt_N_per_mm) <= kWithin * felt_N_per_mm) return named.back();
     (felt < felt_N_per_mm ? low : high) = {stiffness, felt};
-    // Most are felt in proportion to the setting; where that leads out of what is left, its middle.
+    // Most are felt in proportion to the setting; if that leads out of what is left, its middle.
     const double proportional = felt > 0 ? stiffness * felt_N_per_mm / felt : 0;
     const bool is_within = proportional > low.stiffness_N_per_mm && proportional < high.stiffness_N_per_mm;
     stiffness =

@@ -53,7 +53,7 @@ double slope_at_rest_N_per_mm(HapticAlgorithm& algorithm) {
   return 0;
 }
 
-// But for the one whose force rises in steps.
+// Returns all algorithms except the one whose force rises in steps.
 std::vector<std::string> cases() {
   std::vector<std::string> all = algorithm_names();
   std::erase(all, "surface-points");

@@ -51,8 +51,9 @@ StiffnessLimit ideal_limit(const WallPress& press) {
   return seek_stiffness_limit(press_at, 1.0);
 }
 
-// Where a mass on a damper and a spring whose force comes `delay_s` + half a tick late swings for ever:
-// K cos(w t) = m w^2, K sin(w t) = b w. The rule 2 b / (T + 2 tau) is its limit for slow swings.
+// Returns the stiffness at which a mass on a damper and a spring whose force comes `delay_s` + half a tick
+// late swings for ever: K cos(w t) = m w^2, K sin(w t) = b w. The rule 2 b / (T + 2 tau) is its limit for
+// slow swings.
 double exact_limit_N_per_mm(const WallPress& press) {
   const double late_s = press.handle.force_delay_s + 0.5 * press.tick_s;
   const double rate = 1e3 * press.damping_Ns_per_mm / press.handle.mass_kg;

@@ -15,7 +15,7 @@ namespace osteomill {
 
 namespace {
 
-// Of the paper's tables, or of our own algorithm, for which the paper has no rate (0).
+// A resolution of the paper's tables, or of our own algorithm, for which the paper has no rate (0).
 struct Resolution {
   std::string_view algorithm;
   double value;

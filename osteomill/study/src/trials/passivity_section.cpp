@@ -102,7 +102,7 @@ constexpr const char* kWhatWasDone =
     "algorithm that buzzes by itself may have others.";
 
 constexpr const char* kCaption =
-    "The stiffness felt where the wall is only just passive, against the device's damping. A triangle: "
+    "The stiffness felt when the wall is only just passive, against the device's damping. A triangle: "
     "passive up to the stiffest setting tried, 200 N/mm, of which this is felt. A missing point: passive at "
     "no setting. Points stand a little aside of each other.";
 
@@ -139,7 +139,7 @@ Axes axes_of(std::span<const PassivityRow> rows) {
   return axes;
 }
 
-// Damping, felt stiffness or '?' where none was passive, the same where even the stiffest was, damping, rule.
+// Damping, felt stiffness or '?' if none was passive, the same if even the stiffest was, damping, rule.
 // Each algorithm a little aside, since several follow the rule.
 std::string curve_data(std::span<const PassivityRow> rows, const AlgorithmId& algorithm, double aside,
                        double delay_s) {
@@ -162,7 +162,7 @@ std::string panel(std::span<const PassivityRow> rows, std::size_t column, const 
     const AlgorithmId& algorithm = axes.algorithms[n];
     const double aside = std::pow(1.05, static_cast<double>(n) - 1);
     const std::string file = figure.data(curve_data(rows, algorithm, aside, axes.delays_s[column]));
-    // The same for every algorithm.
+    // The rule is equal for every algorithm.
     rule = fmt::format(", {} using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
     curves += fmt::format(
         "{2}{0} using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, {0} using 1:3 with "

@@ -26,7 +26,7 @@ class RecordedTrialTest : public ::testing::Test {
   Volume bone_;
 };
 
-// Anything but what it is where nothing is said, and within its range.
+// Anything but what it is if nothing is said, and within its range.
 template <typename Struct>
 void change(Struct& s) {
   double n = 1;

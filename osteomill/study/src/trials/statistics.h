@@ -18,7 +18,7 @@ struct SignedRank {
   double positive = 0;
   double negative = 0;
   /// Two-sided and exact: the share of all 2^pairs ways to give the ranks signs whose smaller sum is at most
-  /// the one seen. 1 where there are no differences.
+  /// the one seen. 1 if there are no differences.
   double p = 1;
 };
 
@@ -29,14 +29,14 @@ SignedRank signed_rank(std::span<const double> differences);
 /// "p = 0.012", "p < 0.001".
 std::string p_text(double p);
 
-/// The least p that this test can give with so many differences: 2^(1 - n).
+/// Returns the least p that this test can give with n differences: 2^(1 - n).
 double min_p(std::size_t differences);
 
 /// Holm's correction for testing several things at once (1979): p-values in the same order, each of which may
 /// be held against the level of significance as if it were alone.
 std::vector<double> holm_corrected(std::span<const double> p);
 
-/// The chance of fewer than k heads in so many tosses of a coin: P(Binomial(n, 1/2) < k).
+/// Returns the chance of fewer than k heads in n tosses of a coin: P(Binomial(n, 1/2) < k).
 double chance_of_fewer_heads(std::size_t k, std::size_t tosses);
 
 /// The median of a sample, and an interval that covers the median of what the sample was drawn from.

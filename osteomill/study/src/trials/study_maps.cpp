@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kMaxCells = 40, kParts = 24, kMaxTics = 8;
 // Values that span this factor stand on a logarithmic axis.
 constexpr double kWide = 10;
-// As a share of their size, by which values lie apart that have places of their own on an axis.
+// Smallest relative difference of values that have separate places on an axis.
 constexpr double kApart = 1e-5;
 
 // Values that a scale cannot tell apart are one.
@@ -42,7 +42,7 @@ std::string ratio_label(std::string above, std::string below) {
   return above + " / " + (below.find('/') == std::string::npos ? below : "(" + below + ")");
 }
 
-// Where it stands among those that are known; if it is new, it is put behind them.
+// Returns the index of a text among the known ones; appends it if it is new.
 std::size_t place_in(std::vector<std::string>& known, const std::string& text) {
   const auto at = std::ranges::find(known, text);
   const auto place = static_cast<std::size_t>(at - known.begin());
@@ -50,7 +50,7 @@ std::size_t place_in(std::vector<std::string>& known, const std::string& text) {
   return place;
 }
 
-// What stands along an axis, or is coloured: an option, a column of the rows, or the ratio of two of them.
+// A quantity along an axis or as a colour: an option, a column of the rows, or the ratio of two of them.
 class Shown {
  public:
   Shown(const StudyDesign& design, const std::string& shown) {
@@ -64,7 +64,7 @@ class Shown {
     }
   }
 
-  // Not a number where it is not set or could not be measured.
+  // Not a number if it is not set or could not be measured.
   double of(const StudySettings& settings, const TrialRow& row) {
     const double value = one(parts_.front(), settings, row);
     return parts_.size() == 1 ? value : value / one(parts_.back(), settings, row);
@@ -98,7 +98,7 @@ struct Cells {
   bool logarithmic = false;
 
   std::size_t count() const { return edges.size() - 1; }
-  // Of the axis's length.
+  // Returns the place of a value as a share of the axis's length.
   double share_at(double value) const {
     const double from = edges.front(), to = edges.back();
     return logarithmic ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
@@ -141,7 +141,7 @@ Cells cells_of(const std::set<double>& values, bool words) {
   return cells;
 }
 
-// What the tics and the label of the upright axis take.
+// Returns the width that the tics and the label of the upright axis take, px.
 double room_left_px(const Shown& shown) {
   constexpr double kNumbers_px = 84, kLetter_px = 9, kLabel_px = 64;
   std::size_t longest = 0;
@@ -218,7 +218,7 @@ Cells cells_along(double Point::*axis, const std::vector<Point>& points, const S
   return cells_of(values, !shown.words.empty());
 }
 
-// What stands in the map's panels.
+// Holds the content of the map's panels.
 struct Gathered {
   Shown x, y, colour;
   std::vector<std::string> panels = {};

@@ -43,8 +43,8 @@ MeasuredRun run_of_hand(const StudySettings& settings, const TrialRow& row) {
   return run;
 }
 
-// What hands that are compared have in common: the bone, the tool, and all else that varies but the hand
-// itself and what is compared.
+// Returns what compared hands have in common: the bone, the tool, and everything else that varies except the
+// hand itself and the algorithm.
 std::string group_of(const StudyDesign& design, const StudySettings& settings) {
   std::string group;
   for (const std::string& key : design.varied()) {

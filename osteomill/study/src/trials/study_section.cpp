@@ -32,7 +32,7 @@ std::vector<double> all_values(const Study& study, std::string_view phase, const
   return all;
 }
 
-// Whole decades where the values spread, so that at least two tics have a number.
+// Whole decades if the values spread, so that at least two tics have a number.
 std::string range_for(const std::vector<double>& values) {
   if (values.empty()) return "unset logscale y\nset yrange [0:1]\n";
   const auto [min, max] = std::minmax_element(values.begin(), values.end());
@@ -134,7 +134,7 @@ Cell differences(const Study& study, std::string_view phase, const Field<RunMetr
   return pieces;
 }
 
-// "0.02 [0.01, 0.03]", of one hand without the interval, and with the hands where it could not be measured in
+// "0.02 [0.01, 0.03]", of one hand without the interval, and with the hands if it could not be measured in
 // all; else why not in any.
 Cell values_cell(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
                  const Field<RunMetrics>& metric) {
@@ -167,7 +167,7 @@ void add_figure(Table& table, const Study& study, std::string_view phase, const 
   if (are_compared(study)) row.push_back(differences(study, phase, metric));
 }
 
-// No row where `words` has nothing of any algorithm.
+// No row if `words` has nothing of any algorithm.
 template <typename Words>
 void add_words(Table& table, const Study& study, const char* label, const Words& words) {
   std::vector<Cell> row{label};
@@ -193,7 +193,7 @@ Table algorithms_table(const Study& study, std::string_view phase) {
   return table;
 }
 
-// What the numbers are, and how far they can be trusted.
+// Returns paragraphs on the meaning of the numbers and how far they can be trusted.
 std::vector<std::string> how_to_read(const Study& study) {
   const std::size_t n = study.seeds().size();
   std::vector<double> stiffness, damping;
@@ -254,7 +254,7 @@ Table findings_table(const Study& study) {
   for (const StudyFinding& f : check_study_findings(study)) {
     std::vector<Cell> row{f.of_medians.paper_says, f.of_medians.measured, verdict_cell(f, one)};
     if (!one) row.insert(row.end(), {fmt::format("{} of {}", f.agreeing, f.tested), p_text(f.p)});
-    row.emplace_back("agrees where " + f.of_medians.rule);
+    row.emplace_back("agrees if " + f.of_medians.rule);
     table.rows.push_back(std::move(row));
   }
   return table;

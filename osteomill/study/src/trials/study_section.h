@@ -45,7 +45,7 @@ std::vector<PairedComparison> compare_algorithms(const Study& study, std::string
 std::string what_was_compared(const Study& study, std::string_view scan_name);
 
 /// Returns a warning, to stand ahead of all else, that a study has too few hands to show anything; empty
-/// where it has enough.
+/// if it has enough.
 std::string too_few_hands(const Study& study);
 
 /// Returns the tables that show what a comparison found, for readers of nothing else: a row for each

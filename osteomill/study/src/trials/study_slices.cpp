@@ -29,7 +29,7 @@ struct SliceContent {
   double cpu_s = 0;
 };
 
-// What the process that reads passes on.
+// Members that the reading process passes on.
 static auto members_of(StudyRecord& record) {
   return std::tie(record.study_hash, record.program_hash, record.scans_from, record.trials,
                   record.trials_a_slice, record.bones);
@@ -49,7 +49,7 @@ void add_text(WordHash& hash, std::string_view text) {
   hash.add(text.size());
 }
 
-// Throws where writing, or putting it on the disk, fails.
+// Throws if writing, or putting it on the disk, fails.
 void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& write) {
   write_file_atomically(path, [&](const fs::path& beside) {
     const Hdf5Lock lock;
@@ -60,7 +60,7 @@ void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& write) {
   });
 }
 
-// In rows of so many values. With a checksum, so that what is damaged is not taken for a result.
+// Writes rows of `width` values with a checksum, so that damaged data are not taken for a result.
 template <typename Value>
 void write_dataset(const fs::path& path, hid_t file, const char* name, const std::vector<Value>& values,
                    hsize_t width = 1) {
@@ -77,7 +77,7 @@ void write_dataset(const fs::path& path, hid_t file, const char* name, const std
     throw InputError(path.string(), fmt::format("'{}' cannot be written (is the disk full?)", name));
 }
 
-// Throws where there are not so many rows.
+// Reads a dataset of `rows` rows. Throws if it has another number of rows.
 template <typename Value>
 std::vector<Value> read_rows(const Hdf5File& file, const char* name, std::size_t rows, hsize_t width = 1) {
   const Hdf5Column column = open_column(file, name, width);
@@ -225,7 +225,7 @@ void write_slice(const StudyFolder& study, const Slice& slice) {
 
 namespace {
 
-// Throws where the file is not of this slice.
+// Throws if the file is not of this slice.
 SliceContent content_of(const Hdf5File& file, const StudyFolder& study, std::size_t number) {
   const std::size_t count = study.record.size_of(number) * parts_of(study.test).size();
   require_version(file, kSliceVersion);
@@ -240,7 +240,7 @@ SliceContent content_of(const Hdf5File& file, const StudyFolder& study, std::siz
           read.get<double>("cpu_s")};
 }
 
-// Nothing where these are other trials than the slice's.
+// Nothing if these are other trials than the slice's.
 std::optional<Slice> slice_of(const SliceContent& content, const StudyFolder& study, std::size_t number) {
   const std::vector<Field<TrialRow>>& columns = columns_of(study.test);
   const auto parts = parts_of(study.test);

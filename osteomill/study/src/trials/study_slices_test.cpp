@@ -158,7 +158,7 @@ void expect_end(const std::function<void()>& read) {
 // HDF5 alone follows an address that leads nowhere, and ends the program.
 TEST(StudySlices, NoDamagedByteEndsTheProgram) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "HDF5 reads beyond its memory in the child, and loses some where it refuses";
+  GTEST_SKIP() << "HDF5 reads beyond its memory in the child, and loses some when it refuses";
 #endif
   const TemporaryFolder folder;
   const StudyFolder study{folder.path(), sample_record()};

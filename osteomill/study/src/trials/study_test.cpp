@@ -91,7 +91,7 @@ TEST(Study, FindingsAreCountedHandByHand) {
   EXPECT_EQ(findings[0].agreeing, 5u);
   EXPECT_TRUE(check_study_findings(Study(sample_rows(1, 0.1)))[1].of_medians.verdict ==
               Verdict::does_not_agree);
-  // What a coin gives as easily is no verdict.
+  // A result that a coin gives as easily is no verdict.
   EXPECT_EQ(findings[0].verdict, Verdict::agrees);
   EXPECT_EQ(findings[1].verdict, Verdict::not_settled);
   EXPECT_EQ(findings[7].of_medians.verdict, Verdict::does_not_agree);

@@ -40,7 +40,7 @@ class Wall {
   }
   double burr_radius_mm() const { return burr_radius_mm_; }
   double depth_of(const Pose& X_WD) const { return burr_radius_mm_ - X_WD.position_mm.z(); }
-  // Along the wall's normal, as sent; not finite where the algorithm's is not.
+  // Along the wall's normal, as sent; not finite if the algorithm's is not.
   double force_N(const Pose& X_WD) { return algorithm_->step(X_WD, press_->tick_s).wrench.force_N.z(); }
 
  private:
@@ -49,10 +49,11 @@ class Wall {
   const WallPress* press_;
 };
 
-// Where the wall carries the pressing force, and how steeply its force rises there.
+// Describes the place at which the wall carries the pressing force, and the slope of its force there.
 struct Rest {
   double depth_mm;
-  /// Of it, from where the wall first resists: an algorithm may feel the burr's centre and not its surface.
+  /// The part of the depth beyond the wall's first resistance: an algorithm may feel the burr's centre and
+  /// not its surface.
   double pressed_mm;
   double felt_N_per_mm;
 };

@@ -150,11 +150,11 @@ std::string plain_words(const std::vector<RateRow>& rows) {
   const auto [min, max] = std::minmax_element(ratios.begin(), ratios.end());
   return text +
          fmt::format(
-             "Where the paper has a rate, this machine makes {} to {} times as many steps a second as the "
+             "At the paper's resolutions this machine makes {} to {} times as many steps a second as the "
              "paper's Pentium 4 of 3.3 GHz, {} times in the geometric mean. The paper's rates are those of "
              "a loop that waits for its next millisecond and does more than the step, so they end at 1000 "
              "Hz; those compared with them here are of the step alone and have no such end. The ratio "
-             "therefore tells how far apart the machines are only where the paper's rate lies well below "
+             "therefore tells how far apart the machines are only if the paper's rate lies well below "
              "1000 Hz, and is too large elsewhere.",
              ratio_text(*min), ratio_text(*max),
              ratio_text(std::exp(log_sum / static_cast<double>(ratios.size()))));
@@ -195,7 +195,7 @@ Section vertices_section(const std::vector<VertexSearchRow>& rows) {
           "correct collision detection and force, not by what measure; the measure here is our own. The "
           "algorithm itself presses its sphere, or one circle of its shaft, on a "
           "flat wall by half the radius with a thousand sides of it in turn, in bone whose density is "
-          "linear, so that nothing but the number of vertices counts. A number suffices where, with "
+          "linear, so that nothing but the number of vertices counts. A number suffices if, with "
           "every side, the force is at most {:g}° off the wall's normal, its size off the mean by at most "
           "{:g} of it, and a vertex meets the bone before the part is {:g} of its radius deep; the "
           "least is the one from which on all that were tried suffice. These tolerances are round "
@@ -211,7 +211,7 @@ fs::path write_rates_report(const MeasuredRates& measured, const fs::path& out_d
   const std::vector<RateRow>& rows = measured.rows;
   require_usable(rows);
   create_folder(out_dir);
-  // The measurements, which stay where no figure can be drawn.
+  // The measurements, which stay if no figure can be drawn.
   write_rows(out_dir / "rates.csv", "algorithm,resolution", rows,
              [](const RateRow& row) { return name_of(row.algorithm) + "," + csv_field(row.resolution); });
   if (!measured.vertices.empty())

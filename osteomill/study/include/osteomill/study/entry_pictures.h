@@ -16,7 +16,7 @@ namespace osteomill {
 double share_seen(const Volume& before, const Volume& milled, const Camera& camera);
 
 /// PNGs of a bone from obliquely above an entry, before milling and after it, all from the same view, those
-/// of a patient with the letters of the patient's directions. Where OpenGL cannot be had there are none, and
+/// of a patient with the letters of the patient's directions. If OpenGL cannot be had there are none, and
 /// a warning says so.
 class EntryPictures {
  public:
@@ -25,8 +25,8 @@ class EntryPictures {
 
   bool can_be_had() const { return before_.has_value(); }
   /// A recording's picture of this name: before, after, or straight along the entry, which there is only
-  /// where fewer than half of what milling left of the surface is seen in the others, as behind a ridge.
-  /// Nothing where OpenGL failed since.
+  /// if fewer than half of what milling left of the surface is seen in the others, as behind a ridge.
+  /// Nothing if OpenGL failed since.
   std::optional<std::vector<unsigned char>> of(std::string_view name, const Volume& milled,
                                                const RunEvents& events) const;
 

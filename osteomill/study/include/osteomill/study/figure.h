@@ -44,7 +44,7 @@ struct FigureScript {
   TemporaryFolder work = {};
   int files = 0;
 
-  /// Writes a file that `body` can draw from; returns its name between quotes. Throws InputError where it
+  /// Writes a file that `body` can draw from; returns its name between quotes. Throws InputError if it
   /// cannot be written to its end: gnuplot would draw what there is of it.
   std::string data(std::string_view bytes);
 };
@@ -66,7 +66,7 @@ struct LegendEntry {
 };
 std::string legend_row(const PanelGrid& grid, const std::vector<LegendEntry>& entries);
 
-/// Runs gnuplot and puts NAME.svg and NAME.png into `folder`. Throws InputError where gnuplot or writing
+/// Runs gnuplot and puts NAME.svg and NAME.png into `folder`. Throws InputError if gnuplot or writing
 /// fails.
 Figure draw_figure(const FigureScript& script, const std::filesystem::path& folder);
 
@@ -78,7 +78,7 @@ Figure draw_panels(
     const std::filesystem::path& folder);
 
 /// The indices of a curve's samples that a drawing about `bins` pixels wide needs: of each of `bins` equal
-/// parts the least and the greatest sample, in order, so that no spike is lost. All indices where there are
+/// parts the least and the greatest sample, in order, so that no spike is lost. All indices if there are
 /// few samples.
 std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::size_t bins);
 
@@ -87,8 +87,8 @@ std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::siz
 std::vector<std::size_t> thin_out_cloud(std::span<const Vec3> directions, const Vec3& centre,
                                         std::size_t bins);
 
-/// Runs `script` in a child process of `program` whose working folder is `folder`. Throws InputError where
-/// gnuplot is not installed, or, with its own last word, where it fails.
+/// Runs `script` in a child process of `program` whose working folder is `folder`. Throws InputError if
+/// gnuplot is not installed, or, with its own last word, if it fails.
 void run_gnuplot(const std::filesystem::path& folder, const std::string& script,
                  const std::string& program = "gnuplot");
 

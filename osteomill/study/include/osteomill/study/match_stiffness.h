@@ -17,8 +17,8 @@ double felt_stiffness_N_per_mm(const MillingSetup& setup, const Volume& wall);
 
 /// The value of the algorithm's setting of the option "stiffness", as a setting of that algorithm alone, with
 /// which it is felt as `felt_N_per_mm`, within 1 %. Sought from its value in `setup` within 0.05 to 200 and
-/// the setting's range. Throws std::invalid_argument, naming the algorithm, where it has no such setting or
-/// none is found: it may be too stiff or too soft, or, where its force rises in steps, leap from one slope to
+/// the setting's range. Throws std::invalid_argument, naming the algorithm, if it has no such setting or
+/// none is found: it may be too stiff or too soft, or, if its force rises in steps, leap from one slope to
 /// another.
 HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, const Volume& wall);
 

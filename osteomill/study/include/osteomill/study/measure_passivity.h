@@ -28,13 +28,13 @@ struct StiffnessLimit {
 };
 
 /// Seeks the limit from `start_N_per_mm` by doubling or halving until it is enclosed, then by bisection of
-/// the logarithm. Where the wall is passive, not passive and passive again as it gets stiffer, it finds one
+/// the logarithm. If the wall is passive, not passive and passive again as it gets stiffer, it finds one
 /// of the limits.
 StiffnessLimit seek_stiffness_limit(const std::function<WallPressResult(double stiffness_N_per_mm)>& press,
                                     double start_N_per_mm);
 
 /// The greatest stiffness of an ideal wall, sampled every `tick_s` and felt `delay_s` later, that a device of
-/// this damping keeps passive where it swings slowly against the tick: 2 b / (T + 2 tau), after Colgate and
+/// this damping keeps passive when it swings slowly against the tick: 2 b / (T + 2 tau), after Colgate and
 /// Schenkel (1997) and Diolaiti et al. (2006).
 double passive_stiffness_rule_N_per_mm(double damping_Ns_per_mm, double tick_s, double delay_s);
 
@@ -59,7 +59,7 @@ std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescriptio
 Volume flat_wall(const MillingTool& tool);
 
 /// Presses on the wall (wall_press.h) with the algorithm, tool, tick and device of `settings`. Throws
-/// std::invalid_argument where one is out of range.
+/// std::invalid_argument if one is out of range.
 WallPressResult press_on_wall(const TrialSettings& settings, const Volume& wall);
 
 /// Seeks the greatest `--stiffness` at which the wall stays passive, pressed as `press_on_wall` does. Throws

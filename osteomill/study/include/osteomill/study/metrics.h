@@ -74,7 +74,7 @@ struct VectorMetrics {
   double hp_rms = 0;
   /// The greatest magnitude of the difference between two ticks that follow each other.
   double step_max = 0;
-  /// `hp_rms` against the mean; 0 where that is zero.
+  /// `hp_rms` against the mean; 0 if that is zero.
   double hp_share = 0;
 };
 inline constexpr VectorMetrics kNotFelt{kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured};

@@ -25,7 +25,7 @@ double thread_cpu_s();
 
 /// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the
 /// shaft on its edge, and then stands in it with the spindle off. The same settings give the same records on
-/// any machine, but for the compute times.
+/// any machine, except for the compute times.
 class MillingTrial {
  public:
   struct Tick {
@@ -34,7 +34,7 @@ class MillingTrial {
     bool milling_phase;
   };
 
-  /// Copies the bone. Throws std::invalid_argument where a setting is out of range.
+  /// Copies the bone. Throws std::invalid_argument if a setting is out of range.
   MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
                const TrialSettings& settings);
 

@@ -17,7 +17,7 @@ MeasuredRun measured_run(const Recording& recording);
 struct RunGroup {
   std::vector<MeasuredRun> runs;
 
-  /// Null where there is no such run.
+  /// Null if there is no such run.
   const MeasuredRun* find(std::string_view algorithm, std::string_view phase) const;
 
   std::vector<const MeasuredRun*> runs_of(std::string_view phase) const;

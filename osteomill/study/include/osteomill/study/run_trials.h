@@ -47,8 +47,8 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
 std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan);
 
 /// Runs the trials, measures both phases, and keeps nothing else. Trials run side by side on `threads`
-/// threads, each in simulated time: but for the step times, the rows are the same however many. Warns where
-/// wrenches were clamped.
+/// threads, each in simulated time; except for the step times, the rows are the same for any number of
+/// threads. Warns if wrenches were clamped.
 std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
                                           const RunEvents& events);
 
@@ -61,8 +61,8 @@ bool is_of_a_comparison(const std::string& name);
 
 /// Runs the trial through both phases of section 8.2 and then writes one recording a phase into `folder`,
 /// with pictures of the bone before and after in the first, or a setting that says why there are none.
-/// Returns their paths. Throws InputError where a recording cannot be written, and std::invalid_argument
-/// where a setting is out of range.
+/// Returns their paths. Throws InputError if a recording cannot be written, and std::invalid_argument
+/// if a setting is out of range.
 std::vector<std::filesystem::path> record_trial(const TrialPlan& plan, const EntryPictures& pictures,
                                                 const std::filesystem::path& folder, const RunEvents& events);
 

@@ -42,7 +42,8 @@ class Study {
   std::vector<AlgorithmId> algorithms() const;
   std::vector<std::string_view> phases() const;
 
-  /// Returns the fewest seeds from which a difference between two of so many algorithms can be significant.
+  /// Returns the smallest number of seeds with which a difference between two of the study's algorithms can
+  /// be significant.
   std::size_t seeds_needed() const;
 
   /// Returns the key metrics without those that are zero throughout a phase (bone removed while holding).
@@ -61,7 +62,7 @@ class Study {
   /// Returns which parts of the plan were not reached (MeasuredRun::not_reached), and in how many hands if
   /// there are several; empty for none.
   std::string not_reached(const AlgorithmId& algorithm, std::string_view phase) const;
-  /// Returns whether so many seeds are enough to speak of them all: more than half.
+  /// Returns true if this number of seeds is more than half of all, and so stands for them.
   bool are_most(std::size_t seeds) const { return 2 * seeds > seeds_.size(); }
 
  private:

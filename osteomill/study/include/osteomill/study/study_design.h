@@ -21,7 +21,7 @@ const std::string* find_value(const StudySettings& settings, std::string_view ke
 /// together (a tool, a hand).
 using StudyAxis = std::vector<StudySettings>;
 
-/// A number's range, evenly or, where `logarithmic`, evenly in its logarithm.
+/// A number's range, evenly or, if `logarithmic`, evenly in its logarithm.
 struct StudyRange {
   double from = 0;
   double to = 0;
@@ -30,14 +30,14 @@ struct StudyRange {
   double at(double share) const;
 };
 
-/// `steps` values from the range's beginning to its end. Throws std::invalid_argument where there are none.
+/// `steps` values from the range's beginning to its end. Throws std::invalid_argument if there are none.
 std::vector<double> steps_of(const StudyRange& range, std::size_t steps);
 
 /// Trials spread over several options at once (McKay, Beckman and Conover 1979): for `trials` trials each
 /// option's range is cut into as many parts of equal size, and each part is tried in exactly one trial, at a
 /// place drawn within it.
 struct LatinHypercube {
-  /// One option: a range, or, where that is empty, one of several values, each as often as the others.
+  /// One option: a range, or, if that is empty, one of several values, each as often as the others.
   struct Axis {
     std::string key;
     StudyRange range;
@@ -74,7 +74,7 @@ std::vector<std::string> names_in(std::string_view shown);
 /// type; its trials are made from their numbers as they are needed, so that a million take no memory.
 class StudyDesign {
  public:
-  /// Throws std::invalid_argument, with one line, where an axis is empty or there are more than 1e7 trials.
+  /// Throws std::invalid_argument, with one line, if an axis is empty or there are more than 1e7 trials.
   StudyDesign(StudySettings fixed, std::vector<StudyAxis> grid, LatinHypercube hypercube);
 
   std::size_t trial_count() const { return count_; }

@@ -19,8 +19,8 @@ struct StudyFinding {
   /// In how many seeds the rule holds, and to how many it can be applied.
   std::size_t agreeing = 0;
   std::size_t tested = 0;
-  /// The chance of so many, or more, by tossing a coin: the sign test that the rule holds in more than half
-  /// of all hands. 1 where it was not tested.
+  /// The chance of this number, or more, by tossing a coin: the sign test that the rule holds in more than
+  /// half of all hands. 1 if it was not tested.
   double p = 1;
 };
 

@@ -36,8 +36,8 @@ struct StudyRecord {
 /// Returns a hash of a file's bytes. Throws InputError if it cannot be read.
 std::uint64_t hash_of_file(const std::filesystem::path& path);
 
-/// study.h5 in `folder`, whole or not at all; reading gives nothing where there is none. Throws InputError
-/// where it cannot be written, or is no such file.
+/// study.h5 in `folder`, whole or not at all; reading gives nothing if there is none. Throws InputError
+/// if it cannot be written, or is no such file.
 void write_study_record(const std::filesystem::path& folder, const StudyRecord& record);
 std::optional<StudyRecord> read_study_record(const std::filesystem::path& folder);
 
@@ -64,15 +64,15 @@ struct Slice {
 /// "slice-12.h5".
 std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_t number);
 
-/// Runs the trials of a slice, side by side on `threads` threads; but for times, the rows are the same
-/// however many. Throws InputError, naming the study's file and the trial, if one cannot be run.
+/// Runs the trials of a slice, side by side on `threads` threads; except for times, the rows are the same for
+/// any number of threads. Throws InputError, naming the study's file and the trial, if one cannot be run.
 Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<TrialPlan>& trials,
                 std::size_t threads, const RunEvents& events);
 
-/// Written under another name and renamed. Throws InputError where it cannot be written.
+/// Written under another name and renamed. Throws InputError if it cannot be written.
 void write_slice(const StudyFolder& study, const Slice& slice);
 
-/// Nothing where there is no such file, or it is cut short, damaged, or of another study: it is to be run
+/// Nothing if there is no such file, or it is cut short, damaged, or of another study: it is to be run
 /// (again).
 std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number);
 

@@ -7,9 +7,9 @@
 
 namespace osteomill {
 
-/// The figures of how well so many vertices stand for surface-points' sphere, or for one circle of its shaft.
-/// Pressed in on a flat wall by half its radius, whatever side of it is turned to the wall, the force should
-/// point out of the wall and always be the same; and no side should come far in unseen.
+/// The figures of how well a number of vertices represents surface-points' sphere, or one circle of its
+/// shaft. Pressed in on a flat wall by half its radius, whatever side of it is turned to the wall, the force
+/// should point out of the wall and always be the same; and no side should come far in unseen.
 struct VertexSearchRow {
   /// "sphere" or "circle".
   std::string part;

@@ -22,7 +22,7 @@ enum class WallMotion : unsigned char { dies_out, goes_on, gives_way };
 struct WallPressResult {
   WallMotion motion = WallMotion::gives_way;
   /// The slope of the force over the depth about the pressing force, pressed slowly: the stiffness that a
-  /// hand feels. 0 where the wall gives way.
+  /// hand feels. 0 if the wall gives way.
   double felt_N_per_mm = 0;
 };
 
@@ -32,16 +32,16 @@ struct WallPressResult {
 /// First the depth is sought, slowly, at which the wall carries this force. There the handle is let go
 /// with a speed that would swing it by half of what it is pressed in (at least 0.02, at most 0.1 mm: 4 to 20
 /// steps of the encoder), and the distances from turning point to turning point are watched for 36 of them or
-/// 2 s. The motion dies out where two of them running are under 0.015 mm (3 steps of the encoder: less than
-/// that rounding keeps alive), or where the greatest of the last third is less than 0.99 of that of the
-/// middle third; it goes on otherwise, at once where one exceeds four times the first or the force is not
+/// 2 s. The motion dies out if two of them running are under 0.015 mm (3 steps of the encoder: less than
+/// that rounding keeps alive), or if the greatest of the last third is less than 0.99 of that of the
+/// middle third; it goes on otherwise, at once if one exceeds four times the first or the force is not
 /// finite. So what grows and what neither grows nor dies both go on.
 ///
-/// Throws std::invalid_argument where a setting of the handle is out of range.
+/// Throws std::invalid_argument if a setting of the handle is out of range.
 WallPressResult press_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press);
 
-/// The first part of it alone: the stiffness that a hand feels about the pressing force, of `press` but for
-/// its handle and damping; 0 where the wall gives way.
+/// Returns the result of the first part alone: the stiffness that a hand feels about the pressing force, with
+/// `press` except for its handle and damping; 0 if the wall gives way.
 double press_slowly_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press);
 
 }  // namespace osteomill
