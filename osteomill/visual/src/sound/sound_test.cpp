@@ -78,7 +78,7 @@ TEST(SpindleSound, DoesNotDependOnHowItIsCutIntoPieces) {
   EXPECT_EQ(computed({30000, 0.4}, 500), computed({30000, 0.4}, 77));
 }
 
-// What OpenAL would send to a sound device.
+// Returns the samples that OpenAL would send to a sound device.
 std::vector<float> through_openal(const SpindleState& state) {
   ALCdevice* device = alcLoopbackOpenDeviceSOFT(nullptr);
   const ALCint format[] = {ALC_FORMAT_CHANNELS_SOFT,

@@ -28,7 +28,7 @@ constexpr double kLoadFollows_per_s = 25;
 constexpr double kIdleLoudness = 0.10;
 constexpr double kLoadLoudness = 0.28;
 constexpr double kNoiseLoudness = 0.22;
-// Of the tone and its overtones, and once more of half of it: bearings are never quite round.
+// Shares of the tone and its overtones, and of half the tone, because bearings are never quite round.
 constexpr double kOvertones[] = {1.0, 0.45, 0.22, 0.10};
 constexpr double kHalfTone = 0.12;
 
@@ -39,7 +39,7 @@ double sine(double turns) {
 // Pieces of 256 samples: longer ones make the sound lag and stutter.
 constexpr ALCint kRefresh_hz = SoundStream::kSampleRate_hz / 256;
 
-// The libraries below OpenAL complain on standard error of a machine without sound, where nothing is wrong.
+// The libraries below OpenAL complain on standard error of a machine without sound, which is no fault.
 class QuietStderr {
  public:
   QuietStderr() : kept_(dup(STDERR_FILENO)) {
@@ -86,7 +86,7 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
     double tone = kHalfTone * sine(0.5 * turns_);
     double overtone = 1;
     for (const double share : kOvertones) {
-      // What the samples cannot hold would come back as another tone.
+      // An overtone above half the sample rate would come back as another tone.
       if (overtone * pitch_hz_ < 0.45 * sample_rate_hz_) tone += share * sine(overtone * turns_);
       overtone += 1;
     }
@@ -123,7 +123,7 @@ void SoundStream::feed(const SpindleState& state) {
     alSourceUnqueueBuffers(source_, 1, &buffer);
     fill(buffer, state);
   }
-  // It stops by itself where it ran dry.
+  // It stops by itself if it ran dry.
   ALint doing = AL_PLAYING;
   alGetSourcei(source_, AL_SOURCE_STATE, &doing);
   if (doing != AL_PLAYING) alSourcePlay(source_);

@@ -84,7 +84,7 @@ class Coarsening {
     Mat3 normals = Mat3::Zero();
     Vec3 offsets = Vec3::Zero();
 
-    // The point nearest to all planes; where they leave it open, the one nearest to `point_W`. That is the
+    // The point nearest to all planes; if they leave it open, the one nearest to `point_W`. That is the
     // mean of the vertices, which alone would lie below a sharp edge.
     Vec3 meeting_near(const Vec3& point_W, double reach_mm) const {
       constexpr double kHeld = 0.004;

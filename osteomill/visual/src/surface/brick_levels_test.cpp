@@ -117,7 +117,7 @@ TEST(BrickLevels, SharpEdgesStayWhereTheyAre) {
   EXPECT_GT(rims, 3);
 }
 
-// What is drawn stays within a cell's diagonal of what is there.
+// The drawn surface stays within a cell's diagonal of the true one.
 TEST_F(BrickLevelsTest, NoLevelLeavesTheSurface) {
   for (std::size_t level = 1; level < BrickLevels::kCount; ++level) {
     const double reach_mm = std::sqrt(3.0) * static_cast<double>(1 << level) * 0.3;

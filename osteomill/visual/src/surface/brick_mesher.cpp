@@ -13,11 +13,11 @@ namespace osteomill {
 
 namespace {
 
-// Vertices keep this far from voxel centres, as a share of the edge: where densities equal the isovalue,
+// Vertices keep this far from voxel centres, as a share of the edge: if densities equal the isovalue,
 // the vertices about a voxel would fall together and the triangles between them have no area.
 constexpr float kMinShare = 1.0f / 512;
 
-// As Eigen adds, but from the first on.
+// Returns the squared norm, summed from the first component on, unlike Eigen.
 float squared(const Eigen::Vector3f& v) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
@@ -150,7 +150,7 @@ void BrickMesher::add_vertex(int i, int j, int k) {
   const int place = i + j * kStride[1] + k * kStride[2];
   const float* at = block_.data() + place;
   const bool bone_first = at[0] > threshold_;
-  // Where differences of densities overflow the quotient is a NaN, and max answers its first argument.
+  // If differences of densities overflow the quotient is a NaN, and max answers its first argument.
   const float share =
       std::min(std::max(kMinShare, (threshold_ - at[0]) / (at[kAlong] - at[0])), 1 - kMinShare);
 
@@ -169,7 +169,7 @@ void BrickMesher::add_vertex(int i, int j, int k) {
                             density_below(in_block, slope, bone)});
 }
 
-// At a point of the block, half a voxel and a voxel along the slope; `flat` where there is none.
+// At a point of the block, half a voxel and a voxel along the slope; `flat` if there is none.
 float BrickMesher::density_below(const Vec3f& point, const Vec3f& slope, float flat) const {
   const float steepness = std::sqrt(squared(slope));
   if (!(steepness > 0 && std::isfinite(steepness))) return flat;

@@ -8,7 +8,7 @@ namespace osteomill {
 /// The triangles of one cell of Marching Cubes, as edges of the cube, three a triangle, anticlockwise seen
 /// from outside the bone.
 ///
-/// Corner (x, y, z) of the cube is bit x + 2 y + 4 z of a case, set where it is bone. Edge 4 a + u + 2 v runs
+/// Corner (x, y, z) of the cube is bit x + 2 y + 4 z of a case, set if it is bone. Edge 4 a + u + 2 v runs
 /// along axis a, (u, v) being its coordinates along the other two axes in their order.
 struct CubeCase {
   std::uint8_t edge_count = 0;

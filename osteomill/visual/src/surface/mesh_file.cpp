@@ -44,7 +44,7 @@ void write_stl(std::ostream& out, const BrickMesh& mesh) {
   }
 }
 
-// What is under a vertex that has no label.
+// Stands for a vertex without a label.
 const Label kUnlabelled{0, "", {222, 194, 148}, false};
 
 const Label& label_of(const LabelMap& labels, const MeshVertex& vertex) {

@@ -58,7 +58,7 @@ BrickMesh checked_mesh(const Volume& volume) {
   return whole;
 }
 
-// What the voxels hold of bone: each counts as full as its density says.
+// Returns the volume of bone in the voxels: each counts by its density as a share of `full`.
 double partial_volume_mm3(const Volume& volume, double full) {
   double sum = 0;
   for (const float density : every_nth_density(volume.grid(), 1))
@@ -179,7 +179,7 @@ TEST(SurfaceMesh, IsWoundOutwardsInEveryFrame) {
   }
 }
 
-// The same bone with its axes flipped or exchanged has the same vertices.
+// A bone with its axes flipped or exchanged has the same vertices.
 TEST(SurfaceMesh, DoesNotDependOnHowTheGridIsStored) {
   const Volume volume = random_volume({17, 18, 19}, 7, 1000);
   GridGeometry stored;

@@ -113,7 +113,7 @@ Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size) {
   const Eigen::Vector2d right = left + Eigen::Vector2d(length_mm / pixel_mm, 0);
   const Eigen::Vector2d tick(0, kTick_px);
   std::array<char, 32> text{};
-  // Where lengths change with their depth by more than a few hundredths.
+  // If lengths change with their depth by more than a few hundredths.
   constexpr double kWide_rad = 0.1;
   const char* const where = camera.field_of_view_rad > kWide_rad ? " at the centre" : "";
   std::snprintf(text.data(), text.size(), "%g mm%s", length_mm, where);

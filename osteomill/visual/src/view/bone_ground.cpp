@@ -45,8 +45,8 @@ void main() {
 
 using Clock = std::chrono::steady_clock;
 
-// Where the view rests: reading the depths makes a processor that draws wait for itself, and milling changes
-// them little.
+// At rest the depths are read only once in this number of pictures: reading makes a processor that draws wait
+// for itself, and milling changes the depths little.
 constexpr unsigned kPicturesPerBlur = 4;
 constexpr double kCoarsest_px = 64;
 constexpr int kWidestPixels = 4;
@@ -67,7 +67,7 @@ bool same_view(const ViewScene& a, const ViewScene& b) {
 }
 
 // A box, in pixels from the lower left, outside of which no part of the sphere is drawn; the whole picture
-// where the sphere reaches the eye.
+// if the sphere reaches the eye.
 Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& projection, const Sphere& sphere) {
   const double front_mm = depth_of(scene.camera, sphere.centre_W) - sphere.radius_mm;
   const Eigen::Vector2d all(projection.size.width, projection.size.height);
@@ -107,7 +107,7 @@ void ClipFaces::set(std::size_t cut, const ClipFace& face) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RGB, GL_UNSIGNED_BYTE,
                   face.pixels.data());
-  // As a fan; the outermost pixels' middles lie half a pixel within the texture.
+  // Draws the face as a fan; the outermost pixels' middles lie half a pixel within the texture.
   const float u = 0.5f / static_cast<float>(face.width);
   const float v = 0.5f / static_cast<float>(face.height);
   const float places[4][2] = {{u, v}, {1 - u, v}, {1 - u, 1 - v}, {u, 1 - v}};
@@ -174,7 +174,7 @@ void BoneGround::draw(const ViewScene& scene, const PixelSize& size) {
   ++drawn_;
 }
 
-// The most pixels that there is time for. As with triangles, more only where that leaves some time.
+// The most pixels that there is time for. As with triangles, more only if that leaves some time.
 PixelSize BoneGround::size_in_time(const PixelSize& size) {
   const auto coarse = [&](int n) { return PixelSize{(size.width + n - 1) / n, (size.height + n - 1) / n}; };
   const auto allowed = static_cast<double>(pixels_.allowed());
@@ -207,8 +207,8 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   to_shade_.clear();
 }
 
-// In the finest detail that there is time for. It gets finer than before only where that leaves some time, so
-// that it does not change to and fro.
+// In the finest detail that there is time for. It gets finer than before only if that leaves some time, so
+// that it does not alternate.
 std::vector<SeenBrick> BoneGround::seen_in_time(const ViewScene& scene, const Projection& projection) {
   Detail detail = kFullDetail;
   if (scene.X_WT) detail.sharp = Sphere{scene.X_WT->position_mm, 2 * scene.tool.burr_radius_mm};
@@ -263,7 +263,7 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
 }
 
 // Draws the part of the picture in which bone changed; once more when nothing changes any longer, since what
-// lies deep is darkened by the picture drawn before. Returns false where that would take too long.
+// lies deep is darkened by the picture drawn before. Returns false if that would take too long.
 bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projection) {
   const bool last = changed_.empty();
   if (last && to_shade_.empty()) return true;
@@ -295,7 +295,7 @@ Eigen::AlignedBox2i BoneGround::changed_part(const std::set<std::size_t>& bricks
                                              const Projection& projection) const {
   Eigen::AlignedBox2d box;
   for (const std::size_t brick : bricks) box.extend(drawn_within(scene, projection, bone_.bounds(brick)));
-  // What is milled away darkens and lightens what is around it.
+  // Removed bone changes the darkening around it.
   const double more_px = cavities_->reach_px(projection.size);
   const Eigen::Array2d all(projection.size.width, projection.size.height);
   const Eigen::Array2d first = (box.min().array() - more_px).floor().max(0.0).min(all);

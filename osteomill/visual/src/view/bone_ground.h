@@ -28,7 +28,8 @@ class DrawingPace {
 
   std::size_t fewest() const { return fewest_; }
   std::size_t allowed() const { return std::max(fewest_, static_cast<std::size_t>(kBone_s / s_each_)); }
-  /// So many took so long. Fewer than `fewest` are taken for that many, since they say nothing of many.
+  /// Records that drawing `count` took `passed_s`. Fewer than `fewest` count as that number, because a few do
+  /// not predict many.
   void drew(std::size_t count, double passed_s) {
     constexpr double kWeight = 0.3;
     const double here = passed_s / static_cast<double>(std::max(count, fewest_));
@@ -61,8 +62,8 @@ class ClipFaces {
 
 /// The ground on which the scene is drawn: background, bone and cuts in a picture of their own, which is kept
 /// from one frame to the next. While the view moves it has as many triangles and pixels as there is time for.
-/// Where the view rests, full detail is drawn brick by brick into a second picture, which takes the first
-/// one's place when it is done. Where bone is milled only the part of the picture in which it changed is
+/// If the view rests, full detail is drawn brick by brick into a second picture, which takes the first
+/// one's place when it is done. If bone is milled only the part of the picture in which it changed is
 /// drawn again.
 class BoneGround {
  public:
@@ -73,7 +74,7 @@ class BoneGround {
   void set_clip_face(std::size_t cut, const ClipFace& face);
   std::size_t triangle_count() const { return bone_.triangle_count(); }
 
-  /// One picture's work; `size` is that of the picture where the view rests.
+  /// One picture's work; `size` is that of the picture when the view rests.
   void draw(const ViewScene& scene, const PixelSize& size);
   const FrameTarget& picture() const { return *shown_; }
   /// Nothing is left to be drawn while neither view nor bone changes.
@@ -101,7 +102,7 @@ class BoneGround {
   std::optional<FrameTarget> resting_;
   // The one of the two that is shown.
   const FrameTarget* shown_ = nullptr;
-  // While the view moves, so many pixels of the window are one of the picture, along each side.
+  // While the view moves, this number of the window's pixels along each side is one pixel of the picture.
   int coarseness_ = 1;
   std::optional<CavityPass> cavities_;
   std::optional<ViewScene> scene_;
@@ -115,7 +116,7 @@ class BoneGround {
   // Bricks that changed since they were drawn: in the picture shown, and in the one that is being refined.
   std::set<std::size_t> changed_;
   std::set<std::size_t> changed_since_;
-  // Bricks that were drawn anew since, but with the darkening of an earlier picture.
+  // Bricks that were drawn again since, but with the darkening of an earlier picture.
   std::set<std::size_t> to_shade_;
   unsigned drawn_ = 0;
 };

@@ -116,7 +116,7 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   });
 }
 
-// Red, green, blue, and 255 where there is a label, else 0.
+// Red, green, blue, and 255 if there is a label, else 0.
 using LabelColour = std::array<std::uint8_t, 4>;
 
 LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex) {
@@ -373,7 +373,7 @@ void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, cavities.blurred_depths());
   if (!cut) glEnable(GL_CULL_FACE);
-  // Of vertices without labels.
+  // Colour of vertices without labels.
   glVertexAttrib4f(3, 0, 0, 0, 0);
   for (const SeenBrick& seen : bricks) {
     glBindVertexArray(bricks_[seen.brick].vertex_array.get());

@@ -105,7 +105,7 @@ class BoneLayer {
   /// Sets the levels of these bricks for another detail.
   void choose_levels(std::span<SeenBrick> bricks, const Detail& detail) const;
   std::size_t triangle_count(std::span<const SeenBrick> bricks) const;
-  /// Draws back faces too where the scene is cut open.
+  /// Draws back faces too if the scene is cut open.
   void draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
             std::span<const SeenBrick> bricks) const;
   /// In full detail.

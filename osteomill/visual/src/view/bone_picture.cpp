@@ -23,14 +23,14 @@ namespace {
 constexpr double kFieldOfView_rad = 0.04;
 constexpr double kMaxWhole_mm = 45.0;
 constexpr double kAroundEntry_mm = 24.0;
-// At least so many voxels around the entry: fewer would show no shape that anyone recognises.
+// Least number of voxels around the entry: fewer would show no recognisable shape.
 constexpr double kAroundEntry_voxels = 32;
 constexpr double kMargin = 1.0 / 20;
 // Pixels drawn for one of the picture, along each side.
 constexpr int kFiner = 2;
 // The darkening of cavities reaches this share of the picture's height: about a burr's radius.
 constexpr double kCavityReach = 1.0 / 16;
-// Of annotations, which are made for a window: the picture's height over this.
+// Height for which annotations are made, px: they are scaled by the picture's height over this.
 constexpr double kAnnotatedHeight_px = 480;
 // White paper.
 constexpr std::array<float, 3> kLightFromBelow{0.47f, 0.45f, 0.42f};

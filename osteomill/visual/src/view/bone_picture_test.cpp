@@ -136,7 +136,7 @@ TEST(BonePicture, AMilledHoleIsDarkerAndAllElseStaysAsItWas) {
   const int x = static_cast<int>(floor.x());
   const int y = static_cast<int>(floor.y());
   EXPECT_LT(brightness(milled, x, y), 0.8 * brightness(whole, x, y));
-  // As far as darkening reaches around the hole.
+  // Radius around the hole that the darkening reaches.
   const Eigen::Vector2d middle = pixel_of(camera, kSize, Vec3(0, 0, 4));
   const double reach_px = 1.3 / mm_per_pixel(camera, kSize, camera.distance_mm) + 2.0 * kSize.height / 16;
   for (int v = 0; v < kSize.height; ++v) {

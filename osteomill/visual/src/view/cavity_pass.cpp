@@ -6,7 +6,7 @@ namespace osteomill {
 
 namespace {
 
-// Depth in mm and 1, or zeros where there is nothing.
+// Depth in mm and 1, or zeros if there is nothing.
 constexpr std::string_view kDepthFragment = R"(#version 330 core
 in vec2 place;
 uniform sampler2D depths;

@@ -9,7 +9,7 @@ namespace osteomill {
 
 namespace {
 
-// Where the edges of the grid's box cross the plane.
+// Returns the points at which the edges of the grid's box cross the plane.
 std::vector<Vec3> crossings(const GridGeometry& geometry, const ClipPlane& plane) {
   const std::array<Vec3, 8> corners = corners_W(geometry, geometry.all_voxels());
   std::vector<Vec3> found;

@@ -78,7 +78,8 @@ void fill(GLenum target, const Buffer& buffer, std::span<const Value> values, GL
   glBufferData(target, static_cast<GLsizeiptr>(values.size_bytes()), values.data(), usage);
 }
 
-/// An attribute of `count` floats, so many bytes into each vertex, in the buffer and array that are bound.
+/// Sets an attribute of `count` floats, `offset_bytes` into each vertex, in the buffer and array that are
+/// bound.
 void set_attribute(GLuint place, GLint count, std::size_t vertex_bytes, std::size_t offset_bytes);
 
 }  // namespace osteomill::gl

@@ -19,7 +19,7 @@ void require(bool good, const char* what) {
   if (!good) throw std::runtime_error(std::string("no OpenGL without a display: ") + what);
 }
 
-// epoxy ends the program where it finds no library to look its functions up in.
+// epoxy ends the program if it finds no library to look its functions up in.
 bool can_be_loaded(const char* library) {
   return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr;
 }

@@ -132,7 +132,7 @@ class SolidShapes {
     draw(cylinder_, from_W, axes_along(along), {radius_mm, radius_mm, along.norm()}, colour, gloss);
   }
 
-  // With a head; none where shorter than its head would be thick.
+  // With a head; none if shorter than its head would be thick.
   void arrow(const Vec3& from_W, const Vec3& along_mm, double radius_mm, const Colour& colour,
              int heads = 1) const {
     const double length_mm = along_mm.norm();
@@ -193,7 +193,7 @@ void draw_tool(const SolidShapes& shapes, const MillingTool& tool, const Pose& X
   shapes.cylinder(X_WT.position_mm, end_W, tool.shaft_radius_mm, shaft);
 }
 
-// Twice: faint through the bone, clearer where nothing is before it. Only its outermost face, so that it is
+// Twice: faint through the bone, clearer if nothing is before it. Only its outermost face, so that it is
 // as clear everywhere.
 void draw_ghost(const SolidShapes& shapes, const MillingTool& tool, const Pose& X_WD) {
   glEnable(GL_BLEND);

@@ -31,8 +31,8 @@ Volume drilled_ball() {
   return volume;
 }
 
-// Another driver, or another version of the same, rounds differently along edges: most pixels are the same
-// but for a few shades, and no more than one in a hundred differs by more than this.
+// Another driver, or another version of the same, rounds differently along edges: most pixels differ by a few
+// shades at most, and no more than one in a hundred differs by more than this.
 constexpr int kShades = 12;
 constexpr double kOthers = 0.01;
 constexpr double kMeanShades = 1.0;
@@ -51,8 +51,8 @@ class SceneRendererTest : public ::testing::Test {
 
   void set_brick(std::size_t n, const BrickMesh& mesh) { renderer_->set_brick(n, full_detail(mesh)); }
 
-  // Holds the picture against the one kept under this test's name. With OSTEOMILL_KEEP_PICTURES it is kept
-  // anew.
+  // Holds the picture against the one kept under this test's name. With OSTEOMILL_KEEP_PICTURES it replaces
+  // the kept one.
   void expect_as_kept() {
     renderer_->draw(scene_, kSize);
     renderer_->draw(scene_, kSize);
@@ -117,7 +117,7 @@ TEST_F(SceneRendererTest, CutWithItsGreys) {
   expect_as_kept();
 }
 
-// What is seen through a pixel is what geometry says is there.
+// A pixel shows the point that geometry predicts.
 TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
   const Image without = picture();
   scene_.X_WT = Pose{{2, -7, 6}, Quat::Identity()};
@@ -135,7 +135,7 @@ TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
             std::vector<int>(without.pixel(beside, y), without.pixel(beside, y) + 3));
 }
 
-// The bone is not drawn anew in every picture, but what was milled is seen two pictures later at the latest.
+// The bone is not drawn again in every picture, but milled bone is seen two pictures later at the latest.
 TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
   for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
   const double all = covered(renderer_->picture());
@@ -144,7 +144,7 @@ TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
   EXPECT_LT(covered(picture()), 0.1 * all);
 }
 
-// Where bone is milled while the view stands still, only that part of the picture is drawn anew.
+// If bone is milled while the view stands still, only that part of the picture is drawn again.
 TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   scene_.camera = camera_on({Vec3(0, 0, 4), 9}, {0.3, 1, -0.5}, Vec3::UnitZ());
   while (!renderer_->settled()) renderer_->draw(scene_, kSize);
@@ -164,7 +164,7 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   EXPECT_FALSE(renderer_->settled());
   for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
   const Image pieces = renderer_->picture();
-  // Another view in between, and all is drawn anew.
+  // Another view in between makes everything be drawn again.
   const Camera camera = scene_.camera;
   turn(scene_.camera, kSize, 20, 5);
   renderer_->draw(scene_, kSize);

@@ -30,7 +30,7 @@ WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density
 
 /// The densities where the plane meets the grid, a pixel a voxel but no more than `max_pixels` along a side,
 /// as grey values; black outside the grid. With `labels`, tinted by those of the voxels nearest to the
-/// pixels. Nothing (no pixels) where the plane misses it. Not for the tick.
+/// pixels. Nothing (no pixels) if the plane misses it. Not for the tick.
 ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
                    const LabelMap* labels = nullptr, int max_pixels = 320);
 

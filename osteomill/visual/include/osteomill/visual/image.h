@@ -29,15 +29,15 @@ struct Image {
 /// are dropped.
 Image averaged_down(const Image& image, int factor);
 
-/// The image as the bytes of a PNG file. Throws std::invalid_argument where the number of bytes in `rgb` is
+/// The image as the bytes of a PNG file. Throws std::invalid_argument if the number of bytes in `rgb` is
 /// not that of width and height.
 std::vector<unsigned char> encode_png(const Image& image);
 
-/// The image of a PNG file's bytes; where it is transparent, white shows through. Nothing where the bytes are
+/// The image of a PNG file's bytes; where it is transparent, white shows through. Nothing if the bytes are
 /// not a whole PNG of at most 4096 x 4096 pixels.
 std::optional<Image> decode_png(std::span<const unsigned char> png);
 
-/// Writes a PNG file, whole or not at all. Throws InputError, naming the file, where it cannot be written.
+/// Writes a PNG file, whole or not at all. Throws InputError, naming the file, if it cannot be written.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace osteomill

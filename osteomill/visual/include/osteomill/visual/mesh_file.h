@@ -12,7 +12,7 @@ namespace osteomill {
 /// "SPACE=LPS".
 enum class MeshFormat : unsigned char { stl, ply, obj };
 
-/// By the file name's extension, in capitals or not. Throws InputError where it is none of these.
+/// By the file name's extension, in capitals or not. Throws InputError if it is none of these.
 MeshFormat mesh_format_of(const std::filesystem::path& path);
 
 /// Returns whether files of this format hold a colour for each vertex.
@@ -21,7 +21,7 @@ bool holds_colours(MeshFormat format);
 /// Writes the mesh. With `labels`, those of the bone, each vertex has the colour of the label under it, or
 /// that of bone: in PLY as red, green, blue beside the label's value as it stands in the map (0 for none), in
 /// OBJ as three numbers from 0 to 1 behind its place, as most programs take them; STL has no room for it.
-/// Appears whole or not at all; throws InputError, naming the file, where it cannot be written.
+/// Appears whole or not at all; throws InputError, naming the file, if it cannot be written.
 void write_mesh(const std::filesystem::path& path, const BrickMesh& mesh, const LabelMap* labels = nullptr);
 
 }  // namespace osteomill

@@ -27,8 +27,8 @@ class SceneRenderer {
 
   /// Sets a brick's triangles as they are now; without any the brick is removed.
   void set_brick(std::size_t brick, const BrickLevels& levels);
-  /// Sets the face that the scene's cut of this number lays open; drawn where the other cuts do not cut it
-  /// away.
+  /// Sets the face that the scene's cut of this number lays open. The part that other cuts remove is not
+  /// drawn.
   void set_clip_face(std::size_t cut, const ClipFace& face);
 
   /// Draws into a picture of its own, in a time that hardly depends on how many triangles and pixels there

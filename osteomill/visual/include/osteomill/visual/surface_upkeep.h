@@ -21,10 +21,10 @@ using ChangedBricks = std::map<std::size_t, BrickLevels>;
 /// Holds no densities. For one thread.
 class SurfaceUpkeep {
  public:
-  /// Making a brick's levels takes five times as long as its mesh, and where bone is milled they are not
-  /// looked at. So they are made once this many calls of `remesh` in a row found the brick unmarked ...
+  /// Making a brick's levels takes five times as long as its mesh, and while the brick is milled they are not
+  /// seen. So they are made once this many calls of `remesh` in a row found the brick unmarked, and ...
   static constexpr int kCallsAtRest = 10;
-  /// ... and for at most so many bricks in one call.
+  /// ... for at most this number of bricks in one call.
   static constexpr std::size_t kMostAtRest = 2;
 
   /// At first every brick has to be meshed.
