@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The exact test of 200 pairs takes a hundredth of a second; nobody waits for 200 trials.
+// The exact test of 200 pairs takes a hundredth of a second, and more trials would take too long.
 constexpr int kMaxSeeds = 200;
 
 struct CompareOptions {
@@ -47,7 +47,7 @@ struct CompareOptions {
   int threads = static_cast<int>(allowed_threads());
   bool no_stability = false;
   bool match_stiffness = false;
-  /// What every algorithm is to be felt as on a flat wall; 0 for what the softest is felt as.
+  /// Stiffness that is to be felt on a flat wall with every algorithm, N/mm; 0 for that of the softest.
   double matched_N_per_mm = 0;
   std::string out = "osteomill-comparison";
 };
@@ -89,7 +89,7 @@ void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& tria
   }
 }
 
-// Of the paper's algorithm 2 every hand tries other grips too.
+// Adds trials of other grips: with the paper's algorithm 2 every hand tries them too.
 void add_other_grips(std::vector<TrialPlan>& others, const TrialPlan& trial) {
   if (trial.settings.algorithm.id != kPapersAlgorithms[1]) return;
   for (const TrialPlan& grip : trials_in_other_grips(trial)) others.push_back(grip);

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kConfigOption = "--config";
 constexpr const char* kSetOption = "--set";
 
-// What may stand in the file: the options without their dashes, and tables named after algorithms.
+// Returns the keys of the file: the options without their dashes, and tables named after algorithms.
 std::vector<std::string> keys_of(const CLI::App& command) {
   std::vector<std::string> keys;
   for (const std::string& name : option_names(command)) {
@@ -34,7 +34,7 @@ void set_option(CLI::App& command, const std::string& name, const std::vector<st
   CLI::Option& option = *command.get_option(name);
   option.clear();
   for (const std::string& text : texts) {
-    // Of "--no-something", true means false.
+    // For "--no-something", true means false.
     const bool turns_off = is_switch(option) && (text == "true" || text == "false");
     option.add_result(turns_off ? option.get_flag_value(name.substr(2), text) : text);
   }

@@ -12,7 +12,7 @@ namespace osteomill::app {
 void add_config_option(CLI::App& command);
 
 /// Gives the options that the command line left out what the file says. Call it after parsing, before the
-/// command. Throws InputError naming the file, and the line where there is one, for a file that is not there,
+/// command. Throws InputError naming the file, and the line if there is one, for a file that is not there,
 /// is not TOML, or has a key or value that the command does not know.
 void apply_config_file(CLI::App& command);
 

@@ -47,7 +47,7 @@ CLI::Validator known_device() {
       "");
 }
 
-// What was given on the command line comes before what was kept.
+// Options on the command line take precedence over stored ones.
 WorkspaceSettings workspace_of(const DeviceOption& option, const std::string& device_name) {
   const auto path = workspace_path(device_name);
   const auto kept = read_workspace(path);

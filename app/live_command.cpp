@@ -59,7 +59,7 @@ void print_timing(const TimingSummary& timing) {
   print_times("whole tick", timing.tick);
 }
 
-// What is told of the ticks at the end.
+// Collects the figures of the ticks that are printed at the end.
 struct Seen {
   LabelCount labels;
   FaultCount faults = {};
@@ -107,7 +107,7 @@ class Holder {
     virtual_->pull_to(X_W_target_);
   }
 
-  // Warns where its maker's software does not end.
+  // Warns if its maker's software does not end.
   void close() {
     if (!hardware_) return;
     if (const std::string said = hardware_->close(); !said.empty())

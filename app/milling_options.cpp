@@ -23,7 +23,7 @@ namespace osteomill::app {
 
 namespace {
 
-// `take` gets one of the names, which are all that may be given; where none is, the option shows `usual`.
+// `take` gets one of the names, which are all that may be given; if none is, the option shows `usual`.
 void add_choice(CLI::App& command, const std::string& kind, const std::vector<std::string>& names,
                 std::string_view usual, const std::string& type, const std::string& what,
                 const std::function<void(const std::string&)>& take) {

@@ -12,7 +12,7 @@
 namespace osteomill::app {
 namespace {
 
-// Anything but what the option is where nothing is said.
+// Anything but what the option is if nothing is said.
 std::vector<std::string> words_for(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (option.get_expected_max() == 0) return {name};
@@ -27,7 +27,7 @@ void parse(CLI::App& command, std::vector<std::string> words) {
   command.parse(std::move(words));
 }
 
-// What recordings of all algorithms say of their runs.
+// Returns the settings of the runs in recordings of all algorithms.
 std::vector<RunSetting> recorded(const std::vector<std::string>& words) {
   CLI::App command;
   TrialOptions options;

@@ -41,7 +41,7 @@ std::string without_dashes_before(std::string_view word) {
   return bare;
 }
 
-// Of two words of which one begins with the other, what the longer has beyond it costs little.
+// Returns how far two words differ. If one begins with the other, the rest of the longer one costs little.
 std::size_t distance(const std::string& word, const std::string& known) {
   constexpr std::size_t kTelling = 3;
   const std::size_t common = std::min(word.size(), known.size());

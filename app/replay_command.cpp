@@ -189,7 +189,7 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
 void run_replay(const ReplayOptions& options, const std::string& command_line) {
   if (!is_hdf5(options.input)) {
     if (options.verify || !options.record.empty())
-      throw InputError(options.input, "is no recording, so there is nothing to verify or to record anew");
+      throw InputError(options.input, "is no recording, so there is nothing to verify or to record again");
     if (options.out.empty()) throw CLI::RequiredError("--out");
     return replay_trajectory(options);
   }

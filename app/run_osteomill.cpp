@@ -46,7 +46,7 @@ void open_closed_streams() {
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDWR);
 }
 
-// What was asked for may still wait to be written, or have failed to be.
+// Flushes standard output, and returns an error's exit code if that or an earlier write failed.
 int end_output(int code) {
   if (code != kDone || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
   return complain("standard output: cannot be written (is the disk full, or has its reader gone?)",

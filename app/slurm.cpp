@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What a program printed. Throws InputError with its last line where it fails.
+// Returns a program's output. Throws InputError with its last line if it fails.
 std::string output_of(const std::vector<std::string>& words) {
   Said said = run_program(words);
   if (said.exit_code == Said::kNoProgram)

@@ -69,7 +69,7 @@ class Reader {
              fmt::format("a trial has no option {}{}", option.key, did_you_mean(option.key, known)));
   }
 
-  // As the command line would have it: "0,0,-1".
+  // Returns the value as on the command line: "0,0,-1".
   std::string text(const TomlEntry& entry) const {
     require_known(entry);
     return fmt::format("{}", fmt::join(option_values(*entry.value, file_, entry.key), ","));
@@ -84,7 +84,7 @@ class Reader {
     return *found;
   }
 
-  // Nothing where it is no table of {from, to}.
+  // Nothing if it is no table of {from, to}.
   std::optional<StudyRange> range(const TomlEntry& entry) const {
     const toml::table* table = entry.value->as_table();
     if (table == nullptr || !table->contains("from")) return std::nullopt;
@@ -177,7 +177,7 @@ class Reader {
     return map;
   }
 
-  // The first where nothing is said.
+  // The first if nothing is said.
   std::string choice(const toml::table& table, const char* key, const Keys& choices) const {
     const std::string chosen = value(table, key, choices.front());
     if (std::find(choices.begin(), choices.end(), chosen) == choices.end())
@@ -200,7 +200,7 @@ class Reader {
   }
 
   std::string file_;
-  // Of a trial's options, but for the algorithms' own settings.
+  // Keys of a trial's options, except the algorithms' own settings.
   Keys keys_;
 };
 

@@ -27,7 +27,7 @@ std::string tool_text(const MillingTool& tool) {
   return fmt::format("{} {} {}", tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm);
 }
 
-// Returns what is poor of its settings. Throws std::invalid_argument where the trial itself would when it
+// Returns what is poor of its settings. Throws std::invalid_argument if the trial itself would when it
 // begins: a setting is out of its range, or does not go with the bone.
 std::vector<std::string> doubts_of(StudyTest test, const TrialPlan& trial) {
   const TrialSettings& settings = trial.settings;
@@ -107,7 +107,7 @@ void set_one(AskedTrial& asked, const std::string& key, const std::string& text)
   }
 }
 
-// What may be set of a trial, and in which unit.
+// Returns the options of a trial with their units.
 StudySettings options_and_units() {
   StudySettings options;
   for (const Text& text : texts_of_a_trial()) options.emplace_back(text.option, "");

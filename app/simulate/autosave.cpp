@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Of what it takes to open the scan again, beside what every recording says of it.
+// Keys of the options that opening the scan again needs, beside the attributes of every recording.
 constexpr const char* kSeriesKey = "scan.series";
 constexpr const char* kLabelMapKey = "scan.labels";
 constexpr const char* kLabelTableKey = "scan.label_table";

@@ -22,9 +22,9 @@ namespace osteomill::app {
 /// the lock away however the program ends. The file itself stays.
 class AutosaveFile {
  public:
-  /// In a new folder; nothing where it cannot be made, or the user has no state folder.
+  /// In a new folder; nothing if it cannot be made, or the user has no state folder.
   static std::optional<AutosaveFile> make();
-  /// In this folder; nothing where another program has it locked.
+  /// In this folder; nothing if another program has it locked.
   static std::optional<AutosaveFile> locked(const std::filesystem::path& folder);
 
   std::filesystem::path path() const { return folder_ / "milled.h5"; }
@@ -35,7 +35,7 @@ class AutosaveFile {
   AutosaveFile(std::filesystem::path folder, FileLock lock);
 
   std::filesystem::path folder_;
-  // Gives it up as it goes, and the folder with it where that is empty.
+  // Gives it up as it goes, and the folder with it if that is empty.
   std::shared_ptr<FileLock> lock_;
 };
 
@@ -44,7 +44,7 @@ struct LeftoverMilling {
   AutosaveFile file;
   SessionStart start;
 };
-/// The newest that no other running program holds; nothing where there is none.
+/// The newest that no other running program holds; nothing if there is none.
 std::optional<LeftoverMilling> last_leftover_milling();
 /// The scan that was milled, with all options that it takes to open it again.
 ScanOptions scan_of(const SessionStart& leftover);
@@ -54,10 +54,10 @@ ScanOptions scan_of(const SessionStart& leftover);
 /// own.
 class Autosave {
  public:
-  /// For milling this scan. Writes to `file`, or to a new one where that is not given.
+  /// For milling this scan. Writes to `file`, or to a new one if that is not given.
   Autosave(ScanOptions scan, std::optional<AutosaveFile> file);
 
-  /// To be called once a picture. Removes the file where nothing is unsaved.
+  /// To be called once a picture. Removes the file if nothing is unsaved.
   void update(LiveMilling& milling);
   /// The bone of this version (BoneFollower::version) was saved by the user.
   void saved(std::uint64_t bone_version) { saved_version_ = bone_version; }

@@ -10,7 +10,7 @@
 
 namespace osteomill::app {
 
-/// The box along the grid's axes that holds all bone (all of the grid where there is none).
+/// The box along the grid's axes that holds all bone (all of the grid if there is none).
 struct BoneBox {
   std::array<Vec3, 8> corners_W;
 
@@ -20,17 +20,17 @@ struct BoneBox {
 /// Goes through every voxel.
 BoneBox box_of_bone(const Volume& bone);
 
-/// In one line why the tool cannot work with this bone; empty where it can.
+/// In one line why the tool cannot work with this bone; empty if it can.
 std::string tool_fault(const MillingTool& tool, const BoneBox& box);
 
 /// The camera turned as it is, with all of the bone between the panels.
 Camera with_whole(Camera camera, const BoneBox& box, const PixelSize& size);
 
-/// All of the bone upright by the patient's axes: from the front, or from the left where the bone is deeper
+/// All of the bone upright by the patient's axes: from the front, or from the left if the bone is deeper
 /// than wide, a little from above and aside.
 Camera first_camera(const BoneBox& box, const PixelSize& size);
 
-/// The tool free of bone, before the point of bone that is seen at a pixel; nothing where no bone is.
+/// The tool free of bone, before the point of bone that is seen at a pixel; nothing if no bone is.
 std::optional<Pose> tool_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
                                 const PixelSize& size, double x_px, double y_px);
 /// Returns the same in the middle of the view, or `above_px` above it; if there is no bone, the pose as if

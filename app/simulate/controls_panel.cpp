@@ -41,7 +41,7 @@ bool settle_field(std::string_view option, MillingSetup& wanted, float min, floa
   return settled;
 }
 
-// The end of a name, which tells one scan from another, where there is no room for all of it.
+// The end of a name, which tells one scan from another, if there is no room for all of it.
 std::string end_that_fits(const std::string& name) {
   const float room = ImGui::GetContentRegionAvail().x;
   std::string shown = name;
@@ -122,8 +122,8 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
-// Buttons for the densities that may bound bone, where there are several: only the user knows which does.
-// They stand beside the histogram, and below it where there is no room.
+// Buttons for the densities that may bound bone, if there are several: only the user knows which does.
+// They stand beside the histogram, and below it if there is no room.
 void draw_boundaries(ViewState& view, Simulation& simulation) {
   if (simulation.scan.boundaries.size() < 2) return;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
@@ -212,7 +212,7 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   ui::checkbox("arrows", &view.arrows);
 }
 
-// They come first, for whoever cannot read the rest or cannot reach what lies below.
+// They come first, for users who cannot read the rest or cannot reach the buttons below.
 void draw_reading_aids(ViewState& view) {
   if (ui::button("Help")) view.help = true;
   ImGui::SameLine();

@@ -30,14 +30,14 @@ struct Dialogue {
 /// Dialogues, shown one at a time in the order in which they were added. For one thread.
 class DialogueQueue {
  public:
-  /// Does nothing where one with the same title and text is there already.
+  /// Does nothing if one with the same title and text is there already.
   void add(Dialogue dialogue);
   /// Says what went wrong, until somebody has read it.
   void complain(const std::string& what);
   /// Does the work and complains of what it throws. Returns whether it threw nothing.
   bool attempt(const std::function<void()>& work);
 
-  /// The dialogue to be drawn; null where there is none.
+  /// The dialogue to be drawn; null if there is none.
   const Dialogue* shown() const { return dialogues_.empty() ? nullptr : &dialogues_.front(); }
   /// Notes which of its choices was pressed; `proceed` does it.
   void choose(std::size_t choice) { chosen_ = choice; }

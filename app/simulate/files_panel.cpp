@@ -173,7 +173,7 @@ float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, co
 }
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
-  // As on a full disk: what was recorded so far stays in the unfinished file.
+  // After a failure, as on a full disk, the ticks recorded so far stay in the unfinished file.
   if (simulation.milling.recording_failed()) {
     view.dialogues.attempt([&] { simulation.milling.stop_recording(); });
     view.message.clear();

@@ -45,7 +45,7 @@ class FilesPanel {
   void save_scan(ViewState& view, Simulation& simulation);
   /// Tells in the view how writing went, once it has ended.
   void take_result(ViewState& view, Simulation& simulation);
-  /// For how long a recording has been going on, s; nothing where none does.
+  /// For how long a recording has been going on, s; nothing if none does.
   std::optional<double> recording_s(const Simulation& simulation) const;
   const std::filesystem::path& last_recording() const { return last_recording_; }
   /// A new name in the folder.

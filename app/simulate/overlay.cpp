@@ -61,7 +61,7 @@ void draw(ImDrawList& list, Annotation annotation) {
 
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  // As it would be at the usual size of text.
+  // The window's size in pixels of the usual text size.
   const PixelSize usual{static_cast<int>(static_cast<float>(size.width) / ui::px(1)),
                         static_cast<int>(static_cast<float>(size.height) / ui::px(1))};
   draw(list, scale_bar_annotation(view.camera, usual));

@@ -22,11 +22,11 @@ struct Room {
   float bottom_px;
 };
 
-/// The right column: everything that is measured, and where hardware holds the tool, how that is. Returns
+/// The right column: everything that is measured, and if hardware holds the tool, how that is. Returns
 /// where the next thing below has room.
 float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size);
 
-/// Below it, where the bone has labels: a legend, and how much of each was removed; what has no room is
+/// Below it, if the bone has labels: a legend, and how much of each was removed; what has no room is
 /// scrolled to.
 float draw_labels(ViewState& view, const Simulation& simulation, const Room& room);
 

@@ -35,8 +35,8 @@ Eigen::Vector2d pointer_moved_px() {
   return {static_cast<double>(moved.x), static_cast<double>(moved.y)};
 }
 
-// The same for what a button drags. Zero in the picture in which the button went down: the pointer may have
-// moved far before that.
+// Returns how far a button drags. Zero in the picture in which the button went down, because the pointer may
+// have moved far before that.
 Eigen::Vector2d pointer_dragged_px() {
   const bool just_pressed = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
   return just_pressed ? Eigen::Vector2d::Zero() : pointer_moved_px();
@@ -221,7 +221,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
 
 void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
   const Pose X_WT = simulation.milling.state().record.X_WT;
-  // What only presses on bone is no deeper in it than this.
+  // A tool that only presses on bone keeps this core out of it.
   MillingTool core = simulation.milling.setup().tool;
   core.burr_radius_mm *= 0.5;
   core.shaft_radius_mm *= 0.5;

@@ -18,7 +18,7 @@ namespace osteomill::app {
 namespace {
 
 constexpr std::size_t kPlotPoints = 200;
-// Where the values stand beside their names.
+// Column of the values beside their names, px.
 constexpr float kValues_px = 96;
 // Wide enough for "10000 poses/s": the button beside the rate must not move with the number of digits.
 constexpr float kCalibrate_px = 112;
@@ -140,7 +140,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   }
 }
 
-// What lies below does not move as it comes and goes.
+// Draws a complaint and keeps its room when it goes, so that the controls below do not move.
 void draw_complaint(const std::string& complaint) {
   float& room_px = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("complaint"));
   const float from_px = ImGui::GetCursorPosY();
@@ -161,10 +161,10 @@ void draw_device(ViewState& view, ConnectedDevice& device) {
 }
 
 const ImVec4 kNoGo{1.0f, 0.38f, 0.30f, 1};
-// Of what more there is, the list is scrolled.
+// Most rows that are shown; a longer list is scrolled.
 constexpr float kMostRows = 12;
 constexpr float kFewestRows = 2;
-// Of help that is shown below, and of title and box above the rows, at the usual size of text.
+// Height of the help below the rows, and of title and box above them, at the usual size of text.
 constexpr float kHelp_px = 110;
 constexpr float kHead_px = 62;
 

@@ -8,7 +8,7 @@ namespace {
 
 // Pictures from one sampling of a cut to the next while bone is milled.
 constexpr int kPicturesBetween = 8;
-// Where hand and tool are closer than this, the hand's ghost would only tint the tool.
+// If hand and tool are closer than this, the hand's ghost would only tint the tool.
 constexpr double kApart_mm = 0.03;
 constexpr double kApart_rad = 0.01;
 
@@ -41,7 +41,7 @@ void CutUpdates::update(const ViewState& view, const Simulation& simulation, Sce
 }
 
 void reset_cuts(ViewState& view) {
-  // What is cut away lies towards the viewer of the usual views: above, in front, to the patient's left.
+  // The removed side lies towards the viewer of the usual views: above, in front, to the patient's left.
   const Vec3 normals[] = {-Vec3::UnitZ(), Vec3::UnitY(), -Vec3::UnitX(), -view.camera.towards_viewer_W()};
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     view.cuts[n] = {};

@@ -10,7 +10,7 @@ namespace {
 constexpr double kDotsPerInch = 96;
 // Screens below are looked at as they are; many laptops have 120 to 140 dots an inch and ordinary text.
 constexpr double kDense_dpi = 150;
-// What a screen would have to be for its dots to be of ordinary size: else its height in mm is made up.
+// Range of a screen's plausible heights, mm; outside it the reported height is made up.
 constexpr double kPlausible_mm[] = {100, 1500};
 constexpr int kManyRows = 2000;
 constexpr double kOrdinaryRows = 1080;

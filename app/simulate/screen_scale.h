@@ -7,7 +7,7 @@ namespace osteomill::app {
 /// A screen as the system tells of it.
 struct Screen {
   PixelSize size;
-  /// 0 where it is not known.
+  /// 0 if it is not known.
   double height_mm = 0;
   /// The factor by which the system wants text larger than usual.
   double content_scale = 1;

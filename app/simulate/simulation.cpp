@@ -61,7 +61,7 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder
       autosave(scan.source, std::move(autosave_file)),
       label_count(scan.labels) {
   milling.start();
-  // What is drawn and pulled begins at the tool, so its first tick is waited for.
+  // Drawing and dragging begin at the tool, so wait for its first tick.
   while (history.empty() && milling.running()) {
     std::this_thread::sleep_for(std::chrono::microseconds(200));
     if (const auto record = milling.next_record()) history.push_back(*record);

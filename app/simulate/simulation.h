@@ -28,7 +28,7 @@ namespace osteomill::app {
 struct OpenScan {
   std::string name;
   ScanOptions source;
-  /// The isovalue it was opened with, where that came from, half a sentence, and " HU" where that is its
+  /// The isovalue it was opened with, where that came from, half a sentence, and " HU" if that is its
   /// unit.
   double isovalue;
   std::string isovalue_from;
@@ -37,7 +37,7 @@ struct OpenScan {
   DensityHistogram histogram;
   std::vector<Boundary> boundaries;
   WindowLevel grey_window;
-  /// Null where the bone has none.
+  /// Null if the bone has none.
   std::shared_ptr<const LabelMap> labels;
 };
 
@@ -48,7 +48,7 @@ struct OpenedScan {
 };
 
 /// Opens a scan, and puts into it what was milled of it before (`milled`), if anything was. Takes seconds;
-/// any thread, also while another scan is milled. Throws InputError as `load_bone` does and where `milled` is
+/// any thread, also while another scan is milled. Throws InputError as `load_bone` does and if `milled` is
 /// of another scan, and std::invalid_argument for settings out of range.
 OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled);
 

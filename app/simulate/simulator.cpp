@@ -54,7 +54,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Whether this user has never seen the help on this machine. Leaves a file that says that it was seen; where
+// Whether this user has never seen the help on this machine. Leaves a file that says that it was seen; if
 // none can be left the help is shown at every start.
 bool first_time_of_help() {
   const std::filesystem::path folder = state_folder();
@@ -136,7 +136,7 @@ struct SimulatorOptions {
   // Null: a person works the window.
   WindowDriver* driver = nullptr;
   bool no_help = false;
-  // Where recordings and what is saved go.
+  // Folder of recordings and saved files.
   std::string folder = ".";
   std::string command_line;
 };
@@ -197,7 +197,7 @@ class Simulator {
 
   bool unsaved() const { return simulation_ && simulation_->autosave.unsaved(simulation_->milling); }
 
-  // Does `go_on` at once where nothing unsaved would be lost by it; else asks first.
+  // Does `go_on` at once if nothing unsaved would be lost by it; else asks first.
   void ask_before(const char* what, const Dialogue::Action& go_on, const Dialogue::Action& stay = {}) {
     if (!unsaved()) return go_on();
     simulation_->milling.set_spindle(false);
@@ -214,7 +214,7 @@ class Simulator {
     view_.dialogues.add({"osteomill", doing, {}, [this] { return !files_.busy(); }, then});
   }
 
-  // Begins to write as soon as nothing else is being written. Once it is written `then` follows; where that
+  // Begins to write as soon as nothing else is being written. Once it is written `then` follows; if that
   // failed, `stay`: a dialogue then says why.
   void write(const char* doing, const Dialogue::Action& begin, const Dialogue::Action& then,
              const Dialogue::Action& stay) {
@@ -363,7 +363,7 @@ class Simulator {
     const Holder holder{options_.device.device, hardware_.get()};
     simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, holder, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));
-    // Where nothing listens there, milling goes on without sending.
+    // If nothing listens there, milling goes on without sending.
     view_.dialogues.attempt([&] { sender_ = send_bone(simulation_->milling.follower(), options_.send); });
     show_from_the_beginning();
   }
@@ -384,7 +384,7 @@ class Simulator {
   }
 
   void wait_for_scan() {
-    // Of several paths that were dropped the last one is meant.
+    // If several paths were dropped, the last one counts.
     if (const auto asked = window_.take_dropped(); !asked.empty()) begin_opening(another(asked.back()));
     if (opening_.wait_for(0s) == std::future_status::ready) take_first_scan();
     draw_opening();
@@ -479,7 +479,7 @@ class Simulator {
     ChangedBricks changed = simulation_->milling.take_changed_bricks();
     changed.merge(to_draw_);
     to_draw_ = std::move(changed);
-    // All bricks of a large bone take longer than a picture may. But where pictures take long anyway, as
+    // All bricks of a large bone take longer than a picture may. But if pictures take long anyway, as
     // without a graphics card, too few at a time would take minutes.
     const double most_s = std::max(0.02, 0.5 / std::max(pictures_per_s(), 1.0));
     for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < most_s;
@@ -544,7 +544,7 @@ class Simulator {
   Clock::time_point opening_since_;
   int changes_before_ = 0;
   std::unique_ptr<SceneRenderer> renderer_;
-  // Of the surface.
+  // Changed bricks of the surface.
   ChangedBricks to_draw_;
   bool closing_ = false;
   bool reported_ = false;

@@ -33,7 +33,7 @@ TEST(ToolControl, TurningKeepsTheBurrAndGoesWithThePointer) {
   input.moved_px = {30, 0};
   const Pose turned = moved_target(kStart, kStart, kCamera, kSize, input);
   EXPECT_EQ(turned.position_mm, kStart.position_mm);
-  // What lies before the burr as the viewer sees it goes to the right.
+  // The part in front of the burr, as seen by the viewer, moves to the right.
   const Vec3 front_T = kStart.orientation.conjugate() * kCamera.towards_viewer_W();
   EXPECT_GT((turned.orientation * front_T).dot(kCamera.right_W()), 0.1);
 }

@@ -21,7 +21,7 @@ struct Place {
 };
 std::map<std::string, Place>& places();
 
-/// Pixels for a length that is `length` pixels where text has its usual size.
+/// Pixels for a length that is `length` pixels if text has its usual size.
 float px(float length);
 void set_scale(double scale);
 /// The width of the column on the right, at the usual size of text.
@@ -49,9 +49,9 @@ bool header(const char* label, bool open);
 /// was pressed.
 std::optional<std::size_t> choice(const std::vector<std::string>& labels);
 /// White text on a rounded rectangle over everything else, `top_px` below the middle of the window's upper
-/// edge; with a dot before it where something is going on.
+/// edge; with a dot before it if something is going on.
 void badge(const std::string& text, float top_px, float margin_px, ImU32 ground, bool dot);
-/// Explains the widget drawn last where the pointer rests on it.
+/// Explains the widget drawn last if the pointer rests on it.
 void hint(const std::string& text);
 /// Text in the colour of warnings, wrapped to the panel.
 void warning(const std::string& text);

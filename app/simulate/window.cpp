@@ -79,7 +79,7 @@ double screens_scale(GLFWmonitor* monitor, double content_scale) {
   return scale_for(screen);
 }
 
-// As large as text is, and no larger than the screen without its bars.
+// Returns the size scaled like the text, and no larger than the screen without its bars.
 PixelSize fitting_size(const PixelSize& size, const std::optional<double>& ui_scale) {
   GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
   if (monitor == nullptr) return size;
@@ -104,7 +104,7 @@ Window::Window(const std::string& title, const PixelSize& size, const std::optio
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  // What is drawn has depths of its own; the window shows only the result.
+  // The renderer has a depth buffer of its own; the window shows only the result.
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   const PixelSize fitting = fitting_size(size, ui_scale);

@@ -14,7 +14,7 @@ struct GLFWwindow;
 namespace osteomill::app {
 
 /// A window with an OpenGL 3.3 core context, current in the thread that made it, and Dear ImGui in it. One at
-/// a time. Throws InputError where none can be opened (no display).
+/// a time. Throws InputError if none can be opened (no display).
 class Window {
  public:
   /// `size` is what it would have on an ordinary screen; it is no larger than the screen. `ui_scale`: how
