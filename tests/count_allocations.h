@@ -3,7 +3,7 @@
 namespace osteomill::testing_support {
 
 /// How often this thread has allocated (malloc, calloc, realloc, aligned_alloc, new) since it began. Counts
-/// only where count_allocations.cpp is linked in.
+/// only if count_allocations.cpp is linked in.
 long allocations_of_this_thread();
 
 }  // namespace osteomill::testing_support

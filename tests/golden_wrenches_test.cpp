@@ -12,8 +12,8 @@
 #include "tests/poses.h"
 #include "tests/shapes.h"
 
-// The same input must give the same wrenches to the last bit, whatever the optimisation: every preset (-O0,
-// -O1, -O2, with sanitizers and without) runs this test against the same numbers. Where an algorithm was
+// Equal input must give equal wrenches to the last bit, whatever the optimisation: every preset (-O0,
+// -O1, -O2, with sanitizers and without) runs this test against the same numbers. If an algorithm was
 // changed on purpose, the number that the failure shows takes the place of the old one.
 namespace osteomill {
 namespace {

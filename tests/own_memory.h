@@ -7,8 +7,7 @@
 
 namespace osteomill::testing_support {
 
-/// What the system says that this process alone holds and that would go with it, in MiB; 0 where it does not
-/// say.
+/// Returns the memory that only this process holds, MiB; 0 if the system does not report it.
 inline double own_memory_MiB() {
   std::ifstream in("/proc/self/status");
   for (std::string word; in >> word;) {
@@ -19,7 +18,7 @@ inline double own_memory_MiB() {
 }
 
 /// How much of the mapping that holds this address the process has pages of its own for, in MiB: of a private
-/// mapping of a file what was written since; -1 where the system does not say.
+/// mapping of a file what was written since; -1 if the system does not say.
 inline double copied_MiB(const void* address) {
   std::ifstream in("/proc/self/smaps");
   const auto place = reinterpret_cast<std::uintptr_t>(address);

@@ -7,14 +7,14 @@
 
 namespace osteomill::testing_support {
 
-/// Where the real scans lie, beside the checkout; they are not part of the project.
+/// Returns the folder of the real scans, beside the checkout; they are not part of the project.
 inline std::filesystem::path shared_data() {
   return OSTEOMILL_SHARED_DATA;
 }
 
 }  // namespace osteomill::testing_support
 
-/// Skips a test, saying why, where the real scan `relative` is not on this machine.
+/// Skips a test, saying why, if the real scan `relative` is not on this machine.
 #define OSTEOMILL_NEEDS_SHARED(relative)                                                            \
   do {                                                                                              \
     if (!std::filesystem::exists(osteomill::testing_support::shared_data() / (relative))) {         \

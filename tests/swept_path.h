@@ -93,10 +93,10 @@ class SweptPath {
   std::vector<float> distances_mm_;
 };
 
-/// What was cut against what was swept, by the surface as it is seen and felt (densities interpolated), where
-/// there was bone for two voxels all around: without the rim, where the cut meets the surface that was there,
-/// since an edge is rounded within the voxels that it goes through. Edges that two passes leave between them
-/// are told apart.
+/// Compares the cut with the swept volume, by the surface as it is seen and felt (densities interpolated),
+/// only inside bone that reached two voxels all around: without the rim, where the cut meets the earlier
+/// surface, because an edge is rounded within the voxels that it goes through. Edges that two passes leave
+/// between them are counted separately.
 struct Carving {
   double swept_mm3 = 0;
   double carved_mm3 = 0;

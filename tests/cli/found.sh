@@ -48,7 +48,8 @@ for spacing in "100 0.001 100" "1.2 0.001 1.7" "0.01 0.01 1"; do
 done
 told 1 "deep.toml: line 1: has a name of over 1000 parts" "$osteomill" compare --config "$found/deep.toml" --out out
 
-# Few values are no labels: they are felt where the same densities are that nobody could take for labels.
+# A scan of few values is not a label map: its bone is that of the same densities in a scan that cannot be
+# one.
 read_as "$found/few_values_phantom.nrrd" "^isovalue +[0-9]+ suggested" "^bone +112979 voxels"
 grep -q "label" out.txt && fault "a phantom is taken for labels"
 # SHAPE OFFSET LIFT: air, one shade and bone by a signed distance in voxels, all values lifted.

@@ -32,7 +32,7 @@ cmp milled.stl again.stl || fault "the same twice differs"
 "$osteomill" mesh --out whole2.ply
 cmp whole.ply whole2.ply || fault "the saved scan is another"
 
-# What goes on from another recording needs it beside itself. Nothing is milled while holding.
+# A recording that continues another needs that one beside itself. Nothing is milled while holding.
 "$osteomill" mesh --out held.stl --after runs/point-shell-holding.h5
 cmp milled.stl held.stl || fault "after holding the bone is another"
 cp runs/point-shell-holding.h5 alone.h5

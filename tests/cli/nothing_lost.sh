@@ -34,7 +34,7 @@ wait $first || fault "the first recorder: $(cat first.err)"
 runs 0 "" "$osteomill" replay r.h5 ball.nrrd --verify --quiet
 [ ! -e r.part.h5 ] || fault "a part is left"
 
-# What a killed one left is kept.
+# The unfinished recording of a killed program is kept.
 "${live[@]}" --seconds 600 --record r.h5 >first.out 2>first.err &
 first=$!
 until_there r.part.h5

@@ -17,7 +17,7 @@ same() { "$osteomill" replay "$@" --verify --quiet >said.txt 2>said.err || fault
 for recording in c/*.h5; do same "$recording"; done
 [ "$(ls c/*.h5 | wc -l)" -eq 8 ] || fault "there should be eight recordings"
 
-# The same hand through another algorithm, and what comes of it replays too; a report has room for both.
+# One hand's motion through another algorithm replays too, and a report shows both.
 "$osteomill" replay c/line-proxy-milling.h5 --algorithm point-shell --stiffness 2 --quiet --out other.csv --record other.h5 >/dev/null
 same other.h5
 "$osteomill" report c/line-proxy-milling.h5 other.h5 --quiet --out both >/dev/null
@@ -52,7 +52,7 @@ for ((n = 0; n < kills; ++n)); do
   rm killed.part.h5
 done
 
-# A disk of 2 MB, where the machine allows one: else files of no more.
+# A disk of 2 MB, if the machine allows one: else files of no more.
 mkdir small
 if mount -t tmpfs -o size=2m none small 2>/dev/null; then mounted=yes; fi
 limited() { if [ -n "$mounted" ]; then "$@"; else (ulimit -f 2048; exec "$@"); fi; }

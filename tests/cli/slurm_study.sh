@@ -95,7 +95,7 @@ rows out1 >expected
 "$osteomill" study study.toml --out out2 --slices 5 --threads 2 --quiet >/dev/null
 rows out2 | cmp - expected || fault "two threads give other rows than one"
 
-# As arrays: of 6 slices, below the cluster's limit of 4.
+# Six slices become several arrays, because the cluster's limit is 4.
 "$osteomill" study study.toml --out out3 --slices 6 --on slurm >submitted
 [ "$(grep -c "^submitted as job" submitted)" -eq 2 ] || fault "6 slices should be two arrays: $(cat submitted)"
 until_true 60 nothing_queued || fault "the arrays do not end"

@@ -104,7 +104,7 @@ refused "study.toml: has changed since the study was begun$" "$osteomill" study 
 refused "ball.nrrd: is no folder of a study|ball.nrrd: .*line" "$osteomill" study ball.nrrd --status
 refused "is no folder of a study: it has no study.h5" "$osteomill" study . --status
 
-# What is poor of settings is told once. Values that an axis cannot tell apart leave it a range.
+# Poor settings are warned of once. Values that an axis cannot tell apart leave it a range.
 cat >poor.toml <<TOML
 test = "wall"
 [fixed]
@@ -125,7 +125,7 @@ TOML
 "$osteomill" study d --report --quiet >/dev/null || fault "a map whose values nearly agree"
 [ -s d/report/figures/map_1.svg ] || fault "no map"
 
-# What is shipped can be read, and says how many trials it has.
+# The studies of the project can be read, and state their number of trials.
 for study in "$studies"/*.toml; do
   [ "$(basename "$study")" = findings-200.toml ] || "$osteomill" study "$study" --list | tail -n 1 | grep -q "^[0-9][0-9]*," || fault "$study"
 done

@@ -19,7 +19,7 @@ port=$((20000 + $$ % 20000)) slicer_port=$((20001 + $$ % 20000))
 for _ in $(seq 200); do [ ! -s listens ] || [ ! -s listens_too ] || break; sleep 0.1; done
 bash "$here/../window/ball.sh" >ball.nrrd
 
-# What the hand got in a session that is over: something was felt, and zero at the end.
+# Checks the wrenches of a session that is over: something was felt, and zero at the end.
 judge() {
   for _ in $(seq 50); do ! grep -q "closed" hand || break; sleep 0.1; done
   tail -n 1 hand | awk '{ for (n = 1; n <= NF; ++n) { if ($n == "most") most = $(n + 1); if ($n == "last") at = n } }

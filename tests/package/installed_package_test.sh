@@ -29,7 +29,7 @@ user() {  # NAME CMAKE_ARGUMENTS...
   cmake -S "$source/tests/package" -B "$1" -G Ninja -DCMAKE_PREFIX_PATH="$folder/prefix" \
     -DSOURCE="$source/examples/press_on_a_ball.cpp" "${@:2}" >"$1.log" 2>&1
 }
-# Haptics alone, where nothing can be found that only other components need.
+# Haptics alone, if nothing can be found that only other components need.
 mapfile -t absent < <(packages '.*' | grep -vxF -f <(packages 'base|volume|haptics'))
 [ ${#absent[@]} -gt 3 ] || fail "the packages of haptics alone are not known"
 disabled=("${absent[@]/#/-DCMAKE_DISABLE_FIND_PACKAGE_}")
@@ -59,7 +59,7 @@ for example in "${examples[@]}"; do
   "examples/$example" >"$example.log" || { cat "$example.log"; fail "the example $example fails"; }
 done
 
-# What readers copy of CMake: each find_package with the target_link_libraries that follows.
+# Configures the CMake of the documents: each find_package with the target_link_libraries that follows.
 mkdir copied
 awk '/^    find_package\(osteomill/ { found = $0; next }
   found && match($0, /^    target_link_libraries\([a-z_]+/) {
@@ -84,7 +84,8 @@ for component in "${named[@]}"; do
   [[ " ${components[*]} " == *" $component "* ]] || fail "library.md names the component $component, which does not exist"
 done
 
-# The same bits in a program of any flags, whose objects bring inline functions of their own into the link.
+# A program of any flags has equal bits, although its objects bring inline functions of their own into the
+# link.
 for flags in "-O1" "-O3 -march=native -ffp-contract=fast"; do
   user bits -DCOMPONENTS=session -DSOURCE="$source/tests/package/same_bits.cpp" -DCMAKE_CXX_FLAGS="$flags" &&
     cmake --build bits >/dev/null && bits/user >"bits with $flags" || { cat bits.log; fail "same_bits fails with $flags"; }

@@ -1,4 +1,4 @@
-// Stands in for libdhd where there is no device: the functions that osteomill uses, by the maker's names.
+// Stands in for libdhd if there is no device: the functions that osteomill uses, by the maker's names.
 
 #include "tests/support/dhd_stand_in.h"
 
@@ -117,7 +117,7 @@ int dhdSetBrakes(int on, char) {
   g_state.status[6] = on;
   return 0;
 }
-// As the maker's own library does with the device that it simulates.
+// Behaves like the maker's own library with the device that it simulates.
 int dhdEnableForce(unsigned char on, char) {
   if (g_state.status[3] == 0) {
     g_state.status[5] = on;

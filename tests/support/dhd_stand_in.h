@@ -4,26 +4,26 @@
 #include <atomic>
 #include <string>
 
-/// What the stand-in for libdhd says (names and numbers of dhdc.h, SDK 3.17.5), and what it was told. A test
-/// has it by dlsym("dhd_stand_in").
+/// Holds the answers of the stand-in for libdhd (names and numbers of dhdc.h, SDK 3.17.5), and its last
+/// commands. A test has it by dlsym("dhd_stand_in").
 struct DhdStandIn {
   int devices = 1;
   bool has_wrist = true;
   bool has_active_wrist = true;
   int system_type = 104;
-  /// Where it fails: a function's name.
+  /// Name of the function that fails.
   std::string fails_in;
-  /// 0, or 1 where the pose is no new one.
+  /// 0, or 1 if the pose is no new one.
   int pose_result = 0;
-  /// The handle sweeps where these are not set.
+  /// The handle sweeps if these are not set.
   bool is_held = false;
   std::array<double, 3> position_m{};
   double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   unsigned buttons = 0;
-  /// As dhdGetStatus has it (dhdc.h, DHD_STATUS_...); force can be enabled where [3], RESET, is 0.
+  /// The result of dhdGetStatus (dhdc.h, DHD_STATUS_...); force can be enabled if [3], RESET, is 0.
   std::array<int, 17> status{1, 1, 1, 0, 1, 0, 1};
   bool has_gripper = true;
-  /// Where it is 0 the device has none.
+  /// If it is 0 the device has none.
   unsigned char longest_watchdog = 255;
 
   int opened = -1;

@@ -30,7 +30,7 @@ void for_each_point(BoneBricks& bricks, F&& f) {
   });
 }
 
-/// The same of the points of voxels.
+/// Calls `f` for every point of a shell of voxels.
 template <typename F>
 void for_each_point(const point_shell::VoxelShell& shell, F&& f) {
   const auto nowhere = [](const point_shell::VoxelShell::NodeBox&) { return false; };

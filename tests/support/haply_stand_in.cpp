@@ -1,4 +1,4 @@
-// Haply's service where there is none: haply_stand_in PORT
+// Haply's service if there is none: haply_stand_in PORT
 
 #include "tests/support/haply_stand_in.h"
 

@@ -58,7 +58,7 @@ class HaplyStandIn {
   std::atomic<bool> has_device{true};
   std::atomic<bool> has_minverse_first{false};
   std::atomic<const char*> type{"inverse3"};
-  /// What is said of the device and its grip with every state.
+  /// Status of the device and its grip that is sent with every state.
   std::atomic<bool> is_calibrated{true};
   std::atomic<bool> is_awake{true};
   std::atomic<bool> is_in_use{false};
@@ -75,7 +75,7 @@ class HaplyStandIn {
   std::atomic<bool> closes{false};
   /// Before each answer.
   std::atomic<int> delay_ms{0};
-  /// The handle sweeps where this is not set.
+  /// The handle sweeps if this is not set.
   std::atomic<bool> is_held{false};
 
   /// The texts that came.
@@ -88,7 +88,7 @@ class HaplyStandIn {
     const std::lock_guard lock(mutex_);
     return forces_;
   }
-  /// The force last commanded, under whichever of the two keys the version has; NaN where it was another.
+  /// The force last commanded, under whichever of the two keys the version has; NaN if it was another.
   std::array<double, 3> force_N() const {
     const std::lock_guard lock(mutex_);
     return force_N_;

@@ -1,4 +1,4 @@
-// Stands in for libHD where there is no device: the functions that osteomill uses, by the maker's names.
+// Stands in for libHD if there is no device: the functions that osteomill uses, by the maker's names.
 
 #include "tests/support/hd_stand_in.h"
 

@@ -3,13 +3,13 @@
 #include <array>
 #include <atomic>
 
-/// What the stand-in for libHD says (names and numbers of hd.h and hdDefines.h, 3.0), and what it was told;
-/// its scheduler calls 1000 times a second. A test has it by dlsym("hd_stand_in"), and changes plain members
-/// only while no scheduler runs.
+/// Holds the answers of the stand-in for libHD (names and numbers of hd.h and hdDefines.h, 3.0), and its last
+/// commands; its scheduler calls 1000 times a second. A test has it by dlsym("hd_stand_in"), and changes
+/// plain members only while no scheduler runs.
 struct HdStandIn {
   bool is_there = true;
   int output_dof = 3;
-  /// The handle sweeps where this is not set.
+  /// The handle sweeps if this is not set.
   bool is_held = false;
   /// Columns; mm.
   std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -25,7 +25,7 @@ struct HdStandIn {
 
   std::atomic<bool> is_open{false};
   std::atomic<bool> has_force{false};
-  /// As hdSetDoublev had them last.
+  /// The last values of hdSetDoublev.
   std::array<std::atomic<double>, 3> force{};
   std::array<std::atomic<double>, 3> torque{};
   std::atomic<int> frames{0};

@@ -78,7 +78,7 @@ class IgtlStandIn {
     }
   }
 
-  // False where the other side is gone.
+  // False if the other side is gone.
   bool listen(igtl::Socket& client) {
     const auto header = igtl::MessageHeader::New();
     header->InitPack();

@@ -41,7 +41,7 @@ inline int stored_value(int i, int j, int k) {
   return i + 10 * j + 100 * k;
 }
 
-/// Of slice k, row by row.
+/// Returns the stored values of slice k, row by row.
 inline std::vector<int> stored_values(int k) {
   std::vector<int> values;
   for (int j = 0; j < kRows; ++j) {
@@ -82,7 +82,7 @@ inline std::unique_ptr<DcmFileFormat> made_up_slice(const Slice& slice) {
         {DCM_SeriesInstanceUID, slice.series},
         {DCM_Modality, slice.modality},
         {DCM_SeriesDescription, "made up"},
-        // Nobody's: what is told of a series must not hold it.
+        // A made-up name, which no message about the series may contain.
         {DCM_PatientName, "Doe^Jane"},
         {DCM_ImageType, slice.image_type},
         {DCM_ImagePositionPatient, slice.position.empty() ? "1\\2\\" + height : slice.position},
@@ -104,7 +104,7 @@ inline std::unique_ptr<DcmFileFormat> made_up_slice(const Slice& slice) {
   return file;
 }
 
-/// False where it cannot be encoded so, or not written.
+/// False if it cannot be encoded so, or not written.
 inline bool save(DcmFileFormat& file, const std::filesystem::path& path, E_TransferSyntax syntax) {
   register_encoders();
   return file.getDataset()->chooseRepresentation(syntax, nullptr).good() &&

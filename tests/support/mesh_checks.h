@@ -52,7 +52,7 @@ inline BrickMesh mesh_of(const BrickLevels& brick) {
   return mesh;
 }
 
-/// All bricks as one mesh whose vertices are shared where their positions agree bit for bit.
+/// All bricks as one mesh whose vertices are shared if their positions agree bit for bit.
 inline BrickMesh welded_by_position(const SurfaceMesh& surface) {
   BrickMesh whole;
   std::map<std::array<float, 3>, std::uint32_t> known;
@@ -101,7 +101,7 @@ inline int euler_characteristic(const BrickMesh& mesh) {
          static_cast<int>(mesh.triangle_count());
 }
 
-/// By the divergence theorem; positive where triangles are wound anticlockwise seen from outside.
+/// By the divergence theorem; positive if triangles are wound anticlockwise seen from outside.
 inline double enclosed_volume_mm3(const BrickMesh& mesh) {
   double volume = 0;
   if (mesh.vertices.empty()) return volume;
@@ -139,7 +139,8 @@ inline bool is_sound(const BrickMesh& mesh) {
          });
 }
 
-/// What lies above the isovalue in the trilinear densities, by looking at 5 x 5 x 5 points of each cell.
+/// Returns the volume above the isovalue in the trilinear densities, sampled at 5 x 5 x 5 points of each
+/// cell.
 inline double trilinear_volume_mm3(const Volume& volume) {
   const std::array<int, 3>& dims = volume.geometry().dims;
   constexpr int kPoints = 5;

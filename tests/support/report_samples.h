@@ -11,7 +11,7 @@
 
 namespace osteomill::testing_support {
 
-/// The bytes of a small PNG: a ball of bone, with a hole where `milled`.
+/// The bytes of a small PNG: a ball of bone, with a hole if `milled`.
 std::vector<unsigned char> sample_png(bool milled, int width = 320, int height = 240);
 
 /// A recording as a run might leave it, with the paper's findings in it: 1 kicks in torque, 2 buzzes, 3 is

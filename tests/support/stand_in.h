@@ -8,7 +8,8 @@
 
 namespace osteomill::testing_support {
 
-/// Where a stand-in's handle is when no test holds it: ever further along an axis, and a little to and fro.
+/// Returns the position of a stand-in's handle that no test holds: ever further along an axis, and a little
+/// back and forth.
 inline double swept_mm() {
   using Clock = std::chrono::steady_clock;
   static const Clock::time_point start = Clock::now();
@@ -16,7 +17,8 @@ inline double swept_mm() {
   return 25 * time_s + 3 * std::sin(2 * std::numbers::pi * time_s);
 }
 
-/// What a stand-in was sent, as a line in the file that OSTEOMILL_STAND_IN_LOG names; nowhere without it.
+/// Writes what a stand-in was sent as a line into the file that OSTEOMILL_STAND_IN_LOG names; does nothing
+/// without it.
 template <typename... Words>
 void log_of_stand_in(const Words&... words) {
   const char* const file = std::getenv("OSTEOMILL_STAND_IN_LOG");

@@ -35,8 +35,8 @@ inline MeasuredRun row(std::uint64_t seed, std::string_view algorithm, std::stri
   return row;
 }
 
-// Seeds from 1: 2 buzzes ten times as much as 1 and 3, which change places from seed to seed; or so many
-// times that much.
+// Seeds from 1: 2 buzzes ten times as much as 1 and 3, which change places from seed to seed; or `buzz` times
+// that much.
 inline std::vector<MeasuredRun> sample_rows(std::uint64_t seeds, double buzz = 1) {
   std::vector<MeasuredRun> rows;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What was recorded is not left without its report by mistake, and nobody is held up who recorded nothing:
+# A recording is not left without its report by mistake, and a user who recorded nothing is not asked:
 #   close_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -36,7 +36,7 @@ window "click Record" "wait 0.5" quit "wait 0.3" "click Make the report and clos
 [ -s "$(ls out/*-report/summary.csv)" ] || fail "there is no report"
 grep -q "^Report in out/" said || fail "the report is not named"
 
-# A script's close asks nothing, and the question keeps nobody from ending the program.
+# A script's close asks nothing, and the question does not keep a user from ending the program.
 window "${record[@]}" close || fail "exit code $? of a script's close"
 printf '%s\n' "wait 0.3" "${record[@]}" quit "wait 0.3" "say asked" "wait 90" >actions
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash -c '

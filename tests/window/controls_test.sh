@@ -2,7 +2,7 @@
 # Every control of the window is worked, and what it brings about is held against what it is for; one that no line here
 # works, or that does nothing when it is worked, is named:
 #   controls_test.sh OSTEOMILL
-# Skipped (exit 77) without Xvfb. Screenshots stay in OSTEOMILL_PICTURES where that is set.
+# Skipped (exit 77) without Xvfb. Screenshots stay in OSTEOMILL_PICTURES if that is set.
 set -euo pipefail
 osteomill=$1
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -28,7 +28,7 @@ window() {
 value() { sed -n "s/^$1\.$2=//p" said; }
 part() { value "$1" "$2" | cut -d' ' -f"$3"; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fault "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
-# Where $1 and $2 are two moments: `changed A B KEY`, `same A B KEY`, `more A B KEY PART` (of a list of numbers).
+# For two moments $1 and $2: `changed A B KEY`, `same A B KEY`, `more A B KEY PART` (of a list of numbers).
 changed() { [ "$(value "$1" "$3")" != "$(value "$2" "$3")" ] || fault "$3 stays '$(value "$1" "$3")' from $1 to $2"; }
 same() { [ "$(value "$1" "$3")" = "$(value "$2" "$3")" ] || fault "$3 changes from $1 to $2: '$(value "$1" "$3")', '$(value "$2" "$3")'"; }
 more() {
@@ -247,7 +247,7 @@ echo "not a scan" >bad.nrrd
 { printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 480 480 480\nspacings: 0.1 0.1 0.1\nencoding: raw\n\n'
   head -c $((480 * 480 * 240)) /dev/zero | tr '\0' '\310'
   head -c $((480 * 480 * 240)) /dev/zero; } >large.nrrd
-# What the desktop is asked to open.
+# Logs the files that the desktop is asked to open.
 mkdir bin
 printf '%s\n' '#!/bin/sh' 'case "$1" in *report.html) touch opened-report ;; */out|*-report) touch opened-out ;; esac' >bin/xdg-open
 chmod +x bin/xdg-open
@@ -349,12 +349,12 @@ shows labelled "label colours"
 { sed -n 's/^drawn //p' controls
   grep -hoE 'ui::(button|checkbox|radio|slider|text_field|header)\([^;]*' "$source_folder"/*.cpp |
     grep -oE '"[^"]+"' | tr -d '"' | sed 's/##.*//; /^ place$/d; /^%/d; /^$/d'; } | sort -u >labels
-# Those of a haptic device are worked where there is one.
+# Those of a haptic device are worked if there is one.
 { sed -n 's/^worked //p' controls; sed -n 's/^click //p' "$here/device_test.sh"; } | sort -u >worked
 cat "$here/device_test.sh" >>worked_lines
 [ "$(wc -l <labels)" -gt 30 ] || fault "the labels are not found"
 while read -r label; do fault "the control '$label' was never worked, or did nothing"; done < <(comm -23 labels worked)
-# Of the keys that the code asks for.
+# Every key that the code asks for must have been pressed.
 grep -ohE 'GLFW_KEY_[A-Z0-9_]+' "$source_folder/pointer.cpp" "$source_folder/overlay.cpp" | sort -u | sed 's/GLFW_KEY_//' |
   while read -r key; do
     name=$(tr 'A-Z_' 'a-z-' <<<"$key" | sed -E 's/^(up|down|left|right)$/arrow-\1/')

@@ -25,7 +25,7 @@ printf '%s\n' "wait 0.3" "state second" "key f1" "wait 0.3" "click Start milling
   fail "F1 does not bring the help back"
 grep -qx "second.help=false" said || fail "help the second time too"
 
-# Where nothing can be left the page shows every time, and that is all.
+# If nothing can be left the page shows every time, and that is all.
 : >no-folder
 export XDG_STATE_HOME=$folder/no-folder
 for _ in 1 2; do

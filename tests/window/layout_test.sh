@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Text has the size that was asked for as far as the window has room for it, also where that changes while it is open;
+# Text has the size that was asked for as far as the window has room for it, also if that changes while it is open;
 # what has no room is reached by scrolling:
 #   layout_test.sh OSTEOMILL
 set -euo pipefail

@@ -24,7 +24,7 @@ window() {
 value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 
-# Of the first scan, before there is anything else: it closes, and `state`, which needs a scan, is never said.
+# While the first scan is opened: the window closes, and `state`, which needs a scan, is never said.
 for way in quit "click Cancel" "key escape"; do
   printf '%s\n' at-once "wait 0.3" "screenshot opening.png" "$way" "wait 100" "state never" |
     window large.nrrd --iso 100 || fail "exit code $? after '$way'"
@@ -36,7 +36,7 @@ printf '%s\n' at-once "wait 0.3" "open other.nrrd" settle "wait 0.3" "state inst
   fail "exit code $?"
 is instead scan other.nrrd
 
-# Of another scan, while one is milled.
+# While another scan is opened during milling.
 window ball.nrrd <<'END' || fail "exit code $?"
 wait 0.2 ;; open large.nrrd ;; wait 0.3 ;; click Cancel ;; wait 0.3 ;; state by-button
 open large.nrrd ;; wait 0.3 ;; key escape ;; wait 0.3 ;; state by-key

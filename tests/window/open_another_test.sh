@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Another scan is opened in the window; one at fault is told of, and the session goes on:
 #   open_another_test.sh OSTEOMILL [SCAN]
-# SCAN, where it is on this machine, is opened too.
+# SCAN, if it is on this machine, is opened too.
 set -euo pipefail
 osteomill=$1 real=${2:-}
 command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
@@ -69,6 +69,6 @@ line dropped | grep -q "scan good.nrrd$" || fail "the good scan was not opened"
 above "$(reading milling removed)" 0.1 || fail "the scan that was opened is not milled"
 line not-there | grep -q "scan good.nrrd$" || fail "the session ended with a scan that is not there"
 [ -s "$(ls out/*-picture.png)" ] || fail "no picture"
-# What was recorded of the bone before is whole.
+# The recording of the bone before is whole.
 "$osteomill" report out/*-recording.h5 --out report >/dev/null || fail "the recording cannot be read"
 [ ! -e "$real" ] || line real | grep -q "scan $real$" || fail "the real scan was not opened"

@@ -55,7 +55,7 @@ is reset removed_mm3 0.000; is reset unsaved false; is milled-last unsaved true
 [ "$(autosaves)" -eq 0 ] || fail "an autosave is left of what was saved or discarded"
 
 # --- Killed ---------------------------------------------------------------------------------------------------
-# Whoever is open at the same time does not take it.
+# Another window that is open at the same time does not take it.
 printf '%s\n' "${mill// ;; /$'\n'}" "state killed" "wait 40" >killed-actions
 printf '%s\n' "wait 0.2" "state beside" close >beside-actions
 cat >both <<'END'
@@ -63,7 +63,7 @@ cat >both <<'END'
 until grep -q "^killed.size" said-killed || ! kill -0 "$program"; do sleep 0.05; done
 "$1" simulate ball.nrrd --no-help --script beside-actions >said 2>>errors
 kill -KILL "$program"
-# What it had locked is free once it has ended.
+# Its lock is free once it has ended.
 wait "$program" || true
 END
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash both "$osteomill" 2>/dev/null || fail "exit code $?"
@@ -98,7 +98,7 @@ window <<<"wait 0.1 ;; click Delete it ;; settle ;; wait 0.3 ;; state deleted ;;
 window <<<"wait 0.3 ;; state nothing ;; close" || fail "exit code $?"
 hides nothing "Open it"
 
-# Where nothing can be left it is said, and all else goes on.
+# If nothing can be left it is said, and all else goes on.
 : >no-folder
 XDG_STATE_HOME=$folder/no-folder window <<<"$mill ;; state no-folder ;; close" || fail "exit code $?"
 value no-folder message | grep -q "^What is milled is not kept" || fail "nobody is told that there is no autosave"

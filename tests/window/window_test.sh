@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Works the real window on a display of its own and holds what it saved against what was done:
 #   window_test.sh OSTEOMILL NEEDS [SCAN ...]
-# Skipped (exit 77) without Xvfb or without NEEDS. Screenshots stay in OSTEOMILL_PICTURES where that is set.
+# Skipped (exit 77) without Xvfb or without NEEDS. Screenshots stay in OSTEOMILL_PICTURES if that is set.
 set -euo pipefail
 osteomill=$1 needs=$2
 shift 2
@@ -31,7 +31,7 @@ above "$(reading milling removed)" 1 || fail "no bone was milled"
 above "$(reading other-algorithm force)" 0.02 || fail "the other algorithm feels nothing"
 above 0.001 "$(reading undone removed)" || fail "the cut was not taken back"
 
-# The saved scan has the hole: so many voxels less are bone as were milled away.
+# The saved scan has the hole: the number of bone voxels fell by the milled ones.
 iso=()
 for ((n = 0; n < ${#scan[@]}; n++)); do [ "${scan[$n]}" != --iso ] || iso=(--iso "${scan[$((n + 1))]}"); done
 [ ${#iso[@]} -gt 0 ] || iso=(--iso 750)

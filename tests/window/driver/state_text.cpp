@@ -16,7 +16,7 @@ std::string text_of(const Vec3& v) {
   return fmt::format("{:.3f} {:.3f} {:.3f}", v.x(), v.y(), v.z());
 }
 
-// As the viewer sees it: to the right, up, towards them.
+// Returns a vector in the viewer's axes: to the right, up, towards the viewer.
 Vec3 seen(const Camera& camera, const Vec3& v_W) {
   return camera.orientation.conjugate() * v_W;
 }

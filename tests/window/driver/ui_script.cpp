@@ -168,7 +168,7 @@ void UiScript::give_input(double passed_s, bool is_settled, Window& window) {
     if (click_picture_ > 0) {
       const int pictures = action.name == "drag" ? kDragPictures : kClickPictures;
       pressed = click_picture_ > 2 && click_picture_ < pictures - 2;
-      // Where it was pressed first, and from there.
+      // Starts at the point of the press, and then moves.
       share = pressed && click_picture_ > 3 ? 0.5 : 0.0;
       if (click_picture_++ < pictures) time_left_s_ = 2 * passed_s;
     }
