@@ -24,7 +24,7 @@ void fall(SimulatedHandle& handle, const Vec3& normal) {
   }
 }
 
-// The share of its kinetic energy with which a dropped handle leaves a plane of random slope again; 0 where
+// The share of its kinetic energy with which a dropped handle leaves a plane of random slope again; 0 if
 // it stays.
 double rebound(std::string_view algorithm, double stiffness, double height_mm, SeededRandom& random) {
   using namespace testing_support;

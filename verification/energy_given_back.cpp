@@ -15,7 +15,7 @@ constexpr double kSpeed_mm_s = 20;
 constexpr double kDeep_mm = 0.5;
 constexpr int kWays = 12;
 constexpr int kPresses = 20;
-// Of the shaft's length, where it meets the edge.
+// Distance along the shaft at which it meets the edge, mm.
 constexpr double kLever_mm = 10;
 
 Vec3 turn_between(const Pose& from, const Pose& to) {

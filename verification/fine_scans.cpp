@@ -22,11 +22,11 @@ namespace {
 
 constexpr double kForceWithin = 0.03;
 constexpr double kMaxTick_us = 1000;
-// Of each trial: the machine itself may stop for milliseconds, but hardly in the same tick of each.
+// Runs of each trial: the machine itself may stop for milliseconds, but hardly in the same tick of each run.
 constexpr int kRuns = 3;
 constexpr double kCoarse_mm = 0.125, kFine_mm = 0.03125;
 
-// Of the size, with a margin about the bone.
+// Returns a block of this size, with a margin about the bone.
 Volume block(double spacing_mm, const Vec3& size_mm) {
   constexpr double kMargin_mm = 0.375, kEdge_mm = 0.25;
   GridGeometry geometry;
@@ -80,7 +80,7 @@ void take_less(std::vector<TickRecord>& records, const std::vector<TickRecord>& 
   }
 }
 
-// A tick's times are the least of so many runs.
+// Runs a trial `runs` times; a tick's times are the least of them.
 Phases run_trials(const Volume& bone, double phase_s, int runs, const TrialSettings& settings) {
   Phases phases = run_trial(bone, phase_s, settings);
   for (int run = 1; run < runs; ++run) {

@@ -36,8 +36,8 @@ struct PushOutcome {
 
 inline constexpr int kTicksBetweenLooks = 4;
 
-/// So many pushes against a bone, the same ones for each algorithm: towards random points of its surface,
-/// from any side and in any pose, each begun in free space; looked at every `kTicksBetweenLooks` ticks
+/// Returns the outcomes of pushes against a bone, equal for each algorithm: towards random points of its
+/// surface, from any side and in any pose, each begun in free space; checked every `kTicksBetweenLooks` ticks
 /// independently of the algorithm.
 std::vector<PushOutcome> push_outcomes(std::string_view algorithm, const Volume& bone,
                                        const BoneSurface& surface, const PushKind& kind, int count);

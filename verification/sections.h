@@ -8,8 +8,8 @@
 
 #include "verification/section.h"
 
-// What docs/verification.md is made of, a function a table. Each is the same on any machine but for compute
-// times.
+// Declares the tables of docs/verification.md, a function for each. Except for compute times each is equal on
+// any machine.
 namespace osteomill::verification {
 
 /// The bones that are milled and pushed against.
@@ -43,9 +43,9 @@ Section thin_bone();
 Section spongy_bone(const Bones& bones);
 Section tools_and_pushes(const Bones& bones, const Effort& effort);
 Section breaking_through(const Effort& effort);
-/// Of the algorithms as published.
+/// Measures the paper's findings with the algorithms as published.
 Section papers_findings(const Bones& bones, const Effort& effort);
-/// The same with one thing another way that the paper leaves open.
+/// Measures them with one choice changed that the paper leaves open.
 Section papers_choices(const Bones& bones, const Effort& effort);
 Section energy_of_barrier_shell(const Bones& bones, const Effort& effort);
 Section the_rig_itself(const Bones& bones, const Effort& effort);

@@ -30,7 +30,7 @@ constexpr double kTick_s = 1e-3;
 constexpr double kCycle_s = 20;
 
 double resident_MiB() {
-  // What is free is not in use.
+  // Freed memory must not count as in use.
   ::malloc_trim(0);
   std::ifstream in("/proc/self/statm");
   double all_pages = 0, pages = 0;
@@ -38,7 +38,7 @@ double resident_MiB() {
   return pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
-// What a stretch of the hour was like.
+// Holds the figures of a part of the hour.
 struct Stretch {
   double force_sum_N = 0, force_max_N = 0, torque_max_Nmm = 0, apart_max_mm = 0, energy_max_Nmm = 0;
   std::size_t ticks = 0;
@@ -56,8 +56,8 @@ struct Stretch {
   }
 };
 
-// A bone that is milled and held against in cycles, by a hand that the seed draws anew for each; between two
-// of them the algorithm is switched, the cycle taken back or the tool placed at the beginning again.
+// Mills a bone and holds against it in cycles, by a hand that the seed draws again for each; between two
+// cycles the algorithm is changed, the cycle undone or the tool placed at the beginning again.
 class Soak {
  public:
   Soak(const Volume& scan, const std::filesystem::path& path)
@@ -99,12 +99,12 @@ class Soak {
     }
   }
 
-  // What an hour may not make more of: what the same algorithm takes on the bone as it is now.
+  // Returns the memory that must not grow in an hour: that of one algorithm on the present bone.
   double memory_MiB() {
     switch_to(bone_, "line-proxy", session_->removed_mm3(), session_->left());
     return resident_MiB();
   }
-  // As at the beginning: nothing is taken over.
+  // Starts from the scan without any state of the last session.
   void reset() { switch_to(std::make_shared<Volume>(scan_), "line-proxy", 0, {}); }
   void close() { recorder_->close(); }
   double time_s() const { return time_s_; }

@@ -21,7 +21,7 @@ using testing_support::Carving;
 
 constexpr double kVolumeWithin = 0.02;
 constexpr double kPaidWithin = 0.01;
-// Of the shares cut with one burr and push, the greatest to the least.
+// Largest difference between the shares cut with one burr and push.
 constexpr double kAlikeWithin = 0.015;
 
 struct Hole {
@@ -29,7 +29,7 @@ struct Hole {
   Vec3 spacing_mm = Vec3::Constant(0.2);
   double burr_radius_mm = 1.5;
   double push_N = 1.5;
-  // Of the block, and of the run as a share of the usual.
+  // Side of the block, mm, and length of the run as a share of the usual one.
   double side_mm = 10;
   double time = 1;
   Quat turn = Quat::Identity();
@@ -99,7 +99,7 @@ Milled mill(const Hole& hole, double seconds) {
   return {testing_support::carving(bone, trial.volume(), path), removed_mm3 / paid_for_mm3};
 }
 
-// Of the holes that differ in their voxels alone.
+// Adds a row for the holes that differ only in their voxels.
 void add_all_voxels(Section& section, const std::vector<Hole>& holes, const std::vector<Milled>& milled) {
   const Hole usual{};
   std::vector<double> shares;

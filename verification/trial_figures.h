@@ -34,18 +34,18 @@ struct TrialVariant {
 /// One algorithm's milling in the test of section 8.2.
 struct TrialFigures {
   RunMetrics metrics;
-  /// What was removed / (kappa times the integral of the burr's force, of what pays of it).
+  /// Removed volume / (kappa times the integral of the paying part of the burr's force).
   double paid_share = 0;
-  /// Of barrier-shell alone.
+  /// Counts of barrier-shell; none for other algorithms.
   std::optional<barrier_shell::Counts> counts;
-  /// Of each tick's milling with all that follows the volume.
+  /// Time of each tick's milling, with everything that follows the volume, us.
   Distribution milling_us;
 
   double hp_over_mean() const { return metrics.force_N.hp_rms / metrics.force_N.mean; }
 };
 
-/// Runs the milling phase on a copy of the bone, from its top downwards. Throws std::invalid_argument where
-/// settings do not go together, InputError where the bone has no place to enter.
+/// Runs the milling phase on a copy of the bone, from its top downwards. Throws std::invalid_argument if
+/// settings do not go together, InputError if the bone has no place to enter.
 TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant);
 
 /// The figures of all variants, in their order, as many at a time as there are cores.
