@@ -109,7 +109,7 @@ Volume sleeve_block(double spacing_mm, const MillingTool& tool, double overlap_m
 }
 
 Pose pose_in_sleeve(const Volume& block, const MillingTool& tool) {
-  // The burr's centre as far to one side as lets all of the shaft lie in the hole, where there is room.
+  // The burr's centre as far to one side as lets all of the shaft lie in the hole, if there is room.
   const double half_block = 0.5 * block.geometry().spacing_mm.x() * (block.geometry().dims[0] - 9);
   const double start = std::max(-0.5 * tool.shaft_length_mm, -half_block);
   return {{start, 0, 0}, smallest_rotation(Vec3::UnitZ(), Vec3::UnitX())};

@@ -23,8 +23,9 @@ std::string name_of(Bone bone);
 bool is_here(Bone bone);
 const Volume& bone_volume(Bone bone);
 
-/// A block of bone that fills a 512 x 512 x 352 grid but for `margin_mm`, with a hole along i in which the
-/// tool's shaft fits all around: radius `shaft_radius_mm` less `overlap_mm`, through all of the block.
+/// Returns a block of bone that fills a 512 x 512 x 352 grid except for `margin_mm`, with a hole along i in
+/// which the tool's shaft fits all around: radius `shaft_radius_mm` less `overlap_mm`, through all of the
+/// block.
 Volume sleeve_block(double spacing_mm, const MillingTool& tool, double overlap_mm);
 /// The tool in the middle of that hole.
 Pose pose_in_sleeve(const Volume& block, const MillingTool& tool);

@@ -66,7 +66,7 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
   }
 }
 
-// Of scans of 256, 512 and 1024 voxels along a tooth.
+// Registers scans of 256, 512 and 1024 voxels along a tooth.
 const bool kAdded = [] {
   struct Case {
     const char* name;

@@ -1,4 +1,4 @@
-// Reading scans. They are not part of the project: where ../shared/data is absent, this is skipped with a
+// Reading scans. They are not part of the project: if ../shared/data is absent, this is skipped with a
 // line.
 
 #include <cstdio>

@@ -30,7 +30,7 @@ void build_shell(benchmark::State& state, Bone bone) {
   }
 }
 
-// What a volume takes: its densities and their ranges.
+// Measures the memory of a volume: its densities and their ranges.
 void copy_volume(benchmark::State& state, Bone bone) {
   const Volume& volume = bone_volume(bone);
   for ([[maybe_unused]] auto _ : state) {

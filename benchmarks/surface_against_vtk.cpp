@@ -63,7 +63,7 @@ double seconds_on(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Of this thread's own computing, so that whatever else the machine does counts little.
+// Returns this thread's own CPU time, so that other work on the machine counts little.
 template <typename Work>
 double milliseconds(const Work& work) {
   const double start = seconds_on(CLOCK_THREAD_CPUTIME_ID);

@@ -1,4 +1,4 @@
-// Each algorithm's step where most of the tool touches: its whole shaft sleeved in a hole that fits it, in a
+// Each algorithm's step when most of the tool touches: its whole shaft sleeved in a hole that fits it, in a
 // block of 512 x 512 x 352 voxels.
 
 #include <string>

@@ -15,7 +15,8 @@ function(osteomill_test name)
   target_link_libraries(${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE
     OSTEOMILL_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
-  # What is tested is optimised as users run it; optimising the tests themselves only costs minutes of building.
+  # The tested libraries are optimised as users run them; optimising the tests themselves only costs minutes
+  # of building.
   target_compile_options(${name} PRIVATE -O1)
   if(OSTEOMILL_PRECOMPILED_HEADERS)
     target_precompile_headers(${name} REUSE_FROM osteomill_test_headers)

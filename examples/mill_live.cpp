@@ -14,7 +14,7 @@
 
 namespace {
 
-// What a window would draw.
+// Returns the number of triangles that a window would draw.
 std::size_t count_triangles(osteomill::LiveMilling& milling, std::vector<std::size_t>& by_brick) {
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   for (const auto& [brick, levels] : milling.take_changed_bricks()) {

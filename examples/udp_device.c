@@ -1,7 +1,7 @@
 /* The device's side of docs/udp-device.md: a haptic device of your own for osteomill, by datagrams.
  *
  *     cc -O2 -o udp_device udp_device.c -lm
- *     ./udp_device [PORT [LOG]]          47117 where none is given; LOG gets a line for every millisecond
+ *     ./udp_device [PORT [LOG]]          47117 if none is given; LOG gets a line for every millisecond
  *     osteomill live --device udp:127.0.0.1:47117
  *
  * Replace describe(), read_handle() and drive_motors(), here or in a file that defines OWN_DEVICE and includes this one
@@ -50,7 +50,7 @@ struct wrench {
 
 static const double PERIOD_S = 1e-3;
 static const double LAPSE_S = 5e-3;         /* an older wrench is zero */
-static const double CONVERSATION_S = 0.1;   /* whoever has sent nothing for so long gets no more states */
+static const double CONVERSATION_S = 0.1;   /* a partner that is silent for longer gets no more states */
 static const double FORCE_RATE_N_S = 4000;  /* a hand bears no faster change */
 static const double TORQUE_RATE_NMM_S = 1e5;
 
@@ -85,7 +85,7 @@ static void describe(struct answer *answer) {
 }
 
 /* Yours: where the handle is, in mm from the middle of its workspace; x to the operator's right, y up, z towards them.
- * 0 where nothing was measured since the last time. */
+ * 0 if nothing was measured since the last time. */
 static int read_handle(double time_s, struct state *state) {
   const double pi = 3.14159265358979;
   state->position_mm[1] = 2 * cos(0.5 * pi * time_s) - 2;
@@ -129,13 +129,13 @@ int main(int count, char **words) {
   memset(&here, 0, sizeof here);
   here.sin_family = AF_INET;
   here.sin_port = htons((uint16_t)port);
-  here.sin_addr.s_addr = htonl(INADDR_LOOPBACK); /* INADDR_ANY where osteomill runs on another machine */
+  here.sin_addr.s_addr = htonl(INADDR_LOOPBACK); /* INADDR_ANY if osteomill runs on another machine */
   const int to_all = socket(AF_INET, SOCK_DGRAM, 0);
   if (bind(to_all, (struct sockaddr *)&here, sizeof here) != 0) {
     fprintf(stderr, "udp_device: port %d: %s\n", port, strerror(errno));
     return 1;
   }
-  /* Before all ordinary work, where the system allows it. */
+  /* Before all ordinary work, if the system allows it. */
   struct sched_param priority;
   memset(&priority, 0, sizeof priority);
   priority.sched_priority = 30;

@@ -16,7 +16,7 @@ QUESTION_KIND, ANSWER_KIND, STATE_KIND, WRENCH_KIND = 1, 2, 3, 4
 
 PERIOD_S = 1e-3
 LAPSE_S = 5e-3  # an older wrench is zero
-CONVERSATION_S = 0.1  # whoever has sent nothing for so long gets no more states
+CONVERSATION_S = 0.1  # a partner that is silent for longer gets no more states
 FORCE_RATE_N_S = 4000  # a hand bears no faster change
 TORQUE_RATE_NMM_S = 1e5
 
@@ -27,8 +27,8 @@ class ExampleDevice:
     name, sensed, driven, max_force_N, max_torque_Nmm = b"example device in Python", 6, 6, 10, 200
 
     def read_handle(self, time_s):
-        """Position in mm (x to the operator's right, y up, z towards them), orientation, buttons, and 0 where it may be
-        driven (1: it is not calibrated, 2: its force is off). None where nothing was measured since the last time."""
+        """Position in mm (x to the operator's right, y up, z towards them), orientation, buttons, and 0 if it may be
+        driven (1: it is not calibrated, 2: its force is off). None if nothing was measured since the last time."""
         y_mm = 2 * math.cos(0.5 * math.pi * time_s) - 2
         return (0, y_mm, 0), (1, 0, 0, 0), 1, 0
 

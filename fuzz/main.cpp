@@ -95,7 +95,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     target.read({data, size}, folder.path());
   } catch (const osteomill::InputError& fault) {
-    // What a user is told is one line.
+    // A message to the user must be one line.
     if (std::string(fault.what()).find('\n') != std::string::npos) std::abort();
   }
   return 0;

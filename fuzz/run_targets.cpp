@@ -117,7 +117,7 @@ std::vector<std::string> slice_seeds(const fs::path& folder) {
   return {read_bytes(slice_path(folder, 0))};
 }
 
-// What the bytes tell to do, one after the other.
+// Takes the bytes as orders, one after the other.
 class Orders {
  public:
   explicit Orders(Bytes bytes) : bytes_(bytes) {}
@@ -138,7 +138,7 @@ void change_attribute(hid_t object, const std::string& name, Orders& orders) {
   const unsigned order = orders.next() % 8;
   if (order == 1) H5Adelete(object, name.c_str());
   if (order == 2) {
-    // Of another type or length.
+    // Creates it again with another type or length.
     H5Adelete(object, name.c_str());
     const hsize_t count = orders.next() % 4;
     const hid_t space = H5Screate_simple(1, &count, nullptr);
@@ -184,8 +184,8 @@ std::vector<std::string> attributes_of(hid_t object) {
   return names;
 }
 
-// Every attribute and column of a recording changed as the bytes tell, and its checksum made anew: what HDF5
-// itself makes of damaged files stays out.
+// Changes every attribute and column of a recording by the bytes and computes its checksum again, so that
+// HDF5 itself never sees a damaged file.
 void read_changed_recording(Bytes bytes, const fs::path& folder) {
   static const std::string whole = unfinished_recording(folder / "a.h5");
   write_bytes(folder / "a.h5", {reinterpret_cast<const unsigned char*>(whole.data()), whole.size()});

@@ -13,7 +13,7 @@ using Bytes = std::span<const unsigned char>;
 /// One way by which bytes that we did not make come in.
 struct Target {
   const char* name;
-  /// Reads `bytes`, by files in `folder` where it has to. Ends in a result or an InputError.
+  /// Reads `bytes`, by files in `folder` if it has to. Ends in a result or an InputError.
   std::function<void(Bytes bytes, const std::filesystem::path& folder)> read;
   /// Sound inputs to begin from, made in `folder`.
   std::function<std::vector<std::string>(const std::filesystem::path& folder)> seeds;
