@@ -202,9 +202,8 @@ void add_match_stiffness(CLI::App& command, CompareOptions& options) {
   };
   command
       .add_option_function<std::string>("--match-stiffness", take,
-                                        "Choose each algorithm's stiffness so that a flat wall is felt alike "
-                                        "with all: as this, or as with the "
-                                        "softest (docs/algorithms.md)")
+                                        "Match each algorithm's stiffness so that a flat wall feels as stiff "
+                                        "as this, or as with the softest (docs/algorithms.md)")
       ->expected(0, 1)
       ->check(check)
       ->type_name("N/mm|softest");
@@ -219,20 +218,18 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
   command->option_defaults()->group("The comparison");
-  command->add_option("--out", options->out, "For the report and the recordings")
+  command->add_option("--out", options->out, "Folder for the report and the recordings")
       ->type_name("FOLDER")
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
-  add_count(
-      *command, "--seeds", options->seeds, kMaxSeeds,
-      "How many hands try it, each with a seed of its own, --seed the first; the report then says which "
-      "differences are significant");
+  add_count(*command, "--seeds", options->seeds, kMaxSeeds,
+            "Number of hands, each with a seed of its own from --seed on; the report then states which "
+            "differences are significant");
   command->add_flag("--no-stability", options->no_stability,
-                    "Leave out how stiff each algorithm can be against a flat wall");
+                    "Skip the measurement of the greatest passive stiffness against a flat wall");
   add_count(*command, "--threads", options->threads, kMaxThreads,
-            "How many trials after the first are run side by side; else one for each processor that the "
-            "program may "
-            "use (taskset, cgroup v2)");
+            "Number of trials after the first that run in parallel (default: one for each processor that the "
+            "program may use: taskset, cgroup v2)");
   add_match_stiffness(*command, *options);
   add_trial_options(*command, options->trial);
   add_quiet_option(*command);

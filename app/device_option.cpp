@@ -77,24 +77,25 @@ void add_device_option(CLI::App& command, DeviceOption& option) {
   command.option_defaults()->group("The device");
   command
       .add_option("--device", option.device,
-                  "Who holds the tool: NAME or NAME:ADDRESS; osteomill devices lists what is there")
+                  "Device that holds the tool, NAME or NAME:ADDRESS; osteomill devices lists them")
       ->check(known_device())
       ->type_name("DEVICE")
       ->capture_default_str();
   add_positive(command, "--device-scale", option.scale, "NUMBER",
-               "By how much the tool moves further than the handle");
+               "Motion of the tool for each mm of the handle");
   add_positive(command, "--device-power", option.power, "NUMBER",
-               "How much of the tool's power the hand feels");
+               "Power at the hand for each unit of power at the tool");
   command
-      .add_option("--device-turn", option.turn_deg,
-                  "How the device stands, turned in degrees about right, up and towards you")
+      .add_option(
+          "--device-turn", option.turn_deg,
+          "Orientation of the device's base: rotation vector in degrees about right, up and towards you")
       ->delimiter(',')
       ->expected(3)
       ->type_name("X,Y,Z");
   command
       .add_option("--shaft-lever", option.shaft_lever_mm,
-                  "For a device of force alone: what turns the shaft as a force, with the hand so far up it "
-                  "(0: not)")
+                  "Distance of the hand from the burr, mm: a device that drives only force then renders the "
+                  "torque as a force (0: not)")
       ->check(CLI::NonNegativeNumber)
       ->type_name("mm");
 }
@@ -102,10 +103,10 @@ void add_device_option(CLI::App& command, DeviceOption& option) {
 void add_send_options(CLI::App& command, SendOption& option) {
   command
       .add_option("--send-bone", option.address,
-                  "The bone as it is milled, and the tool, by OpenIGTLink, as to 3D Slicer")
+                  "Send the bone as it is milled, and the tool, by OpenIGTLink, for example to 3D Slicer")
       ->type_name("HOST:PORT");
   add_positive(command, "--send-rate", option.tool_rate_Hz, "Hz",
-               "How often the tool's place and readings are sent");
+               "Rate at which the tool's pose and the readings are sent");
 }
 
 std::unique_ptr<BoneSender> send_bone(const BoneFollower& bone, const SendOption& option) {

@@ -231,18 +231,20 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<LiveOptions>();
   CLI::App* command = program.add_subcommand(
       "live",
-      "Run one algorithm in real time with a device or the simulated hand, and say how well time is kept");
+      "Run one algorithm in real time with a device or the simulated hand, and print how well it keeps time");
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
   add_algorithm_option(*command, options->trial.milling.setup.algorithm);
   add_trial_options(*command, options->trial);
   command->remove_option(command->get_option("--seconds"));
   command->option_defaults()->group("The hand and its device");
-  add_positive(*command, "--seconds", options->seconds, "s",
-               "How long; the simulated hand mills for half of it and holds still for the other");
-  command->add_option("--record", options->record, "A recording (HDF5) of every tick")->type_name("FILE");
+  add_positive(
+      *command, "--seconds", options->seconds, "s",
+      "Length of the session; the simulated hand mills for half of it and holds still for the other half");
+  command->add_option("--record", options->record, "Recording (HDF5) of every tick to write")
+      ->type_name("FILE");
   add_device_option(*command, options->device);
-  command->add_flag("--spindle", options->spindle, "The spindle turns without a button of the device");
+  command->add_flag("--spindle", options->spindle, "Turn the spindle on without a button of the device");
   add_send_options(*command, options->send);
   add_quiet_option(*command);
   command->callback([=] {

@@ -160,7 +160,9 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
   command.option_defaults()->group("Limits of the device");
   add_fields(command, setup, kOfTheLimits);
   command.option_defaults()->group("Options");
-  command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")
+  command
+      .add_option("--seed", options.seed,
+                  "Seed of the hand's tremor, and first seed of the hands that --seeds draws")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->type_name("NUMBER")
       ->capture_default_str();

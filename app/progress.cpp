@@ -43,7 +43,7 @@ void add_quiet_option(CLI::App& command) {
   command
       .add_flag_function(
           "--quiet", [](std::int64_t) { quiet = true; },
-          "Nothing but errors and no-go contacts on standard error")
+          "Print only errors and no-go contacts on standard error")
       ->group("Options");
 }
 

@@ -53,7 +53,7 @@ void add_rates_command(CLI::App& program) {
   add_scan_options(*command, options->scan);
   command->group("Compare and measure");
   command->option_defaults()->group("The measurement");
-  command->add_option("--out", options->out, "For the tables and the figure")
+  command->add_option("--out", options->out, "Folder for the tables and the figure")
       ->type_name("FOLDER")
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);

@@ -57,7 +57,7 @@ void add_settings_command(CLI::App& program) {
   command->callback([] {
     fmt::print(
         "# Settings of the algorithms\n\n"
-        "Written by `osteomill settings`; a test holds this page to it. Set one with `--set "
+        "Written by `osteomill settings`; a test compares this page with it. Set one with `--set "
         "ALGORITHM.SETTING=VALUE`, or as\na key of the table `[ALGORITHM]` in a file for `--config`. Numbers "
         "in brackets are the paper's equations; "
         "[algorithms.md](algorithms.md) tells what each is for.\n");

@@ -230,10 +230,10 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   add_scan_options(*command, options->scan);
   command->option_defaults()->group("The replay");
   command->add_flag("--verify", options->verify,
-                    "Whether a recording comes out again to the bit, or the first tick that differs");
+                    "Check that a recording replays to the bit, or print the first tick that differs");
   add_algorithm_option(*command, options->milling.setup.algorithm);
-  command->add_option("--out", options->out, "The log, CSV, a row a tick")->type_name("FILE");
-  command->add_option("--record", options->record, "Of a recording's motion, another recording")
+  command->add_option("--out", options->out, "Log to write, CSV, one row for each tick")->type_name("FILE");
+  command->add_option("--record", options->record, "Recording to write, of the replayed motion")
       ->type_name("FILE");
   add_milling_options(*command, options->milling);
   add_quiet_option(*command);

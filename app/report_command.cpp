@@ -63,8 +63,10 @@ void add_report_command(CLI::App& program) {
   command->group("Recordings");
   command->add_option("recordings", options->recordings, "Recordings (.h5), of compare, live or the window")
       ->required();
-  command->add_option("--out", options->out, "For the report")->type_name("FOLDER")->capture_default_str();
-  command->add_flag("--csv", options->csv, "Write each recording's ticks as CSV too");
+  command->add_option("--out", options->out, "Folder for the report")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  command->add_flag("--csv", options->csv, "Also write each recording's ticks as CSV");
   add_quiet_option(*command);
   command->callback([=] { run_report(*options); });
 }

@@ -265,11 +265,11 @@ void add_study_command(CLI::App& program) {
   command->option_defaults()->group("The study");
   command
       ->add_option("study", options->study,
-                   "A study's file (TOML, docs/studies.md), or the folder of one that was begun")
+                   "A study's file (TOML, docs/studies.md), or the folder of a study")
       ->required()
       ->check(not_empty())
       ->type_name("FILE|FOLDER");
-  command->add_option("--out", options->out, "Begin the study in this folder")
+  command->add_option("--out", options->out, "Folder in which to begin the study")
       ->check(not_empty())
       ->type_name("FOLDER");
   command->add_flag("--list", options->list, "Print every trial, and run none");
@@ -281,22 +281,22 @@ void add_study_command(CLI::App& program) {
                     "With --report: leave out trials that did not do all of their test; else they count, "
                     "hatched in the maps");
   command->option_defaults()->group("How it is run");
-  command->add_option("--on", options->on, "Submit it to a cluster's scheduler")
+  command->add_option("--on", options->on, "Submit the study to a cluster's scheduler")
       ->check(one_of("scheduler", {"slurm"}))
       ->type_name("slurm");
   command
       ->add_option("--slices", options->slices,
-                   "In how many files of trials; else a minute each by three trials")
+                   "Number of files of trials (default: about a minute of computing each, from three trials)")
       ->check(whole_number(1, kMaxSlices))
       ->type_name("COUNT");
   command
-      ->add_option("--slice", options->slice, "Of a folder: run this one alone, as a task of a cluster does")
+      ->add_option("--slice", options->slice,
+                   "Run only this slice of a study's folder, as a task of a cluster does")
       ->check(whole_number(0, kMaxSlices))
       ->type_name("NUMBER");
-  add_count(
-      *command, "--threads", options->threads, kMaxThreads,
-      "How many trials are run side by side; else one for each processor that the program may use (taskset, "
-      "cgroup v2)");
+  add_count(*command, "--threads", options->threads, kMaxThreads,
+            "Number of trials that run in parallel (default: one for each processor that the program may "
+            "use: taskset, cgroup v2)");
   command->option_defaults()->group("Options");
   add_quiet_option(*command);
   command->callback([=] { run_study(*options); });

@@ -66,15 +66,16 @@ std::vector<Field<AskedTrial>> trial_numbers() {
   constexpr double kMaxSeed = 1ull << 53;
   using A = AskedTrial;
   const std::vector<Field<A>> own{
-      field<A>({"", "mm", {0.03, 1}, "Of the built-in tooth", kOfTheBone, "voxel"}, &A::voxel_mm),
-      field<A>({"", "Hz", {100, 20000}, "Of the haptic loop", 0, "rate"}, &A::rate_hz),
-      field<A>({"", "N s/mm", NumberRange::positive(), "Of the device, on a wall", 0, "device-damping"},
-               &A::device_damping_Ns_per_mm),
-      field<A>({"", "", NumberRange::positive(), "How many times as firmly the hand grips", 0, "grip"},
+      field<A>({"", "mm", {0.03, 1}, "Voxel size of the built-in tooth", kOfTheBone, "voxel"}, &A::voxel_mm),
+      field<A>({"", "Hz", {100, 20000}, "Rate of the haptic loop", 0, "rate"}, &A::rate_hz),
+      field<A>(
+          {"", "N s/mm", NumberRange::positive(), "Damping of the device on a wall", 0, "device-damping"},
+          &A::device_damping_Ns_per_mm),
+      field<A>({"", "", NumberRange::positive(), "Factor on the hand's stiffness and damping", 0, "grip"},
                &A::grip),
       field<A>({"", "", NumberRange::on_or_off(), "The seed draws the hand", 0, "draw-hand"}, &A::draw_hand),
       field<A>(
-          {"", "", {0, kMaxSeed, true}, "Of the hand's tremor", 0, "seed"},
+          {"", "", {0, kMaxSeed, true}, "Seed of the hand's tremor", 0, "seed"},
           [](auto& a) -> auto& { return a.trial.milling.seed; })};
   std::vector<Field<A>> all =
       joined<A>({fields_within<A>(&A::scan, fields_of<ScanOptions>()), own,

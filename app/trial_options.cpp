@@ -45,8 +45,9 @@ template <>
 const std::vector<Field<TrialOptions, std::string>>& fields_of<TrialOptions, std::string>() {
   static const std::vector<Field<TrialOptions, std::string>> all{
       vector_field("entry", &TrialOptions::entry_W_mm,
-                   "From where the tool enters, in mm; else the top of the bone"),
-      vector_field("direction", &TrialOptions::direction_W, "Which way it enters; else 0,0,-1")};
+                   "Point at which the tool enters, mm (default: the top of the bone)"),
+      vector_field("direction", &TrialOptions::direction_W,
+                   "Direction in which the tool enters (default: 0,0,-1)")};
   return all;
 }
 

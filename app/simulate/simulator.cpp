@@ -578,15 +578,15 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   add_device_option(*command, options->device);
   add_send_options(*command, options->send);
   command->option_defaults()->group("The window");
-  command->add_option("--out", options->folder, "For recordings and what is saved")
+  command->add_option("--out", options->folder, "Folder for recordings and saved files")
       ->type_name("FOLDER")
       ->capture_default_str();
   command
       ->add_option("--ui-scale", options->ui_scale,
-                   "How much larger than usual text is (2 at 4K), else as the screen asks for")
+                   "Scale of the text, 1 is usual and 2 suits 4K (default: as the screen asks for)")
       ->check(CLI::Range(kMinScale, kMaxScale));
   command->add_flag("--no-help", options->no_help,
-                    "Begin without the page that explains the controls (else shown the first time)");
+                    "Begin without the page that explains the controls (default: shown on the first start)");
   command->callback([=] {
     apply_config_file(*command);
     Simulator(*options).run();

@@ -78,10 +78,10 @@ const std::vector<Field<SessionSettings>>& fields_of<SessionSettings>() {
   static const std::vector<Field<SessionSettings>> all = [] {
     auto fields = fields_within<SessionSettings>(&SessionSettings::setup, fields_of<MillingSetup>());
     fields.push_back(field<SessionSettings>(
-        {"milling.surroundings_density", "", NumberRange::finite(), "Of no bone"},
+        {"milling.surroundings_density", "", NumberRange::finite(), "Density of the surroundings of bone"},
         [](auto& s) -> auto& { return s.densities.surroundings; }));
     fields.push_back(field<SessionSettings>(
-        {"milling.reference_density", "", NumberRange::finite(), "Of whole bone"},
+        {"milling.reference_density", "", NumberRange::finite(), "Density of whole bone"},
         [](auto& s) -> auto& { return s.densities.reference; }));
     return fields;
   }();

@@ -82,7 +82,7 @@ std::vector<Field<CuttingSettings>> cutting_fields() {
       field<C>({"vibration.spindle_speed", "rpm", kSpeed, "Speed of the burr", kOwn, "spindle-speed"},
                &C::spindle_speed_rpm),
       field<C>({"milling.cutting_energy", "N mm/mm^3", kEnergy,
-                "Work that removes bone of the reference density", kOwn | kMayBeAbsent, "cutting-energy"},
+                "Work to remove bone of the reference density", kOwn | kMayBeAbsent, "cutting-energy"},
                &C::specific_energy_Nmm_per_mm3),
   };
 }
@@ -90,15 +90,16 @@ std::vector<Field<CuttingSettings>> cutting_fields() {
 std::vector<Field<S>> removal_fields() {
   return {
       {{"milling.removal_rate", "mm^3/(N s)", kRate,
-        "Bone removed per time and force; by default it follows from burr, spindle speed and cutting energy",
+        "Bone removed per time and force (default: computed from burr, spindle speed and cutting energy)",
         kOfTheCutting | kOfTheRecording | kFollows, "removal-rate"},
        [](const S& s) { return milling_settings(s).removal_rate_mm3_per_Ns; },
        [](S& s, double value) { s.removal_rate_mm3_per_Ns = value; }},
-      field<S>({"", "", kSwitch, "The hand feels the burr pull along its rim; the burr's pole cuts less",
-                kOfTheCutting, "cutting-reaction"},
-               &S::cutting_reaction),
+      field<S>(
+          {"", "", kSwitch, "Let the hand feel the burr pull along its rim; the burr's pole then cuts less",
+           kOfTheCutting, "cutting-reaction"},
+          &S::cutting_reaction),
       {{"milling.reaction_share", "", kNotNegative,
-        "Share of the burr's force with which it pulls; 0: not felt"},
+        "Share of the burr's force with which the burr pulls; 0: not felt"},
        [](const S& s) { return milling_settings(s).reaction_share; },
        [](S& s, double value) {
          s.cutting_reaction = value != 0;
@@ -119,7 +120,7 @@ std::vector<Field<GuardSettings>> guard_fields() {
            "torque-limit"},
           [](auto& g) -> auto& { return g.limits.torque_Nmm; }),
       field<G>({"passivity_controller", "", kSwitch,
-                "Damps a contact that has given the hand more energy than it took", kOfTheLimits,
+                "Damp a contact that has given the hand more energy than it took", kOfTheLimits,
                 "passivity-controller"},
                &G::passivity_controller),
       field<G>(
@@ -128,7 +129,7 @@ std::vector<Field<GuardSettings>> guard_fields() {
       field<G>(
           {"guard.max_torque_rate", "N mm/s", kLimit, "Fastest change of the torque sent"},
           [](auto& g) -> auto& { return g.rates.torque_Nmm_s; }),
-      field<G>({"guard.blend", "s", kNotNegative, "Time in which a wrench comes up from zero"}, &G::blend_s),
+      field<G>({"guard.blend", "s", kNotNegative, "Time in which a wrench rises from zero"}, &G::blend_s),
       field<G>({"guard.max_move", "mm", kLimit, "Farthest move of the device in a tick"}, &G::max_move_mm),
       field<G>({"guard.max_turn", "rad", kLimit, "Widest turn of the device in a tick"}, &G::max_turn_rad),
       field<G>({"guard.max_tick", "s", kLimit, "Longest tick"}, &G::max_tick_s),

@@ -19,36 +19,36 @@ constexpr NumberRange kStiffness{0.05, 200}, kTorsion{1, 1e5}, kSkin{0.05, 1}, k
 const Fields& fields() {
   static const Fields all{
       field<Settings>({"translational-stiffness", "N/mm", kStiffness,
-                       "Virtual coupling between device and simulated tool", 0, "stiffness"},
+                       "Virtual coupling between device and simulated tool, translation", 0, "stiffness"},
                       &Settings::translational_stiffness_N_per_mm),
-      field<Settings>({"torsional-stiffness", "N mm/rad", kTorsion, "Of the coupling, about rotation", 0,
-                       "torsional-stiffness"},
-                      &Settings::torsional_stiffness_Nmm_per_rad),
+      field<Settings>(
+          {"torsional-stiffness", "N mm/rad", kTorsion,
+           "Virtual coupling between device and simulated tool, rotation", 0, "torsional-stiffness"},
+          &Settings::torsional_stiffness_Nmm_per_rad),
       field<Settings>({"skin-width", "mm", kSkin,
-                       "How far from the tool's cores bone is felt; less where the rounding is less"},
+                       "Distance from the tool's cores at which bone is felt; smaller in proportion with a "
+                       "reduced rounding"},
                       &Settings::skin_width_mm),
       field<Settings>({"rounding", "mm", kRounding,
-                       "How far the cores lie within the tool, at most half of its least radius"},
+                       "Distance of the cores below the tool's surface; at most half of its smallest radius"},
                       &Settings::rounding_mm),
-      field<Settings>(
-          {"pressure", "N/mm2", kPressure,
-           "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2, for the default burr; of another it "
-           "goes against its section"},
-          &Settings::pressure_N_per_mm2),
-      field<Settings>(
-          {"point-spacing", "mm", kSpacing,
-           "How far apart the points of bone lie at most, whatever the scan's voxels; less for a thin tool, "
-           "and twice as far at a thick shaft where the bone is flat"},
-          &Settings::point_spacing_mm),
+      field<Settings>({"pressure", "N/mm2", kPressure,
+                       "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2 for the default burr; for "
+                       "another, inversely proportional to its cross-section"},
+                      &Settings::pressure_N_per_mm2),
+      field<Settings>({"point-spacing", "mm", kSpacing,
+                       "Largest distance between points of bone, whatever the scan's voxels; smaller for a "
+                       "thin tool, and doubled at a thick shaft on flat bone"},
+                      &Settings::point_spacing_mm),
       field<Settings>({"release-time", "s", kReleaseTime,
-                       "In which a stretch of the coupling that nothing holds any more falls to a third, if "
-                       "not sooner by "
-                       "the next two"},
+                       "Time in which a stretch of the coupling that nothing holds any more falls to a "
+                       "third, unless release and release-turn are faster"},
                       &Settings::release_time_s),
       field<Settings>({"release", "mm/s", kReleaseSpeed,
-                       "How fast the tool may move beside what the device's own move leads it to"},
+                       "Speed limit of the tool's translation beyond the device's own motion"},
                       &Settings::release_mm_s),
-      field<Settings>({"release-turn", "rad/s", kReleaseTurn, "The same of its turning"},
+      field<Settings>({"release-turn", "rad/s", kReleaseTurn,
+                       "Speed limit of the tool's rotation beyond the device's own motion"},
                       &Settings::release_rad_s),
   };
   return all;

@@ -79,54 +79,64 @@ constexpr NumberRange kPositive = NumberRange::positive(), kNotNegative = Number
 std::vector<Field<HandSettings>> hand_fields() {
   using H = HandSettings;
   return {
-      field<H>({"hand.push", "N", kPositive, "The most that the hand pushes", 0, "push"}, &H::push_N),
-      field<H>({"hand.push_lever", "mm", kNotNegative, "Its push turns at this lever"}, &H::push_lever_mm),
-      field<H>({"hand.stiffness", "N/mm", kPositive, "Of the hand", 0, "hand-stiffness"},
+      field<H>({"hand.push", "N", kPositive, "Largest push of the hand", 0, "push"}, &H::push_N),
+      field<H>({"hand.push_lever", "mm", kNotNegative,
+                "Lever of the hand's largest torque: it is the push times this"},
+               &H::push_lever_mm),
+      field<H>({"hand.stiffness", "N/mm", kPositive, "Stiffness of the hand", 0, "hand-stiffness"},
                &H::stiffness_N_per_mm),
-      field<H>({"hand.damping", "N s/mm", kPositive, "Of the hand", 0, "hand-damping"},
+      field<H>({"hand.damping", "N s/mm", kPositive, "Damping of the hand", 0, "hand-damping"},
                &H::damping_Ns_per_mm),
-      field<H>({"hand.torsional_stiffness", "N mm/rad", kPositive, "Of the hand, about its turning", 0,
+      field<H>({"hand.torsional_stiffness", "N mm/rad", kPositive, "Torsional stiffness of the hand", 0,
                 "hand-torsional-stiffness"},
                &H::torsional_stiffness_Nmm_per_rad),
-      field<H>({"hand.torsional_damping", "N mm s/rad", kPositive, "Of the hand, about its turning", 0,
+      field<H>({"hand.torsional_damping", "N mm s/rad", kPositive, "Torsional damping of the hand", 0,
                 "hand-torsional-damping"},
                &H::torsional_damping_Nmms_per_rad),
-      field<H>({"hand.tremor", "mm", kNotNegative, "Along each axis, rms"}, &H::tremor_mm),
-      field<H>({"hand.tremor_turn", "rad", kNotNegative, "About each axis, rms"}, &H::tremor_rad),
+      field<H>({"hand.tremor", "mm", kNotNegative, "Tremor of the hand along each axis, rms"}, &H::tremor_mm),
+      field<H>({"hand.tremor_turn", "rad", kNotNegative, "Tremor of the hand about each axis, rms"},
+               &H::tremor_rad),
   };
 }
 
 std::vector<Field<HandleSettings>> handle_fields() {
   using H = HandleSettings;
   return {
-      field<H>({"device.mass", "kg", kPositive, "Of the handle", 0, "device-mass"}, &H::mass_kg),
-      field<H>({"device.inertia", "kg m^2", kPositive, "Of the handle", 0, "device-inertia"},
-               &H::inertia_kg_m2),
-      field<H>({"device.position_step", "mm", kNotNegative, "Of the encoder"}, &H::position_step_mm),
-      field<H>({"device.rotation_step", "rad", kNotNegative, "Of the encoder"}, &H::rotation_step_rad),
-      field<H>({"device.force_delay", "s", kPositive, "From a wrench sent to its effect", 0, "device-delay"},
+      field<H>({"device.mass", "kg", kPositive, "Mass of the handle", 0, "device-mass"}, &H::mass_kg),
+      field<H>(
+          {"device.inertia", "kg m^2", kPositive, "Moment of inertia of the handle", 0, "device-inertia"},
+          &H::inertia_kg_m2),
+      field<H>({"device.position_step", "mm", kNotNegative, "Step of the encoder, translation"},
+               &H::position_step_mm),
+      field<H>({"device.rotation_step", "rad", kNotNegative, "Step of the encoder, rotation"},
+               &H::rotation_step_rad),
+      field<H>({"device.force_delay", "s", kPositive, "Delay from sending a wrench to its effect", 0,
+                "device-delay"},
                &H::force_delay_s),
       field<H>(
-          {"device.force_limit", "N", kNotNegative, "Of the motors", kMayBeAbsent},
+          {"device.force_limit", "N", kNotNegative, "Largest force of the motors", kMayBeAbsent},
           [](auto& h) -> auto& { return h.limits.force_N; }),
       field<H>(
-          {"device.torque_limit", "N mm", kNotNegative, "Of the motors", kMayBeAbsent},
+          {"device.torque_limit", "N mm", kNotNegative, "Largest torque of the motors", kMayBeAbsent},
           [](auto& h) -> auto& { return h.limits.torque_Nmm; }),
-      field<H>({"device.substep", "s", kPositive, "Of the simulated time"}, &H::substep_s),
+      field<H>({"device.substep", "s", kPositive, "Step of the simulated device's integration"},
+               &H::substep_s),
   };
 }
 
 std::vector<Field<ScriptSettings>> script_fields() {
   using S = ScriptSettings;
   return {
-      {{"", "s", kPositive, "How long each phase lasts (compare: about; docs/algorithms.md)", 0, "seconds"},
+      {{"", "s", kPositive, "Length of each phase (in compare approximate; docs/algorithms.md)", 0,
+        "seconds"},
        [](const S& s) { return s.milling_s; },
        [](S& s, double value) { s.milling_s = s.holding_s = value; }},
-      field<S>({"script.milling", "s", kNotNegative, "How long the milling lasts"}, &S::milling_s),
-      field<S>({"script.until-leant", "", NumberRange::on_or_off(), "It lasts until the shaft has leant"},
+      field<S>({"script.milling", "s", kNotNegative, "Length of the milling"}, &S::milling_s),
+      field<S>({"script.until-leant", "", NumberRange::on_or_off(), "Mill until the shaft has leant on bone"},
                &S::until_leant),
-      field<S>({"script.holding", "s", kNotNegative, "How long the tool is held"}, &S::holding_s),
-      field<S>({"script.settle", "s", kNotNegative, "How long the hand takes to that", kMayBeAbsent},
+      field<S>({"script.holding", "s", kNotNegative, "Length of the holding"}, &S::holding_s),
+      field<S>({"script.settle", "s", kNotNegative,
+                "Time for the hand to settle before the holding is measured", kMayBeAbsent},
                &S::settle_s),
   };
 }

@@ -15,10 +15,11 @@ constexpr NumberRange kStiffness{0.001, 1e4};
 
 const Fields& fields() {
   static const Fields all{
-      field<Settings>({"vertices", "", NumberRange::count(2, 100000),
-                       "Vertices on the tool's centreline, the burr's centre included", 0, "vertices"},
-                      &Settings::vertices),
-      field<Settings>({"stiffness", "N/mm", kStiffness, "k of (6) and (10)", 0, "stiffness"},
+      field<Settings>(
+          {"vertices", "", NumberRange::count(2, 100000),
+           "Number of vertices on the tool's centreline, including the burr's centre", 0, "vertices"},
+          &Settings::vertices),
+      field<Settings>({"stiffness", "N/mm", kStiffness, "Spring constant k of (6) and (10)", 0, "stiffness"},
                       &Settings::stiffness_N_per_mm),
   };
   return all;

@@ -15,19 +15,19 @@ constexpr NumberRange kStiffness{0.001, 1e4}, kTorsion{1, 1e7}, kDampingTime{0, 
 
 const Fields& fields() {
   static const Fields all{
-      field<Settings>(
-          {"scale", "", NumberRange::count(1, VoxelShell::kMaxScale),
-           "Coarseness: the voxels whose centres are points are this many of the scan's wide along each axis",
-           0, "shell-scale"},
-          &Settings::scale),
+      field<Settings>({"scale", "", NumberRange::count(1, VoxelShell::kMaxScale),
+                       "Coarseness of the shell: width of its voxels in the scan's voxels along each axis", 0,
+                       "shell-scale"},
+                      &Settings::scale),
       field<Settings>({"translational-stiffness", "N/mm", kStiffness,
-                       "Virtual coupling between device and simulated tool", 0, "stiffness"},
+                       "Virtual coupling between device and simulated tool, translation", 0, "stiffness"},
                       &Settings::translational_stiffness_N_per_mm),
-      field<Settings>({"torsional-stiffness", "N mm/rad", kTorsion, "Of the coupling, about rotation", 0,
-                       "torsional-stiffness"},
-                      &Settings::torsional_stiffness_Nmm_per_rad),
       field<Settings>(
-          {"damping-time", "s", kDampingTime, "The coupling's dampers are its springs times this"},
+          {"torsional-stiffness", "N mm/rad", kTorsion,
+           "Virtual coupling between device and simulated tool, rotation", 0, "torsional-stiffness"},
+          &Settings::torsional_stiffness_Nmm_per_rad),
+      field<Settings>(
+          {"damping-time", "s", kDampingTime, "Ratio of the virtual coupling's damping to its stiffness"},
           &Settings::damping_time_s),
   };
   return all;

@@ -18,18 +18,18 @@ const Fields& fields() {
   static const Fields all{
       field<Settings>(
           {"stiffness", "N/mm", kStiffness,
-           "k of (14): the spring of a sphere, or of a slice, all of whose vertices collide", 0, "stiffness"},
+           "Spring constant k of (14), of a sphere or slice of which all vertices collide", 0, "stiffness"},
           &Settings::stiffness_N_per_mm),
       field<Settings>(
-          {"slices", "", NumberRange::count(1, 1000), "Circles along the free shaft", 0, "slices"},
+          {"slices", "", NumberRange::count(1, 1000), "Number of circles along the free shaft", 0, "slices"},
           &Settings::slices),
-      field<Settings>(
-          {"sphere-vertices", "", NumberRange::count(4, 500),
-           "Vertices on the burr's sphere: 24 as a snub cube, another number as equal charges spread"},
-          &Settings::sphere_vertices),
-      field<Settings>(
-          {"circle-vertices", "", NumberRange::count(3, 100), "Vertices on each circle of the shaft"},
-          &Settings::circle_vertices),
+      field<Settings>({"sphere-vertices", "", NumberRange::count(4, 500),
+                       "Number of vertices on the burr's sphere: 24 form a snub cube, another number spreads "
+                       "like equal charges"},
+                      &Settings::sphere_vertices),
+      field<Settings>({"circle-vertices", "", NumberRange::count(3, 100),
+                       "Number of vertices on each circle of the shaft"},
+                      &Settings::circle_vertices),
   };
   return all;
 }
