@@ -52,7 +52,7 @@ struct CompareOptions {
   std::string out = "osteomill-comparison";
 };
 
-// With the first seed, every algorithm.
+// Returns a trial of every algorithm with the first seed.
 std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone& bone,
                                  const std::string& command_line) {
   TrialPlan plan = trial_plan(bone, options.trial, command_line);

@@ -131,7 +131,7 @@ void add_named_settings(CLI::App& command, HapticSettings& haptics) {
       ->type_name("SETTING");
 }
 
-// One option for all settings that name it, so that it stands in the algorithms' descriptions alone.
+// Adds one option for all settings that name it, so that only the algorithms' descriptions define it.
 void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
   for (const std::string& option : shared_options()) {
     const auto has_it = [&](const AlgorithmDescription& one) {

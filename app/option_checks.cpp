@@ -174,7 +174,7 @@ CLI::Validator number_of(const NumberRange& range) {
 
 namespace {
 
-// One word of a help text: "mm³/(N.s)".
+// Returns the unit as one word of a help text: "mm³/(N.s)".
 std::string help_unit(std::string unit) {
   std::replace(unit.begin(), unit.end(), ' ', '.');
   for (const auto& [power, digit] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
@@ -235,7 +235,7 @@ CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {
 
 namespace {
 
-// By its type, as add_option or type_name has it; CLI11 appends what it checks behind a colon.
+// Decides by the option's type, as add_option or type_name has it; CLI11 appends its check behind a colon.
 bool takes_words(const CLI::Option& option) {
   constexpr std::string_view kWords[] = {
       "TEXT",   "FILE",      "FOLDER", "FILE|FOLDER", "TRAJECTORY|RECORDING",

@@ -49,7 +49,7 @@ class Log {
  public:
   Log(const ReplayOptions& options, std::size_t ticks, const Volume& bone)
       : options_(options), ticks_(ticks), labels_(bone.labels()) {
-    // Not only when all is done.
+    // Checks the output before the replay, and not only at its end.
     if (!options.out.empty()) output_path(options.out);
     log_.reserve(ticks);
   }

@@ -53,7 +53,7 @@ int end_output(int code) {
                   kInputAtFault);
 }
 
-// How the program was called, as it would be typed into a shell, the program as "osteomill".
+// Returns how the program was called, as it would be typed into a shell, the program as "osteomill".
 std::string command_line_of(int argc, const char* const* argv) {
   std::string line = "osteomill";
   for (int n = 1; n < argc; ++n) line += " " + osteomill::quoted(argv[n]);

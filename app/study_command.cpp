@@ -72,7 +72,7 @@ void require_same_program(const StudyFolder& folder) {
     throw InputError(folder.path.string(), "was begun with another build of this program");
 }
 
-// So that a fault of any trial is told before the first is run.
+// Checks every trial, so that a fault is reported before the first trial runs.
 void check_every_trial(StudyTrials& study) {
   constexpr std::size_t kBetweenProgress = 256;
   const std::size_t count = study.design().trial_count();

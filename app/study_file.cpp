@@ -84,7 +84,7 @@ class Reader {
     return *found;
   }
 
-  // Nothing if it is no table of {from, to}.
+  // Returns the range of a table {from, to}; nothing if the entry is no such table.
   std::optional<StudyRange> range(const TomlEntry& entry) const {
     const toml::table* table = entry.value->as_table();
     if (table == nullptr || !table->contains("from")) return std::nullopt;

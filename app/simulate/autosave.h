@@ -22,9 +22,9 @@ namespace osteomill::app {
 /// the lock away however the program ends. The file itself stays.
 class AutosaveFile {
  public:
-  /// In a new folder; nothing if it cannot be made, or the user has no state folder.
+  /// Makes a file in a new folder; nothing if that cannot be made, or the user has no state folder.
   static std::optional<AutosaveFile> make();
-  /// In this folder; nothing if another program has it locked.
+  /// Takes the file in this folder; nothing if another program has it locked.
   static std::optional<AutosaveFile> locked(const std::filesystem::path& folder);
 
   std::filesystem::path path() const { return folder_ / "milled.h5"; }
@@ -54,10 +54,10 @@ ScanOptions scan_of(const SessionStart& leftover);
 /// own.
 class Autosave {
  public:
-  /// For milling this scan. Writes to `file`, or to a new one if that is not given.
+  /// Saves the milling of this scan. Writes to `file`, or to a new one if that is not given.
   Autosave(ScanOptions scan, std::optional<AutosaveFile> file);
 
-  /// To be called once a picture. Removes the file if nothing is unsaved.
+  /// Call once for each picture. Removes the file if nothing is unsaved.
   void update(LiveMilling& milling);
   /// The bone of this version (BoneFollower::version) was saved by the user.
   void saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
@@ -67,7 +67,7 @@ class Autosave {
   }
   /// Removes the file: the user does not want what was milled.
   void discard();
-  /// Why nothing can be kept, told once; else empty.
+  /// Returns the reason why nothing can be kept, once; otherwise an empty text.
   std::string take_complaint() { return std::exchange(complaint_, {}); }
 
  private:

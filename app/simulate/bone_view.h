@@ -20,7 +20,7 @@ struct BoneBox {
 /// Goes through every voxel.
 BoneBox box_of_bone(const Volume& bone);
 
-/// In one line why the tool cannot work with this bone; empty if it can.
+/// Returns a line on why the tool cannot work with this bone; empty if it can.
 std::string tool_fault(const MillingTool& tool, const BoneBox& box);
 
 /// The camera turned as it is, with all of the bone between the panels.

@@ -25,8 +25,8 @@ class FilesPanel {
       : folder_(std::move(folder)), take_picture_(std::move(take_picture)) {}
 
   void draw(ViewState& view, Simulation& simulation);
-  /// At the bottom of the right column, where it is always in sight: what is going on, what was done last,
-  /// and buttons that open the file it made. Returns its upper edge, pixels from the top of the window.
+  /// Draws, at the bottom of the right column, where it is always in sight, the work in progress, the last
+  /// result, and buttons that open its file. Returns its upper edge, pixels from the top of the window.
   float draw_message(ViewState& view, const Simulation& simulation, const PixelSize& size);
   /// Ends a recording that still goes on, and waits until everything is written.
   void close(ViewState& view, Simulation& simulation);
@@ -45,7 +45,7 @@ class FilesPanel {
   void save_scan(ViewState& view, Simulation& simulation);
   /// Tells in the view how writing went, once it has ended.
   void take_result(ViewState& view, Simulation& simulation);
-  /// For how long a recording has been going on, s; nothing if none does.
+  /// Returns the length of the running recording, s; nothing if none runs.
   std::optional<double> recording_s(const Simulation& simulation) const;
   const std::filesystem::path& last_recording() const { return last_recording_; }
   /// A new name in the folder.

@@ -36,7 +36,7 @@ ImVec2 at(const Eigen::Vector2d& place) {
   return {static_cast<float>(place.x()), static_cast<float>(place.y())};
 }
 
-// On a dark edge, so that it is read before bone as well.
+// Draws text on a dark edge, so that it can be read in front of bone as well.
 void draw(ImDrawList& list, Annotation annotation) {
   constexpr ImU32 kDark = IM_COL32(0, 0, 0, 190);
   constexpr ImU32 kLight = IM_COL32(236, 238, 242, 255);

@@ -48,8 +48,8 @@ bool dialogue_open();
 /// The dialogue that is to be seen, if any. Takes down what is chosen.
 void draw_dialogue(DialogueQueue& dialogues);
 
-/// In the middle of an empty window, or above the bone that is milled meanwhile: how far opening a scan is.
-/// True when it is to be given up.
+/// Draws the progress of opening a scan, in the middle of an empty window or above the bone that is milled
+/// meanwhile. Returns true if the user cancels it.
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
                   bool above);
 

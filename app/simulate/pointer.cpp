@@ -29,7 +29,7 @@ double held_way(int forwards, int backwards) {
   return (held(forwards) ? 1.0 : 0.0) - (held(backwards) ? 1.0 : 0.0);
 }
 
-// How far the pointer moved since the last picture.
+// Returns how far the pointer moved since the last picture.
 Eigen::Vector2d pointer_moved_px() {
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
   return {static_cast<double>(moved.x), static_cast<double>(moved.y)};
@@ -85,7 +85,7 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   return true;
 }
 
-// Whether the pointer is on the picture of the tool.
+// Returns whether the pointer is on the picture of the tool.
 bool on_tool(const ViewState& view, const Pose& X_WT, const MillingTool& tool, const PixelSize& size,
              const ImVec2& pointer) {
   const Vec3 ray =
@@ -142,7 +142,7 @@ void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.follower().cuts() > 0) view.undo_asked = true;
 }
 
-// Before the bone that is seen at the pixel, if there is any, or else in the middle.
+// Places the tool before the bone that is seen at the pixel, or else before the bone in the middle.
 void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
                 const std::optional<Eigen::Vector2d>& pixel) {
   LiveMilling& milling = simulation.milling;

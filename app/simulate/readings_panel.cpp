@@ -41,7 +41,7 @@ void row(const char* name, const std::string& value,
   ImGui::TextColored(colour, "%s", value.c_str());
 }
 
-// From 0 to a round number, which stands at the top, over the last 5 s.
+// Plots the last 5 s from 0 to a round number, which stands at the top.
 void plot(const char* name, const char* unit, const std::deque<TickRecord>& history,
           double (*magnitude)(const TickRecord&), double min_scale, const ImVec4& colour, float height_px) {
   const std::vector<float> points = thinned(history, magnitude);
@@ -74,12 +74,12 @@ void plot(const char* name, const char* unit, const std::deque<TickRecord>& hist
   write("now", 1, 1);
 }
 
-// One line, whatever there is to tell, so that nothing below it moves.
+// Draws always one line, so that nothing below it moves.
 void draw_faults(const std::deque<TickRecord>& history) {
   FaultCount faults;
   for (const TickRecord& record : history) faults.add(record);
   const int limited = faults.limited();
-  // Not those without a pose: a clutch is held, or the device's own line tells of it.
+  // Leaves out ticks without a pose: a clutch is held, or the device's own line reports it.
   const int zero = faults.not_finite() + faults.unsafe();
   const bool held_back = !history.empty() && history.back().fault == WrenchFault::held_back;
   const std::string text = held_back     ? "nothing: lift the tool out"
@@ -150,7 +150,7 @@ void draw_complaint(const std::string& complaint) {
   if (room_px > 0) ImGui::Dummy({0, room_px - ImGui::GetStyle().ItemSpacing.y});
 }
 
-// How the device is, and how it stands before the operator.
+// Draws the state of the device and its orientation before the operator.
 void draw_device(ViewState& view, ConnectedDevice& device) {
   ImGui::Separator();
   const DeviceReport report = device.report();

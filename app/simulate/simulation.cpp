@@ -97,7 +97,7 @@ void Simulation::update() {
   look_for_warnings();
 }
 
-// On a thread of its own, since it goes through every voxel.
+// Looks for warnings on a thread of its own, because it goes through every voxel.
 void Simulation::look_for_warnings() {
   if (warnings_to_come_.valid()) {
     if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();

@@ -68,7 +68,8 @@ struct Simulation {
   Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder, const std::string& command_line,
              std::optional<AutosaveFile> autosave_file = std::nullopt);
 
-  /// To be called once a picture: LiveMilling::update, with the ticks' history, the counts and the autosave.
+  /// Calls LiveMilling::update, and updates the ticks' history, the counts and the autosave. Call once for
+  /// each picture.
   void update();
   /// Returns what a recording that is begun now says about it.
   RunDescription describe() const;

@@ -54,8 +54,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Whether this user has never seen the help on this machine. Leaves a file that says that it was seen; if
-// none can be left the help is shown at every start.
+// Returns whether this user has never seen the help on this machine. Leaves a file that says that it was
+// seen; if none can be left the help is shown at every start.
 bool first_time_of_help() {
   const std::filesystem::path folder = state_folder();
   if (folder.empty()) return true;
@@ -111,9 +111,9 @@ class Opening {
 
   bool valid() const { return result_.valid(); }
   std::future_status wait_for(std::chrono::milliseconds time) const { return result_.wait_for(time); }
-  // To be called once for each scan. Throws what opening threw.
+  // Returns the opened scan, or throws the exception of opening it. Call once for each scan.
   OpenedScan get() { return result_.get(); }
-  // How much of opening is done, 0 to 1.
+  // Returns how much of opening is done, 0 to 1.
   double share_done() const { return work_ ? work_->share_done.load() : 0; }
 
  private:
@@ -403,7 +403,7 @@ class Simulator {
     take_scan();
   }
 
-  // Each waits until nothing else is being prepared.
+  // Begins the requested changes; each waits until nothing else is being prepared.
   void begin_what_is_asked() {
     LiveMilling& milling = simulation_->milling;
     const bool begun = view_.dialogues.attempt([&] {

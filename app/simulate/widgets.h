@@ -42,7 +42,7 @@ bool checkbox(const char* label, bool* value);
 bool radio(const char* label, bool chosen);
 bool slider(const char* label, float* value, float min, float max, const char* format,
             ImGuiSliderFlags flags = 0);
-/// True when Enter was pressed in it.
+/// Draws a text field. Returns true if Enter was pressed in it.
 bool text_field(const char* label, char* text, std::size_t size);
 bool header(const char* label, bool open);
 /// A dialogue's buttons in a row; Enter presses the first, Esc the last. Returns the number of the one that

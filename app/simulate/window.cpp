@@ -192,7 +192,7 @@ void Window::resize(const PixelSize& size) {
   glfwSetWindowSize(window_, size.width, size.height);
 }
 
-// Another screen, another size of the window, or another wish.
+// Follows a change of the screen, of the window's size, or of the wanted scale.
 void Window::follow_scale() {
   float content_scale = 1;
   glfwGetWindowContentScale(window_, &content_scale, nullptr);
