@@ -26,7 +26,8 @@ int open_to_look(const fs::path& path) {
   return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 }
 
-// False, with errno EEXIST, if the new name is taken. NFS only has the way by a link.
+// Renames a file if the new name is free; otherwise returns false, with errno EEXIST. NFS needs a link for
+// that.
 bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL) return false;

@@ -24,7 +24,7 @@ std::array<struct sigaction, kSignals.size()> actions_before;
 // are left.
 std::array<std::atomic<char*>, 64> places{};
 
-// From here on only what is safe in a signal's handler. Other threads may still put files into a folder.
+// Removes a folder with calls that are safe in a signal's handler. Other threads may still put files into it.
 void remove_all_of(int in, const char* name) {
   constexpr int kTries = 100;
   if (::unlinkat(in, name, 0) == 0) return;

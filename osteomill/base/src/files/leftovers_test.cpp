@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How a child that does this and then gets the signal ends.
+// Returns how a child that does this and then gets the signal ends.
 template <typename Do>
 int status_of_child_ended_by(int signal, const Do& before) {
   const ::pid_t child = ::fork();

@@ -24,7 +24,8 @@ class WorkProgress {
   WorkProgress(const WorkProgress&) = delete;
   WorkProgress& operator=(const WorkProgress&) = delete;
 
-  /// For the work to call: this share of it (0 to 1) is done. Does nothing if no listener is set.
+  /// Reports that this share (0 to 1) of the work is done. Called by the work; does nothing if no listener is
+  /// set.
   static void done(double share);
   static void done(std::size_t parts, std::size_t of_parts) {
     done(of_parts > 0 ? static_cast<double>(parts) / static_cast<double>(of_parts) : 1);
