@@ -46,7 +46,7 @@ const Shape kShapes[] = {
      },
      {{{2, 0.65}, {1, 0.65}, {1e-9, 0.65}}}}};
 
-// By kDeep_mm along its normal, with a coupling of 1 N/mm.
+// Presses the burr by kDeep_mm along the normal, with a coupling of 1 N/mm.
 HapticStep pressed(const Volume& bone, const Vec3& normal, double offset_mm) {
   constexpr double kTick_s = 1e-3;
   HapticSettings settings;

@@ -54,8 +54,8 @@ MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD
 double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change) noexcept;
 /// The share of a move from the tick's start that stays within both balls.
 double share_within(const MoveBound& bound, const ToolMove& move) noexcept;
-/// On the way from the tick's start to the target as far as that; the target itself, to the last bit, if
-/// it lies within both balls.
+/// Returns the pose on the way from the tick's start to the target, as far as the bound allows; the target
+/// itself, to the last bit, if it lies within both balls.
 Pose moved_within(const MoveBound& bound, const Pose& start, const Pose& target) noexcept;
 
 }  // namespace osteomill

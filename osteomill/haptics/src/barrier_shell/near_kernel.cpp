@@ -89,7 +89,7 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
   }
 }
 
-// How far beyond the cylinder's nearer end, negative within.
+// Returns the distance beyond the cylinder's nearer end, negative within.
 HWY_INLINE V beyond_end(V z, V length) {
   return hn::Max(hn::Neg(z), hn::Sub(z, length));
 }

@@ -45,7 +45,7 @@ BrickPoints::Bound bound_of(const PointRows& points, std::size_t count);
 /// the system for it.
 void choose_point_instructions();
 
-/// For tests: the sets of vector instructions that this was compiled for, as Highway numbers them.
+/// Returns the sets of vector instructions for which this was compiled, as Highway numbers them. For tests.
 std::int64_t brick_kernel_targets();
 
 }  // namespace osteomill

@@ -67,7 +67,7 @@ struct Scene {
 // Sums over crossings: area times place, area, area times normal.
 using Sums = std::array<double, 7>;
 
-// In double precision, a crossing after the other.
+// Adds the crossings in double precision, one after the other.
 void add_plain(const CrossingLattice& lattice, const CrossingRow& row, std::size_t node, Sums& sums) {
   const auto& [next, isovalue, step, per_step, face] = lattice;
   for (int axis = 0; axis < 3; ++axis) {

@@ -40,7 +40,7 @@ struct PointChunk {
   alignas(64) std::array<float, kSlots> z_mm;
   alignas(64) std::array<float, kSlots> area_mm2;
 
-  /// Without its normal, which is not kept.
+  /// Returns a point without its normal, which is not stored.
   ShellPoint point(std::size_t slot) const { return {x_mm[slot], y_mm[slot], z_mm[slot], area_mm2[slot]}; }
   void clear(std::size_t slot) {
     x_mm[slot] = y_mm[slot] = z_mm[slot] = kFarAway_mm;

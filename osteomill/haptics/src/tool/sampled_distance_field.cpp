@@ -14,7 +14,8 @@ constexpr double kMarginNodes = 2;
 constexpr double kMaxNodes = 16e6;
 constexpr double kSuitableNodes = 2e6;
 
-// How many cells the box with its margin has along each axis, as a double: it may be beyond int's range.
+// Returns how many cells the box with its margin has along each axis, as a double: it may be beyond int's
+// range.
 Vec3 cells_of(const ToolBox& tool_box, double spacing_mm) {
   const Vec3 size_mm = tool_box.max_mm - tool_box.min_mm;
   return (size_mm / spacing_mm).array().ceil() + 2 * kMarginNodes;

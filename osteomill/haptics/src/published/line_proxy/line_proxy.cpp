@@ -90,7 +90,7 @@ void LineProxy::follow_with_intersection(const Pose& X_WL) {
   }
 }
 
-// No collision at t-1, but at t.
+// Finds the first intersection point: no collision at t-1, but one at t.
 std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
   if (!memory_.X_WL) return std::nullopt;  // the first tick has no path to walk
   const auto hit = walk_to_collision(*scene_.volume, shaft_vertices(), *memory_.X_WL, X_WL, kWalk);

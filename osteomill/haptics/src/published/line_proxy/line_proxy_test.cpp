@@ -27,7 +27,7 @@ LineProxy prepared(const Settings& settings, const Volume& volume) {
   return algorithm;
 }
 
-// With one stiffness, for which the numbers here are.
+// Returns settings with the stiffness for which the numbers here are.
 Settings soft() {
   Settings settings;
   settings.stiffness_N_per_mm = 2;

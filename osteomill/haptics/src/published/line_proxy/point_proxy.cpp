@@ -40,7 +40,7 @@ std::optional<Vec3> raised_out(const Volume& volume, const Vec3& point_W) {
   return exit_along(volume, point_W, *normal, 0.25 * voxel_mm(volume), 2 * voxel_mm(volume));
 }
 
-// Along the tangent and back to the isosurface. If the surface falls away by more than 45 degrees the
+// Slides along the tangent and back to the isosurface. If the surface falls away by more than 45 degrees the
 // point is left in the air, for the next march; if it rises by more than that the slide ends at the wall.
 Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const Vec3& normal) {
   const Vec3 aside = proxy_W + tangent;

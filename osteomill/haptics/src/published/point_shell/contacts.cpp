@@ -9,8 +9,8 @@ namespace osteomill::point_shell {
 
 namespace {
 
-// Whether one of the six face directions of the two boxes separates them. The nine directions across pairs of
-// edges would part a few more boxes; all that costs is a look at their points.
+// Returns whether one of the six face directions of the two boxes separates them. The nine directions across
+// pairs of edges would part a few more boxes; all that costs is a look at their points.
 bool is_apart(const ToolBox& tool_box, const VoxelShell::NodeBox& node, const ToolFromGrid& X_TG) {
   const Vec3 tool_half = 0.5 * (tool_box.max_mm - tool_box.min_mm);
   const Vec3 between = X_TG * node.middle_G - 0.5 * (tool_box.max_mm + tool_box.min_mm);

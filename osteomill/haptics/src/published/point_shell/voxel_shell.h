@@ -17,7 +17,7 @@ namespace osteomill::point_shell {
 class BoneBits {
  public:
   BoneBits() = default;
-  /// No bone. Every dimension at least 1.
+  /// Makes a grid without bone. Every dimension must be at least 1.
   explicit BoneBits(const std::array<int, 3>& dims)
       : dims_{(dims[0] + 7) / 8 + 2, dims[1] + 2, dims[2] + 2}, bytes_(cell_count(dims_)) {}
 
