@@ -11,7 +11,7 @@ std::uint64_t place_of(const VoxelIndex& first) {
   return part(first.i) | part(first.j) << 20 | part(first.k) << 40;
 }
 
-// Whether any voxel was.
+// Lowers the emptied voxels of a brick. Returns whether any voxel changed.
 bool lower_emptied(DensityBlock& brick, const DensityBlock& first, float emptied, double isovalue,
                    float floor) {
   bool lowered = false;

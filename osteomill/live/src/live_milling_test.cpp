@@ -93,7 +93,7 @@ class LiveMillingTest : public ::testing::Test {
     return densities;
   }
 
-  // Whether the surface taken brick by brick becomes that of the bone.
+  // Returns whether the surface taken brick by brick becomes that of the bone.
   bool surface_is_the_bones() {
     for (int n = 0; n < 200; ++n) {
       for (const auto& [number, brick] : milling_.take_changed_bricks()) surface_[number] = mesh_of(brick);
