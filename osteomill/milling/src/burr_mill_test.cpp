@@ -44,7 +44,7 @@ double charge_mm3(const DensityGrid& grid, const BoneDensities& bone) {
   return sum * grid.geometry().voxel_volume_mm3() / (bone.reference - bone.surroundings);
 }
 
-// How far below z = 0 the surface lies on the axis along `down` through the origin.
+// Returns how far below z = 0 the surface lies on the axis along `down` through the origin.
 double hole_depth_mm(const Volume& volume, const Vec3& down) {
   const std::optional<Vec3> surface = first_crossing(volume, -down, 3.5 * down);
   return surface ? surface->dot(down) : 3.5;

@@ -125,7 +125,7 @@ void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) co
   }
 }
 
-// Whether the brick holds anything.
+// Returns whether the brick holds anything.
 bool BurrReach::look_at(int bi, int bj, int bk) {
   if (!(volume_->ranges().at(bi, bj, bk).max > floor_density_)) return false;
   Bits& bits = bits_[brick_index(bi, bj, bk)];

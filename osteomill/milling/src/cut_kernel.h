@@ -50,7 +50,7 @@ void lower_densities(CutLists& lists, float radius, const CutProfile& profile, f
 /// Chooses the instructions. The first call of a kernel does that too, but asks the system for it.
 void choose_cut_instructions();
 
-/// For tests: the sets of vector instructions that this was compiled for, as Highway numbers them.
+/// Returns the sets of vector instructions for which this was compiled, as Highway numbers them. For tests.
 std::int64_t cut_kernel_targets();
 
 }  // namespace osteomill

@@ -42,14 +42,15 @@ constexpr double kNoDistance_mm = 1e-7;
 // Largest share of the budget for the bone that the trailing half overlaps.
 constexpr double kMaxTrailing = 0.5;
 
-// All of nothing if there is nothing; a budget may be below zero by what floats rounded before.
+// Returns `of` as a part of `all`, between 0 and 1; 1 if there is nothing. A budget may be below zero by the
+// rounding of floats.
 double part(double of, double all) {
   const double spent = std::max(of, 0.0);
   return all > spent ? spent / all : 1.0;
 }
 
-// Between `low`, where the cost is below the budget, and `high`, where it is above: Newton's place, an end
-// that has not been tried, or the middle.
+// Returns the next place to try between `low`, where the cost is below the budget, and `high`, where it is
+// above: Newton's place, an end that has not been tried, or the middle.
 double next_ahead(double ahead, double over, double slope, double low, double high, bool low_tried,
                   bool high_tried) {
   const double newton = slope > 0 ? ahead - over / slope : (over > 0 ? low : high);
@@ -76,7 +77,7 @@ CutVoxels::CutVoxels(const GridGeometry& geometry, std::size_t voxels, std::size
   }
 }
 
-// How far the planes of voxels lie from the ball's centre, for those that can be near it.
+// Measures the distances of the planes of voxels from the ball's centre, for those that can be near it.
 void CutVoxels::measure(const CuttingBall& ball, double reach_mm) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<Eigen::Index>(axis);
