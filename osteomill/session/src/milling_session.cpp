@@ -177,8 +177,8 @@ void MillingSession::forget_contacts(const std::optional<Pose>& X_WT) noexcept {
   if (X_WT) algorithm_->step(*X_WT, kUsualTick_s);
 }
 
-// Whether no bone reaches into the tool. Algorithms do not tell: in their first ticks, and deep in bone, some
-// find nothing to push against.
+// Returns whether no bone reaches into the tool. Algorithms do not tell: in their first ticks, and deep in
+// bone, some find nothing to push against.
 bool MillingSession::is_free(const Pose& X_WD) const noexcept {
   const Vec3 end_W = X_WD.position_mm + setup_.tool.shaft_length_mm * shaft_direction(X_WD);
   return !first_crossing(*volume_, X_WD.position_mm, end_W) &&

@@ -81,8 +81,8 @@ bool says(const std::string& line, const std::string& word) {
   return line.find(word) != std::string::npos && line.find_first_of("0123456789") != std::string::npos;
 }
 
-// Whether a setup holds a tool that is pressed by a few newtons; if not, it has to be refused or doubted in
-// words that name `setting`. No algorithm of ours is let off by a doubt.
+// Expects that a setup holds a tool that is pressed by a few newtons; if not, it has to be refused or
+// doubted in words that name `setting`. No algorithm of ours is let off by a doubt.
 void expect_held_or_told(const MillingSetup& setup, const std::string& setting) {
   // Some hundred microseconds of work.
   constexpr std::uint64_t kMostPoints = 20000;

@@ -206,7 +206,7 @@ class GuardedSession : public ::testing::TestWithParam<std::string> {
     step_N_ = std::max(step_N_, (wrench.force_N - sent_.force_N).norm());
     sent_ = wrench;
   }
-  // From free space down to so far above the surface.
+  // Presses from free space down to this height above the surface.
   void press(double height_mm) {
     for (double here_mm = 3; here_mm > height_mm; here_mm -= 0.02) {
       put(here_mm);

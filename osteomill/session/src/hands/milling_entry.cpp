@@ -91,8 +91,8 @@ Lattice look_along(const Volume& volume, const MillingTool& tool, const Vec3& di
   return lattice;
 }
 
-// Whether bone stands so high around it that the place is seen, but down a hole: more than 4 mm higher, and
-// by a rise of more than 0.7 from here to there.
+// Returns whether the place is a pit, visible only down a hole: bone around it is more than 4 mm higher, with
+// a slope of more than 0.7 from here to there.
 bool is_pit(const Lattice& lattice, int a, int b, const Vec3& direction_W) {
   constexpr double kFar_mm = 80, kHigher_mm = 4, kRise = 0.7;
   const int reach = static_cast<int>(std::ceil(kFar_mm / lattice.step_mm));
@@ -124,15 +124,15 @@ struct Tilt {
 constexpr std::array kTilts{Tilt{0.9, 1.0}, Tilt{0.9, 2.1}, Tilt{0.9, 0.0}, Tilt{0.9, 3.1}, Tilt{0.9, 4.2},
                             Tilt{0.9, 5.2}, Tilt{0.4, 1.0}, Tilt{0.4, 2.1}, Tilt{0.4, 4.2}, Tilt{0.0, 0.0}};
 
-// Whether bone is cut off here by the border of the volume.
+// Returns whether the border of the volume cuts bone off here.
 bool is_on_cut_edge(const GridGeometry& geometry, const Vec3& point_W) {
   const Vec3 voxel = geometry.voxel_from_world(point_W);
   const Vec3 last(geometry.dims[0] - 1, geometry.dims[1] - 1, geometry.dims[2] - 1);
   return (voxel.array() < 0).any() || (voxel.array() > last.array()).any();
 }
 
-// Whether a tool can enter here and stay in bone: it is free above; bone fills most of where the burr goes
-// in the first millimetres; and it does not come near the border of the volume meanwhile.
+// Returns whether a tool can enter here and stay in bone: it is free above; bone fills most of where the burr
+// goes in the first millimetres; and it does not come near the border of the volume meanwhile.
 bool can_stay(const Volume& volume, const MillingTool& tool, const MillingEntry& entry) {
   constexpr double kMostOfIt = 0.6;
   constexpr int kLayers = 6, kLines = 12;
@@ -225,7 +225,8 @@ Top top_of_bone(const Volume& volume, const Vec3& direction_W) {
   return top;
 }
 
-// How high the rim of the hole to come stands on one side, above the entry; a side without bone is far below.
+// Returns how high the rim of the hole to come stands on one side, above the entry; a side without bone is
+// far below.
 double rim_height_mm(const Volume& volume, const MillingTool& tool, const MillingEntry& entry,
                      const Vec3& side_W) {
   constexpr double kAbove_mm = 10.0;

@@ -54,7 +54,8 @@ constexpr double kLongestMilling = 3;
 // Times are sums of ticks; this keeps a stage from beginning a tick late by a rounding.
 constexpr double kRounding_s = 1e-6;
 
-// How far a spring is stretched when it gives `share` of its limit; a spring of no stiffness gives nothing.
+// Returns how far a spring is stretched when it gives `share` of its limit; a spring of no stiffness gives
+// nothing.
 double stretch_for(double share, double limit, double stiffness) {
   return stiffness > 0 ? share * limit / stiffness : 0.0;
 }

@@ -30,7 +30,7 @@ TEST(Tremor, HasTheRootMeanSquareAskedForAlongEachAxis) {
   }
 }
 
-// Its power by a plain Fourier sum over 20 s, independent of how the signal is made.
+// Returns the signal's power by a plain Fourier sum over 20 s, independent of how the signal is made.
 double power_between(const std::vector<double>& signal, double rate_hz, double lowest_hz, double highest_hz) {
   const double length_s = static_cast<double>(signal.size()) / rate_hz;
   double power = 0;

@@ -81,7 +81,7 @@ class WrenchGuard {
 
   /// Returns the energy given to the hand less what it gave, in N mm, up to the last pose.
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
-  /// From now on lets what is asked for come up slowly, from what was last sent.
+  /// Lets the wrench rise slowly from now on, from the one that was last sent.
   void begin_anew() noexcept;
   /// Begins as begin_anew does, in the place of another guard whose hand feels `sent` or was held back;
   /// energy is counted from now on.

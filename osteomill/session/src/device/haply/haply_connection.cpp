@@ -42,7 +42,7 @@ constexpr const char* kOtherForces =
     "gives other forces than it is sent: look at its filters and force scale in the Haply Hub";
 constexpr const char* kGrips[] = {"wireless_verse_grip", "verse_grip"};
 
-// Nothing if a key is missing or something else is there than was expected: never an exception.
+// Returns a member; null if the key is missing or has another type than expected. Never throws.
 const Json* member(const Json* of, const char* key) {
   if (of == nullptr || !of->is_object()) return nullptr;
   const auto found = of->find(key);
@@ -84,7 +84,8 @@ bool is_inverse3(const Json& device) {
   return id != nullptr && id->is_string() && (type == nullptr || *type == "inverse3" || *type == "inverse3x");
 }
 
-// By what it says of itself; if it says nothing it is not known to be calibrated.
+// Returns why the device may not be driven, from its own status; without a status it is not known to be
+// calibrated.
 const char* why_not_driven(const Json* status) {
   if (is_false(member(status, "power_supply"))) return "has no power: plug its power supply in";
   if (is_false(member(status, "ready")) || is_false(member(status, "started")))

@@ -21,7 +21,8 @@ class WebSocket {
   bool is_open() const;
   /// The newest whole text that has come, or that comes within `wait`.
   std::optional<std::string> receive(std::chrono::microseconds wait);
-  /// Without waiting, and in place of one that could not be sent yet. False if this could not either.
+  /// Sends a text without waiting, in place of one that could not be sent yet. Returns false if this could
+  /// not either.
   bool send(std::string text);
 
  private:

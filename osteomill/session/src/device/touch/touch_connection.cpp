@@ -219,7 +219,7 @@ class TouchConnection final : public Connection {
     return kContinue;
   }
 
-  // In a frame. The motors get power once it is calibrated.
+  // Returns why the device may not be driven; call in a frame. The motors get power once it is calibrated.
   const char* why_not_driven() {
     const unsigned calibration = hd_.check_calibration();
     if (calibration == kCalibratesItself && calibration_style_ != 0) {

@@ -39,7 +39,7 @@ struct Question {
   Head head;
 };
 
-// Whether it went out.
+// Returns whether it went out.
 template <typename Datagram>
 bool send(Socket& socket, Datagram datagram, std::uint32_t sequence) {
   datagram.head.kind = Datagram::kKind;
