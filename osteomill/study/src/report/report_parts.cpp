@@ -249,7 +249,7 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
   return settings;
 }
 
-// With a small raised digit: units in recordings are ASCII ("mm^3").
+// Returns a unit with a small raised digit: units in recordings are ASCII ("mm^3").
 std::string raised(std::string unit) {
   for (const auto& [power, digit] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
     if (const auto at = unit.find(power); at != std::string::npos) unit.replace(at, 2, digit);

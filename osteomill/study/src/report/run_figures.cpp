@@ -133,7 +133,7 @@ std::string curve_panel(const std::vector<const MeasuredRun*>& runs, const Shown
 // Curves are thinned out to the least and greatest of each pixel's worth.
 constexpr std::size_t kCurveBins = 1000;
 
-// All algorithms in one panel, the columns side by side, a row for each phase.
+// Draws all algorithms in one panel, the columns side by side, a row for each phase.
 Figure draw_together(const RunGroup& group, const std::string& name, const std::vector<Shown>& columns,
                      const std::filesystem::path& folder) {
   const std::vector<std::string> phases = group.phases();
@@ -229,7 +229,7 @@ Across across(const Vec3& mean) {
   return {right, up, "xyz"[least], "xyz"[other]};
 }
 
-// In degrees from the cloud's mean, for gnuplot, and how far it reaches.
+// Returns the cloud's data in degrees from its mean, for gnuplot, and how far it reaches.
 std::pair<std::string, double> cloud_data(const Cloud& cloud, const Across& axes) {
   std::string data;
   double reach_deg = 0.001;

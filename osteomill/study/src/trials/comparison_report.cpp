@@ -107,7 +107,7 @@ bool belong_together(const std::vector<Recording>& recordings) {
   return differences_table(all).rows.empty();
 }
 
-// Every algorithm has every phase that another has.
+// Returns whether every algorithm has every phase that another has.
 bool have_the_same_phases(const RunGroup& group) {
   return group.runs.size() == group.phases().size() * group.algorithms().size();
 }

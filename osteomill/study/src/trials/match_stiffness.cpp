@@ -29,7 +29,7 @@ struct Pressed {
   std::optional<double> felt_N_per_mm = std::nullopt;
 };
 
-// Why what was sought is not between these two.
+// Returns why the wanted stiffness is not between these two.
 std::string reason(const Pressed& low, const Pressed& high) {
   if (low.felt_N_per_mm == 0.0 && high.felt_N_per_mm) {
     return fmt::format("the softest that carries the press, {:.4g}, is felt as {:.4g}",

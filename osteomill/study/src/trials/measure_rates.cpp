@@ -60,7 +60,7 @@ Times times_of(MillingTrial& trial) {
   return touching.step_us.empty() ? all : touching;
 }
 
-// By absolute deadlines, as live milling keeps them, but without real-time scheduling.
+// Measures the rate with absolute deadlines, as live milling keeps them, but without real-time scheduling.
 double paced_rate_hz(MillingTrial& trial, int ticks_before, double tick_s) {
   constexpr double kFor_s = 2;
   for (int n = 0; n < ticks_before; ++n) trial.tick();

@@ -45,7 +45,8 @@ bool next_line(std::istream& in, std::string& line) {
   }
 }
 
-// Nothing if it is not of an algorithm and phase of these rows, whose number of columns it has.
+// Returns the run of a row; nothing unless it has an algorithm and phase of these rows and their number of
+// columns.
 std::optional<MeasuredRun> read_row(std::string_view line, const std::vector<MeasuredRun>& rows) {
   const std::vector<std::string_view> cells = csv_fields(line);
   const auto& of_hand = fields_of<MeasuredRun>();

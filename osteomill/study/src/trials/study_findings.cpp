@@ -11,7 +11,7 @@ namespace osteomill {
 
 namespace {
 
-// By tossing a coin for each of n.
+// Returns the chance of at least k heads in n tosses of a coin.
 double chance_of_at_least(std::size_t k, std::size_t n) {
   return std::max(0.0, 1 - chance_of_fewer_heads(k, n));
 }
@@ -26,7 +26,7 @@ Verdict verdict_of(const StudyFinding& finding, const Study& study) {
   return shows(finding.tested - finding.agreeing) ? Verdict::does_not_agree : Verdict::not_settled;
 }
 
-// Not a number if no more than half of the seeds could be measured.
+// Returns the medians over the seeds; NaN if no more than half of them could be measured.
 RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
   RunMetrics medians;
   for (const Field<RunMetrics>& figure : fields_of<RunMetrics>()) {
@@ -51,7 +51,7 @@ std::vector<double> grip_forces(const Study& study, double grip, std::optional<s
   return forces;
 }
 
-// For each grip the median of those that could be measured; none if a grip was not tried.
+// Returns for each grip the median over the measured hands; none if a grip was not tried.
 GripForces medians_of_grips(const Study& study, std::optional<std::uint64_t> seed) {
   GripForces medians;
   for (const double grip : kGrips) {

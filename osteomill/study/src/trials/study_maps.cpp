@@ -64,7 +64,7 @@ class Shown {
     }
   }
 
-  // Not a number if it is not set or could not be measured.
+  // Returns the quantity's value; NaN if it is not set or could not be measured.
   double of(const StudySettings& settings, const TrialRow& row) {
     const double value = one(parts_.front(), settings, row);
     return parts_.size() == 1 ? value : value / one(parts_.back(), settings, row);

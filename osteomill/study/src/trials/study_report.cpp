@@ -64,7 +64,7 @@ std::vector<MeasuredRun> of_whole_hands(std::vector<MeasuredRun> rows) {
   return rows;
 }
 
-// One for each group of hands.
+// Returns a section for each group of hands.
 std::vector<Section> findings_sections(const StudyDesign& design, const std::vector<TrialRow>& all,
                                        const fs::path& figures) {
   std::map<std::string, std::vector<MeasuredRun>> groups;

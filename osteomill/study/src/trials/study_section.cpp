@@ -151,7 +151,7 @@ bool are_compared(const Study& study) {
   return study.algorithms().size() > 1 && study.seeds().size() >= study.seeds_needed();
 }
 
-// Without rows yet: a column for each algorithm and, of several hands, one for the differences.
+// Returns a table without rows: a column for each algorithm and, with several hands, one for the differences.
 Table comparison_table(const Study& study) {
   Table table{{study.seeds().size() > 1 ? "Median over the hands [interval]" : "In this hand"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.push_back(algorithm.label);
@@ -167,7 +167,7 @@ void add_figure(Table& table, const Study& study, std::string_view phase, const 
   if (are_compared(study)) row.push_back(differences(study, phase, metric));
 }
 
-// No row if `words` has nothing of any algorithm.
+// Adds a row of `words` for each algorithm; none if all are empty.
 template <typename Words>
 void add_words(Table& table, const Study& study, const char* label, const Words& words) {
   std::vector<Cell> row{label};
@@ -260,7 +260,7 @@ Table findings_table(const Study& study) {
   return table;
 }
 
-// How many have which verdict, and which those are that do not agree.
+// Returns a table of the number of findings with each verdict, and of those that do not agree.
 Table verdicts_table(const Study& study) {
   const bool one = study.seeds().size() == 1;
   struct Findings {

@@ -240,7 +240,7 @@ SliceContent content_of(const Hdf5File& file, const StudyFolder& study, std::siz
           read.get<double>("cpu_s")};
 }
 
-// Nothing if these are other trials than the slice's.
+// Returns the slice of a file's content; nothing if its trials are not the slice's.
 std::optional<Slice> slice_of(const SliceContent& content, const StudyFolder& study, std::size_t number) {
   const std::vector<Field<TrialRow>>& columns = columns_of(study.test);
   const auto parts = parts_of(study.test);

@@ -40,7 +40,7 @@ class Wall {
   }
   double burr_radius_mm() const { return burr_radius_mm_; }
   double depth_of(const Pose& X_WD) const { return burr_radius_mm_ - X_WD.position_mm.z(); }
-  // Along the wall's normal, as sent; not finite if the algorithm's is not.
+  // Returns the sent force along the wall's normal; not finite if the algorithm's is not.
   double force_N(const Pose& X_WD) { return algorithm_->step(X_WD, press_->tick_s).wrench.force_N.z(); }
 
  private:
@@ -114,7 +114,7 @@ class Swings {
   std::vector<double> sizes_mm_;
 };
 
-// Whether the swings say already what becomes of the motion. The first is half of one.
+// Returns whether the motion dies out, once the swings show it. The first swing is half of one.
 std::optional<bool> dies_out(const Swings& swings) {
   const auto& sizes = swings.sizes_mm();
   if (sizes.size() < 3) return std::nullopt;

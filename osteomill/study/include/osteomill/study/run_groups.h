@@ -17,7 +17,7 @@ MeasuredRun measured_run(const Recording& recording);
 struct RunGroup {
   std::vector<MeasuredRun> runs;
 
-  /// Null if there is no such run.
+  /// Returns the run of an algorithm in a phase; null if there is none.
   const MeasuredRun* find(std::string_view algorithm, std::string_view phase) const;
 
   std::vector<const MeasuredRun*> runs_of(std::string_view phase) const;
