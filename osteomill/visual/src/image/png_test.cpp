@@ -18,7 +18,7 @@ Image colourful_image() {
   return image;
 }
 
-// By libpng alone, so that what we wrote is held against something else.
+// Decodes by libpng alone, so that our output is compared with something independent.
 Image decoded(const std::vector<unsigned char>& bytes) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;

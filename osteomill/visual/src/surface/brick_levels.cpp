@@ -68,7 +68,8 @@ class Coarsening {
     return vertex;
   }
 
-  // Half a voxel off, since two of a vertex's three coordinates are whole numbers.
+  // Returns the cell of a coordinate, half a voxel off, because two of a vertex's three coordinates are whole
+  // numbers.
   static double cell_of(double voxel, int size) { return std::floor((voxel + 0.5) / size); }
 
   bool same_cell(Index a, Index b, int size) const {
@@ -111,8 +112,8 @@ class Coarsening {
     return result;
   }
 
-  // One vertex for each cluster, where its planes meet, with the mean of its normals and densities; a cluster
-  // of one vertex keeps the mesh's own.
+  // Adds one vertex for each cluster, at the point where its planes meet, with the mean of its normals and
+  // densities; a cluster of one vertex keeps the mesh's own.
   void add_means(std::vector<MeshVertex>& vertices, double reach_mm) {
     struct Sum {
       Vec3 positions_mm = Vec3::Zero();

@@ -169,7 +169,8 @@ void BrickMesher::add_vertex(int i, int j, int k) {
                             density_below(in_block, slope, bone)});
 }
 
-// At a point of the block, half a voxel and a voxel along the slope; `flat` if there is none.
+// Returns the density below a point of the block, half a voxel and a voxel along the slope; `flat` if there
+// is none.
 float BrickMesher::density_below(const Vec3f& point, const Vec3f& slope, float flat) const {
   const float steepness = std::sqrt(squared(slope));
   if (!(steepness > 0 && std::isfinite(steepness))) return flat;

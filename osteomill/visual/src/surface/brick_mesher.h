@@ -22,7 +22,7 @@ class BrickMesher {
 
   /// The grid edge on which each vertex lies: one number for every edge of the grid, the same in all bricks.
   std::uint64_t edge_of(std::size_t vertex) const;
-  /// Whether other bricks may have this vertex too.
+  /// Returns whether other bricks may have this vertex too.
   bool on_brick_border(std::size_t vertex) const;
 
  private:

@@ -17,7 +17,7 @@ struct SharedVertex {
   std::uint32_t vertex;
 };
 
-// For each vertex, the first one on the same edge.
+// Returns for each vertex the first one on the same edge.
 std::vector<std::uint32_t> first_of_same_edge(std::size_t count, std::vector<SharedVertex> shared) {
   std::vector<std::uint32_t> first(count);
   for (std::size_t n = 0; n < count; ++n) first[n] = static_cast<std::uint32_t>(n);

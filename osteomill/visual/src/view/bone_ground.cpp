@@ -59,7 +59,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Whether the bone looks the same in both.
+// Returns whether the bone looks the same in both.
 bool same_view(const ViewScene& a, const ViewScene& b) {
   return a.camera == b.camera && a.bounds == b.bounds && a.isovalue == b.isovalue &&
          a.reference_density == b.reference_density && a.light_from_below == b.light_from_below &&
@@ -207,8 +207,8 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   to_shade_.clear();
 }
 
-// In the finest detail that there is time for. It gets finer than before only if that leaves some time, so
-// that it does not alternate.
+// Returns the bricks in the finest detail for which there is time. It gets finer than before only if that
+// leaves some time, so that it does not alternate.
 std::vector<SeenBrick> BoneGround::seen_in_time(const ViewScene& scene, const Projection& projection) {
   Detail detail = kFullDetail;
   if (scene.X_WT) detail.sharp = Sphere{scene.X_WT->position_mm, 2 * scene.tool.burr_radius_mm};

@@ -47,7 +47,7 @@ class ClipFaces {
  public:
   ClipFaces();
   void set(std::size_t cut, const ClipFace& face);
-  /// Each face as far as the other cuts leave it.
+  /// Draws each face as far as the other cuts leave it.
   void draw(const ViewScene& scene, const Projection& projection) const;
 
  private:
@@ -74,10 +74,10 @@ class BoneGround {
   void set_clip_face(std::size_t cut, const ClipFace& face);
   std::size_t triangle_count() const { return bone_.triangle_count(); }
 
-  /// One picture's work; `size` is that of the picture when the view rests.
+  /// Does one picture's work; `size` is that of the picture when the view rests.
   void draw(const ViewScene& scene, const PixelSize& size);
   const FrameTarget& picture() const { return *shown_; }
-  /// Nothing is left to be drawn while neither view nor bone changes.
+  /// Returns true if nothing is left to draw while neither view nor bone changes.
   bool settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
 
  private:

@@ -293,7 +293,7 @@ void BoneLayer::set_label_colours(Brick& brick, const std::vector<MeshVertex>& v
   glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(LabelColour), nullptr);
 }
 
-// Whether all of its triangles show their backs.
+// Returns whether all of its triangles show their backs.
 bool BoneLayer::Brick::turned_away(const Vec3& eye_W) const {
   const Vec3 sight = bounds.centre_W - eye_W;
   const double way_mm = sight.norm();

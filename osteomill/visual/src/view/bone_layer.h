@@ -97,9 +97,9 @@ class BoneLayer {
 
   void set_brick(std::size_t brick, const BrickLevels& levels);
 
-  /// All bricks, empty ones too, that lie at least in part where the camera looks, the nearest first.
+  /// Returns all bricks, empty ones too, that lie at least in part where the camera looks, the nearest first.
   std::vector<std::size_t> in_view(const ViewScene& scene, const Projection& projection) const;
-  /// Those of them that have triangles which the camera may see.
+  /// Returns those of them whose triangles the camera may see.
   std::vector<SeenBrick> seen(const ViewScene& scene, const Projection& projection,
                               const Detail& detail) const;
   /// Sets the levels of these bricks for another detail.
@@ -108,7 +108,7 @@ class BoneLayer {
   /// Draws back faces too if the scene is cut open.
   void draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
             std::span<const SeenBrick> bricks) const;
-  /// In full detail.
+  /// Returns the number of triangles in full detail.
   std::size_t triangle_count() const;
   const Sphere& bounds(std::size_t brick) const { return bricks_[brick].bounds; }
 

@@ -62,7 +62,7 @@ class ScreenProgram {
  public:
   explicit ScreenProgram(std::string_view fragment_source);
   GLuint get() const { return program_.get(); }
-  /// With the texture that is bound and the uniforms as they are.
+  /// Draws with the bound texture and the present uniforms.
   void draw() const;
 
  private:
@@ -97,7 +97,7 @@ class FrameTarget {
   GLuint colours() const { return colours_.get(); }
   GLuint depths() const { return depths_.get(); }
   Image read() const;
-  /// 0 to 1, row by row from the bottom.
+  /// Returns the depths, 0 to 1, row by row from the bottom.
   std::vector<float> read_depths() const;
 
  private:

@@ -124,7 +124,7 @@ class SolidShapes {
     draw(sphere_, centre_W, Mat3::Identity(), Vec3::Constant(radius_mm), colour, kGloss);
   }
 
-  // From `from_W` to `to_W`, closed by flat ends.
+  // Adds a cylinder from `from_W` to `to_W`, closed by flat ends.
   void cylinder(const Vec3& from_W, const Vec3& to_W, double radius_mm, const Colour& colour,
                 float gloss = kGloss) const {
     const Vec3 along = to_W - from_W;
@@ -132,7 +132,7 @@ class SolidShapes {
     draw(cylinder_, from_W, axes_along(along), {radius_mm, radius_mm, along.norm()}, colour, gloss);
   }
 
-  // With a head; none if shorter than its head would be thick.
+  // Adds an arrow with a head; none if it is shorter than its head would be thick.
   void arrow(const Vec3& from_W, const Vec3& along_mm, double radius_mm, const Colour& colour,
              int heads = 1) const {
     const double length_mm = along_mm.norm();

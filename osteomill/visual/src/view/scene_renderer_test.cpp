@@ -267,7 +267,7 @@ TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
   EXPECT_LT(covered(picture()), 0.1 * all);
 }
 
-// How much more of the first channel than of the third a picture has, by its pixels' sum.
+// Returns how much more of the first channel than of the third a picture has, by its pixels' sum.
 double redness(const Image& image) {
   double sum = 0;
   for (std::size_t n = 0; n < image.rgb.size(); n += 3) sum += int(image.rgb[n]) - int(image.rgb[n + 2]);

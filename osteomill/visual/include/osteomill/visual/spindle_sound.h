@@ -51,7 +51,7 @@ class SoundStream {
   SoundStream(const SoundStream&) = delete;
   SoundStream& operator=(const SoundStream&) = delete;
 
-  /// To be called at least every 15 ms or so: fills what has been played with what the spindle does now.
+  /// Fills the played buffers with the spindle's present sound. Call at least every 15 ms or so.
   void feed(const SpindleState& state);
 
  private:
@@ -75,7 +75,7 @@ class SoundPlayer {
   SoundPlayer(const SoundPlayer&) = delete;
   SoundPlayer& operator=(const SoundPlayer&) = delete;
 
-  /// From one thread; never waits.
+  /// Sets the spindle's state. Call from one thread; never waits.
   void set(const SpindleState& state);
 
  private:
