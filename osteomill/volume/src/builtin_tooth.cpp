@@ -35,12 +35,12 @@ double square(double x) {
 double ramp(double x) {
   return std::clamp(x, 0.0, 1.0);
 }
-// 0 to 1 with level ends.
+// Returns a ramp from 0 to 1 with level ends.
 double smooth_ramp(double x) {
   const double t = ramp(x);
   return t * t * (3 - 2 * t);
 }
-// 1 at 0, falling to 0 at -1 and 1.
+// Returns 1 at 0, falling to 0 at -1 and 1.
 double bump(double x) {
   return square(std::max(0.0, 1 - x * x));
 }
@@ -53,7 +53,7 @@ double smooth_max(double a, double b, double blend) {
   return -smooth_min(-a, -b, blend);
 }
 
-// 1 on an ellipse with somewhat square shoulders, as molars have.
+// Returns 1 on an ellipse with somewhat square shoulders, as molars have.
 double shoulder_norm(double u, double v) {
   const double u2 = u * u, v2 = v * v;
   return std::sqrt(0.55 * (u2 + v2) + 0.45 * std::sqrt(u2 * u2 + v2 * v2));
@@ -178,7 +178,8 @@ double pulp(double x, double y, double z) {
   return shape;
 }
 
-// 0 at the neck, which rises a little towards the neighbouring teeth; thickest on the cusps.
+// Returns the enamel's thickness: 0 at the neck, which rises a little towards the neighbouring teeth; largest
+// on the cusps.
 double enamel_thickness_mm(double x, double y, double z) {
   const double neck_z = kNeck_z + 0.7 * square(x / 4.5) - 0.3 * square(y / 4.3);
   const double up = (z - neck_z) / 3.2;

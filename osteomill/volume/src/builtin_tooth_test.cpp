@@ -21,7 +21,7 @@ bool is_bone(const DensityGrid& grid, const VoxelIndex& v) {
   return static_cast<double>(grid[v]) > kBuiltinToothIsovalue;
 }
 
-// How many pieces, joined by voxel faces, the wanted voxels of a box make.
+// Returns how many pieces, joined by voxel faces, the wanted voxels of a box make.
 int count_pieces(const DensityGrid& grid, const VoxelBox& box,
                  const std::function<bool(const VoxelIndex&)>& wanted) {
   std::vector<bool> seen(grid.geometry().voxel_count(), false);

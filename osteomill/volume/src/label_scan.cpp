@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kGreatestLabel = std::numeric_limits<std::int16_t>::max();
 
-// By label its rank among those that occur; nothing if the values are no few whole numbers, or 0 is not
+// Returns by label its rank among those that occur; nothing unless the values are few whole numbers and 0 is
 // the commonest.
 std::vector<int> ranks_of(const DensityGrid& grid) {
   std::vector<std::size_t> counts(kGreatestLabel + 1);
