@@ -17,7 +17,7 @@ namespace {
 constexpr double kRealToothIsovalue = 755;
 const std::filesystem::path kRealTooth = std::filesystem::path(OSTEOMILL_SHARED_DATA) / "tooth_dicom/series";
 
-// Every voxel in two along each axis, over the same extent.
+// Returns the grid with every voxel split in two along each axis, over the same extent.
 DensityGrid refined(const DensityGrid& coarse) {
   GridGeometry geometry = coarse.geometry();
   geometry.origin_mm = geometry.world_from_voxel(Vec3::Constant(-0.25).eval());

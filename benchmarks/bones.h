@@ -19,7 +19,7 @@ enum class Bone {
 };
 
 std::string name_of(Bone bone);
-/// False for a scan that is not on this machine.
+/// Returns false for a scan that is not on this machine.
 bool is_here(Bone bone);
 const Volume& bone_volume(Bone bone);
 

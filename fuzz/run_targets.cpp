@@ -54,7 +54,7 @@ std::vector<std::string> config_seeds(const fs::path&) {
       "seconds = 2.5 # s\nout = '''a\nb'''\nset = ['point-shell.scale=2']\n"};
 }
 
-// Not finished, since the checksum would refuse whatever is changed in one that is.
+// Returns an unfinished recording, because the checksum of a finished one would refuse every change.
 std::string unfinished_recording(const fs::path& file) {
   RunDescription description;
   description.scan_name = "made up";

@@ -17,8 +17,8 @@ inline double own_memory_MiB() {
   return 0;
 }
 
-/// How much of the mapping that holds this address the process has pages of its own for, in MiB: of a private
-/// mapping of a file what was written since; -1 if the system does not say.
+/// Returns the size of the process's own pages in the mapping of this address, MiB: for a private mapping of
+/// a file, the pages written since; -1 if the system does not report it.
 inline double copied_MiB(const void* address) {
   std::ifstream in("/proc/self/smaps");
   const auto place = reinterpret_cast<std::uintptr_t>(address);

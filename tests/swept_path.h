@@ -121,8 +121,8 @@ inline bool is_deep_in_bone(const Volume& volume, const Vec3& point_W) {
   return true;
 }
 
-/// Whether the nearest swept surfaces on two sides of the point, a voxel apart, face different ways: the
-/// distance then grows slower than the way.
+/// Returns whether the nearest swept surfaces on two sides of the point, a voxel apart, face different ways:
+/// the distance then grows slower than the way.
 inline bool is_at_edge(const SweptPath& path, const GridGeometry& geometry, const Vec3& point_W) {
   constexpr double kLeastSlope = 0.97, kMostApart_mm = 0.25;
   Vec3 slope;

@@ -5,8 +5,8 @@
 
 namespace osteomill::testing_support {
 
-/// Whether the condition comes true, looked at every few milliseconds; false when it has not after a time
-/// that is long also on a busy machine.
+/// Returns whether the condition comes true, looked at every few milliseconds; false when it has not after a
+/// time that is long also on a busy machine.
 template <typename Condition>
 bool comes_true(const Condition& condition) {
   using namespace std::chrono_literals;

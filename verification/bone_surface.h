@@ -16,10 +16,10 @@ class BoneSurface {
 
   const std::vector<Vec3>& points() const { return points_; }
 
-  /// How deep the deepest point of the surface lies in the tool; negative if none touches it.
+  /// Returns how deep the deepest point of the surface lies in the tool; negative if none touches it.
   double deepest_mm(const MillingTool& tool, const Pose& X_WT) const;
 
-  /// How deep the deepest point of the tool's centreline lies in bone; 0 if none does.
+  /// Returns how deep the deepest point of the tool's centreline lies in bone; 0 if none does.
   double centreline_deep_mm(const MillingTool& tool, const Pose& X_WT) const;
 
  private:

@@ -125,7 +125,8 @@ double median_of(const Study& study, std::size_t algorithm, std::string_view pha
       .median;
 }
 
-// How many findings hold, the numbers of those that do not, and what the choices move.
+// Adds a row: how many findings hold, the numbers of those that do not, and the figures that the choices
+// change.
 void add_choice(Section& section, const std::string& name, std::vector<MeasuredRun> rows) {
   const Study study(std::move(rows));
   std::vector<std::size_t> missing;

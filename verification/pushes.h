@@ -42,7 +42,7 @@ inline constexpr int kTicksBetweenLooks = 4;
 std::vector<PushOutcome> push_outcomes(std::string_view algorithm, const Volume& bone,
                                        const BoneSurface& surface, const PushKind& kind, int count);
 
-/// How many came deeper than `limit_mm` at some time or at the end.
+/// Returns how many came deeper than `limit_mm` at some time or at the end.
 std::size_t count_deeper(const std::vector<PushOutcome>& all, Depth PushOutcome::*what, double Depth::*when,
                          double limit_mm);
 

@@ -39,7 +39,7 @@ double lowest_mm(const Pose& X_WT, const MillingTool& tool) {
   return std::min(X_WT.position_mm.z(), (X_WT * Vec3(0, 0, tool.shaft_length_mm)).z());
 }
 
-// Whether the simulated tool's centreline ends beyond the sheet that the device was pushed through.
+// Returns whether the simulated tool's centreline ends beyond the sheet that the device was pushed through.
 bool goes_through(HapticAlgorithm& algorithm, const MillingTool& tool, const Way& way, double thick_mm,
                   SeededRandom& random) {
   algorithm.reset();

@@ -20,7 +20,7 @@ class FolderTest : public ::testing::Test {
     return folder_ / name;
   }
 
-  /// Why the path is refused; empty if it is read.
+  /// Returns why the path is refused; empty if it is read.
   static std::string refusal(const std::filesystem::path& path) {
     try {
       read_scan(path);

@@ -78,7 +78,7 @@ class IgtlStandIn {
     }
   }
 
-  // False if the other side is gone.
+  // Reads messages. Returns false if the other side is gone.
   bool listen(igtl::Socket& client) {
     const auto header = igtl::MessageHeader::New();
     header->InitPack();

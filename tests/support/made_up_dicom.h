@@ -104,7 +104,7 @@ inline std::unique_ptr<DcmFileFormat> made_up_slice(const Slice& slice) {
   return file;
 }
 
-/// False if it cannot be encoded so, or not written.
+/// Saves a file. Returns false if it cannot be encoded in this way, or not written.
 inline bool save(DcmFileFormat& file, const std::filesystem::path& path, E_TransferSyntax syntax) {
   register_encoders();
   return file.getDataset()->chooseRepresentation(syntax, nullptr).good() &&

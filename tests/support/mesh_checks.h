@@ -82,7 +82,8 @@ inline std::vector<std::uint64_t> directed_edges(const BrickMesh& mesh) {
   return edges;
 }
 
-/// Whether every edge is used exactly once in each direction, as in a closed, consistently wound mesh.
+/// Returns whether every edge is used exactly once in each direction, as in a closed, consistently wound
+/// mesh.
 inline bool is_closed(const BrickMesh& mesh) {
   const std::vector<std::uint64_t> edges = directed_edges(mesh);
   if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;

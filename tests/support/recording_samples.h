@@ -74,7 +74,7 @@ inline TickRecord sample_record(int tick) {
   return record;
 }
 
-/// Whether all columns agree bit for bit.
+/// Returns whether all columns agree bit for bit.
 inline bool same_bits(const TickRecord& a, const TickRecord& b) {
   for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
     const double left = column.get(a);

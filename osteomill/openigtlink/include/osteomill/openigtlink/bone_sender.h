@@ -31,7 +31,7 @@ class BoneSender {
 
   /// Sets the state of the tool that is sent from now on. Any thread.
   void show_tool(const TickRecord& now);
-  /// Whether the receiver is still there; nothing is sent any more if it is not. Any thread.
+  /// Returns whether the receiver is still there; nothing is sent any more if it is not. Any thread.
   bool is_connected() const { return is_connected_.load(std::memory_order_relaxed); }
 
  private:
