@@ -28,25 +28,25 @@ read_as() {
 
 told 1 "rle_segments_0/IM007.dcm: " "$osteomill" info "$found/rle_segments_0"
 told 1 "rle_segments_7fffffff/IM005.dcm: " "$osteomill" info "$found/rle_segments_7fffffff"
-told 1 "jpeg_abort/.*dcm: cannot be decoded" "$osteomill" info "$found/jpeg_abort"
+told 1 "jpeg_abort/.*dcm: .*decoded" "$osteomill" info "$found/jpeg_abort"
 # Both hold the same slices, in another compression each.
 for codec in j2k jpegls; do
   read_as "$found/${codec}_two_fragments" "512 x 512 x 2" "^values +-2048 to 1433, mean -754.293$"
 done
-told 1 "icon: only one slice" "$osteomill" info "$found/icon"
+told 1 "icon: .*one slice" "$osteomill" info "$found/icon"
 read_as "$found/nrrd_LAS.nrrd" "^origin +10, -20, 30 mm" "^i runs along 1, 0, 0" "^j runs along 0, -1, 0"
 told 1 "nrrd_long_field.nrrd: " "$osteomill" info "$found/nrrd_long_field.nrrd"
 told 1 "nrrd_ascii_long_token.nrrd: " "$osteomill" info "$found/nrrd_ascii_long_token.nrrd"
-told 1 "spacing_1e-6.mha: has voxels 1e-06 mm apart" "$osteomill" info "$found/spacing_1e-6.mha"
-told 1 "spacing_1e-6.mha: has voxels" "$osteomill" compare "$found/spacing_1e-6.mha" --iso 668 --out out
-told 1 "spacing_1e308.mha: has voxels 1e\\+308 mm apart" "$osteomill" info "$found/spacing_1e308.mha"
-told 1 "direction_1e200.mha: has a TransformMatrix whose columns" "$osteomill" info "$found/direction_1e200.mha"
+told 1 "spacing_1e-6.mha: .*voxels 1e-06 mm" "$osteomill" info "$found/spacing_1e-6.mha"
+told 1 "spacing_1e-6.mha: .*voxels" "$osteomill" compare "$found/spacing_1e-6.mha" --iso 668 --out out
+told 1 "spacing_1e308.mha: .*voxels 1e\\+308 mm" "$osteomill" info "$found/spacing_1e308.mha"
+told 1 "direction_1e200.mha: .*TransformMatrix" "$osteomill" info "$found/direction_1e200.mha"
 # Voxels much longer than wide are no more work than cubes.
 for spacing in "100 0.001 100" "1.2 0.001 1.7" "0.01 0.01 1"; do
   sed "s/^ElementSpacing = .*/ElementSpacing = $spacing/" "$found/spacing_100_0.001.mha" >long.mha
   timeout 5 "$osteomill" info long.mha >out.txt 2>err.txt || fault "voxels of $spacing mm: $(cat err.txt)"
 done
-told 1 "deep.toml: line 1: has a name of over 1000 parts" "$osteomill" compare --config "$found/deep.toml" --out out
+told 1 "deep.toml: line 1: .*1000 parts" "$osteomill" compare --config "$found/deep.toml" --out out
 
 # A scan of few values is not a label map: its bone is that of the same densities in a scan that cannot be
 # one.
@@ -99,11 +99,11 @@ read_as blanks.nrrd "2 x 2 x 2"
 
 mkfifo pipe
 { head_of | grep -v encoding; printf 'encoding: raw\nendian: little\ndata file: pipe\n'; } >pipe.nhdr
-told 1 "pipe.nhdr: its data file pipe is no regular file" "$osteomill" info pipe.nhdr
-told 2 "scan: is empty" "$osteomill" info ""
-told 2 "--iso: is empty" "$osteomill" info --iso ""
+told 1 "pipe.nhdr: .*pipe .*regular file" "$osteomill" info pipe.nhdr
+told 2 "scan: .*empty" "$osteomill" info ""
+told 2 "--iso: .*empty" "$osteomill" info --iso ""
 told 1 "new[?]line: no such file" "$osteomill" info "$(printf 'new\nline')"
 { printf '\xef\xbb\xbf'; cat "$found/p.csv"; } >mark.csv
 timeout 60 "$osteomill" replay mark.csv --quiet --algorithm point-shell --out mark.log >out.txt || fault "a byte order mark is refused"
-told 2 "--seed: -1 is not a whole number" "$osteomill" compare --seed -1 --out out
+told 2 "--seed: -1 .*whole number" "$osteomill" compare --seed -1 --out out
 exit 0

@@ -62,47 +62,47 @@ refused() {  # TEXT COMMAND...
 "$osteomill" study study.toml --list >/dev/null
 variant() { sed "$1" study.toml >variant.toml; }
 variant 's/^seconds/secnods/'
-refused "^osteomill: variant.toml: line 7: a trial has no option secnods; did you mean seconds\?$" "$osteomill" study variant.toml --out c
+refused "^osteomill: variant.toml: line 7: .*secnods.*seconds\?$" "$osteomill" study variant.toml --out c
 variant 's/^\[grid\]/[grids]/'
-refused "line 8: a study has no grids; did you mean grid\?" "$osteomill" study variant.toml --out c
+refused "line 8: .*grids.*grid\?" "$osteomill" study variant.toml --out c
 variant 's/from = 0.5/from = -1/'
-refused "variant.toml: trial [0-9]+: push: -0.* is not a positive number" "$osteomill" study variant.toml --out c
+refused "variant.toml: trial [0-9]+: push: -0.*positive" "$osteomill" study variant.toml --out c
 variant 's/^algorithm.*/algorithm = []/'
-refused "line 9: algorithm has no values" "$osteomill" study variant.toml --out c
+refused "line 9: algorithm .*no values" "$osteomill" study variant.toml --out c
 variant 's/point-shell/pointshell/'
-refused "there is no algorithm pointshell; did you mean point-shell" "$osteomill" study variant.toml --out c
+refused "algorithm pointshell.*point-shell" "$osteomill" study variant.toml --out c
 variant 's/force_mean_N/force_maen_N/'
-refused "no option and no column force_maen_N; did you mean force_mean_N" "$osteomill" study variant.toml --out c
+refused "force_maen_N.*force_mean_N" "$osteomill" study variant.toml --out c
 variant 's/ball.nrrd/none.nrrd/'
 refused "none.nrrd: no such file" "$osteomill" study variant.toml --out c
 variant 's/^seconds.*/hand-stiffness = 1\ndraw-hand = true/'
-refused "trial 0: draw-hand draws what hand-stiffness sets$" "$osteomill" study variant.toml --out c
+refused "trial 0: .*draw-hand .*hand-stiffness" "$osteomill" study variant.toml --out c
 variant 's/from = 0.5, to = 2/from = 0.5, to = inf/'
-refused "^osteomill: variant.toml: line [0-9]+: push has no range from 0.5 to inf$" "$osteomill" study variant.toml --out c
+refused "^osteomill: variant.toml: line [0-9]+: push .*0.5 to inf" "$osteomill" study variant.toml --out c
 variant 's/^seconds.*/entry = "99,99,99"/'
 refused "^osteomill: variant.toml: trial 0: .*entry" "$osteomill" study variant.toml --out c
 variant 's/^burr-radius.*/burr-radius = 3e5/; 1s/^/test = "wall"\n/; s/force_mean_N/felt_N_per_mm/'
-refused "^osteomill: variant.toml: trial 0: burr-radius: 300000 is not a number from 0.01 to 100$" "$osteomill" study variant.toml --out c
+refused "^osteomill: variant.toml: trial 0: burr-radius: 300000 .*0.01 to 100" "$osteomill" study variant.toml --out c
 variant 's/point-shell/barrier-shell/; s/^seconds.*/stiffness = 1e300/'
-refused "^osteomill: variant.toml: trial 0: .*stiffness must be a number from .*, not 1e\+300$" "$osteomill" study variant.toml --out c
+refused "^osteomill: variant.toml: trial 0: .*stiffness .*1e\+300" "$osteomill" study variant.toml --out c
 mkfifo pipe.toml
-refused "^osteomill: pipe.toml: is no regular file$" timeout 20 "$osteomill" study pipe.toml --out c
+refused "^osteomill: pipe.toml: .*regular file" timeout 20 "$osteomill" study pipe.toml --out c
 variant 's/^trials = .*/trials = 6000000/'
-refused "^osteomill: variant.toml: has more than 10000000 trials$" "$osteomill" study variant.toml --out c
+refused "^osteomill: variant.toml: .*10000000 trials" "$osteomill" study variant.toml --out c
 [ ! -e c ] || fault "what was refused left a folder"
 variant 's/seconds = 1/seconds = 0.2/'
-refused "^osteomill: a: holds another study$" "$osteomill" study variant.toml --out a
-refused "a: holds this study already; osteomill study a --resume goes on with it" "$osteomill" study study.toml --out a
+refused "^osteomill: a: .*another study" "$osteomill" study variant.toml --out a
+refused "a: .*already.*study a --resume" "$osteomill" study study.toml --out a
 bash "$ball" 4.5 >ball.nrrd
 rm b/slice-0.h5
-refused "ball.nrrd: has changed since the study was begun$" "$osteomill" study b --resume
+refused "ball.nrrd: .*changed" "$osteomill" study b --resume
 bash "$ball" >ball.nrrd
 (cat "$osteomill"; echo) >other && chmod +x other
-refused "^osteomill: b: was begun with another build of this program$" ./other study b --resume
+refused "^osteomill: b: .*another build" ./other study b --resume
 echo >>b/study.toml
-refused "study.toml: has changed since the study was begun$" "$osteomill" study b --resume
-refused "ball.nrrd: is no folder of a study|ball.nrrd: .*line" "$osteomill" study ball.nrrd --status
-refused "is no folder of a study: it has no study.h5" "$osteomill" study . --status
+refused "study.toml: .*changed" "$osteomill" study b --resume
+refused "ball.nrrd: .*(folder|line)" "$osteomill" study ball.nrrd --status
+refused "folder of a study.*study.h5" "$osteomill" study . --status
 
 # Poor settings are warned of once. Values that an axis cannot tell apart leave it a range.
 cat >poor.toml <<TOML

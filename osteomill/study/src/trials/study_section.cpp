@@ -167,7 +167,7 @@ void add_figure(Table& table, const Study& study, std::string_view phase, const 
   if (are_compared(study)) row.push_back(differences(study, phase, metric));
 }
 
-// Adds a row of `words` for each algorithm; none if all are empty.
+// Adds a row with the `words` of each algorithm; none if all are empty.
 template <typename Words>
 void add_words(Table& table, const Study& study, const char* label, const Words& words) {
   std::vector<Cell> row{label};
