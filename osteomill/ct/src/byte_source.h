@@ -23,7 +23,7 @@ class ByteSource {
 
   /// Fills `bytes` as far as there are any left; returns how many.
   std::size_t read(std::span<char> bytes);
-  /// Reads past some bytes; false where there are not as many.
+  /// Reads past some bytes; false if there are not as many.
   bool skip(std::uint64_t count);
 
   bool is_packed() const { return stream_ != nullptr; }
@@ -55,7 +55,7 @@ class ByteSource {
   bool damaged_ = false;
 };
 
-/// Opens a file for reading. Throws InputError naming `subject` where `file` is not there, no regular file (a
+/// Opens a file for reading. Throws InputError naming `subject` if `file` is not there, no regular file (a
 /// pipe would wait for ever) or cannot be read.
 std::ifstream open_regular_file(const std::string& subject, const std::filesystem::path& file);
 

@@ -36,7 +36,7 @@ constexpr std::size_t kStackBytes = kMaxItems * 4096;
 constexpr std::uint64_t kMaxInflation = 100;
 // Longer values stay in the file. None that is wanted is longer.
 constexpr Uint32 kMaxValueBytes = 1024;
-// What a file holds beside its pixels.
+// Largest size of a file beside its pixels, bytes.
 constexpr std::uint64_t kMaxHeadBytes = 1 << 26;
 
 thread_local bool jpeg_complained = false;
@@ -99,7 +99,7 @@ std::uint64_t count_items(ByteSource& source, std::uint64_t& bytes, std::uint64_
   return items;
 }
 
-// Where the data set is deflated it begins behind the meta group, as DCMTK reads that.
+// If the data set is deflated it begins behind the meta group, as DCMTK reads that.
 std::optional<std::streamoff> start_of_deflated(const fs::path& path) {
   DcmInputFileStream stream(path.c_str());
   DcmMetaInfo meta;

@@ -17,7 +17,7 @@ struct DicomData {
   bool damaged = false;
 };
 
-/// Reads a DICOM file; nothing where it is not DICOM at all. Throws InputError naming the file where it
+/// Reads a DICOM file; nothing if it is not DICOM at all. Throws InputError naming the file if it
 /// cannot be opened, is far longer than `max_bytes` (the memory that its densities may take), or would take
 /// more memory or deeper recursion than any scan does. To be called only within `with_dicom_stack`.
 std::optional<DicomData> load_dicom(const std::filesystem::path& path, std::uint64_t max_bytes);

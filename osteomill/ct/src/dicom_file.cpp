@@ -35,7 +35,7 @@ std::optional<int> short_of(DcmItem& data, const DcmTagKey& tag) {
   return number;
 }
 
-// The items of a sequence; none where there is no such sequence.
+// The items of a sequence; none if there is no such sequence.
 std::vector<DcmItem*> items_of(DcmItem& data, const DcmTagKey& tag) {
   std::vector<DcmItem*> items;
   DcmSequenceOfItems* sequence = nullptr;
@@ -62,7 +62,8 @@ class FileReader {
 
   std::optional<std::vector<double>> numbers(DcmItem& data, const DcmTagKey& tag, std::size_t count,
                                              const char* name) const;
-  // Where a value of the frame is looked for: its own functional group, the one that all share, the data set.
+  // Returns the items in which a value of the frame is looked for: its own functional group, the shared one,
+  // the data set.
   std::vector<DcmItem*> groups_of(std::size_t frame, const DcmTagKey& group) const;
   std::optional<std::vector<double>> frame_numbers(std::size_t frame, const DcmTagKey& group,
                                                    const DcmTagKey& tag, std::size_t count,

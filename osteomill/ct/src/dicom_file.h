@@ -58,7 +58,7 @@ struct DicomHeader {
   bool lost = false;
   /// Why no slice can be made of it.
   std::optional<InputError> fault;
-  /// A slice for each frame; empty where there is a fault.
+  /// A slice for each frame; empty if there is a fault.
   std::vector<DicomSlice> slices;
 
   /// The data as read, pixels still in the file; `with_dicom_stack` releases them.
@@ -70,17 +70,17 @@ struct DicomHeader {
   bool is_image() const { return pixel_bytes > 0 || columns > 0 || rows > 0; }
 };
 
-/// Reads what comes before the pixels; nothing where the file is not DICOM. A file that cannot be read or is
+/// Reads what comes before the pixels; nothing if the file is not DICOM. A file that cannot be read or is
 /// damaged comes with a fault. Only within `with_dicom_stack`.
 std::optional<DicomHeader> read_dicom_header(const std::filesystem::path& path, std::uint64_t max_bytes);
 
-/// The items of compressed pixels: the table of offsets, and the fragments in order. None where they are not
+/// The items of compressed pixels: the table of offsets, and the fragments in order. None if they are not
 /// compressed.
 std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
 
 /// Decodes the pixels of the file of `header`, which has no fault, and writes the densities of frame f, row
 /// by row, to `frame_densities(f)`, which must have room for columns * rows (a null pointer: the frame is not
-/// wanted). Throws InputError naming the file where they cannot be decoded. Only within `with_dicom_stack`.
+/// wanted). Throws InputError naming the file if they cannot be decoded. Only within `with_dicom_stack`.
 void read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities);
 

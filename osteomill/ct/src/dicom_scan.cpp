@@ -33,7 +33,7 @@ struct DicomSeries {
   std::vector<DicomHeader> headers;
 
   bool is_ct() const { return headers.front().modality == "CT"; }
-  // Of every slice, file by file. Throws the first fault of a file.
+  // Returns the planes of every slice, file by file. Throws the first fault of a file.
   std::vector<SlicePlane> planes() const {
     std::vector<SlicePlane> planes;
     for (const DicomHeader& header : headers) {
@@ -42,7 +42,7 @@ struct DicomSeries {
     }
     return planes;
   }
-  // Of those slices that can be read.
+  // Returns the number of pixels of the readable slices.
   std::uint64_t pixel_count() const {
     std::uint64_t count = 0;
     for (const DicomHeader& header : headers) {
@@ -56,7 +56,7 @@ struct DicomSeries {
 // A study has some thousands.
 constexpr std::size_t kMaxFiles = 1 << 16;
 
-// Throws InputError naming the folder where it cannot be read or holds too many files.
+// Throws InputError naming the folder if it cannot be read or holds too many files.
 template <typename Iterator>
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::error_code error;
@@ -96,7 +96,7 @@ std::optional<fs::path> file_named(const fs::path& folder, const fs::path& name)
   return std::nullopt;
 }
 
-// As they would be read.
+// Returns size and spacing with which the series would be read.
 std::string size_and_spacing(const DicomSeries& series) {
   try {
     const GridGeometry grid = stack_slices("", series.planes()).geometry;
@@ -109,8 +109,8 @@ std::string size_and_spacing(const DicomSeries& series) {
   }
 }
 
-// Of the files that a DICOMDIR names, which lie beside and below it. Throws InputError naming it where it
-// names one that is not there.
+// Returns the images of the files that a DICOMDIR names, which lie beside and below it. Throws InputError
+// naming it if it names one that is not there.
 DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_bytes) {
   const std::string subject = dicomdir.file.string();
   std::vector<fs::path> files;
@@ -124,7 +124,7 @@ DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_b
   return images_of(files, max_bytes);
 }
 
-// Sorts pictures by their series; where no series is named, by their folder. In the order of their first
+// Sorts pictures by their series; if no series is named, by their folder. In the order of their first
 // files.
 std::vector<DicomSeries> sort_into_series(std::vector<DicomHeader> images) {
   std::vector<DicomSeries> all;
@@ -138,7 +138,8 @@ std::vector<DicomSeries> sort_into_series(std::vector<DicomHeader> images) {
   return all;
 }
 
-// What a user knows a series by, in a line: number, modality, description, size, spacing, where it lies, UID.
+// Returns a line that describes a series to a user: number, modality, description, size, spacing, where it
+// lies, UID.
 std::string describe_series(std::size_t number, const DicomSeries& series) {
   const DicomHeader& first = series.headers.front();
   return fmt::format("{}: {} \"{}\", {}, from {}, {}", number, first.modality, first.series_description,
@@ -146,7 +147,7 @@ std::string describe_series(std::size_t number, const DicomSeries& series) {
 }
 
 // Which of `all` is `wanted`: a number from 1, a UID or the beginning of one. Empty: the one with the most
-// pixels, CT before others. Throws InputError naming `subject` where none, or more than one, is.
+// pixels, CT before others. Throws InputError naming `subject` if none, or more than one, is.
 std::size_t pick_series(const std::string& subject, const std::vector<DicomSeries>& all,
                         const std::string& wanted) {
   if (wanted.empty()) {
@@ -175,7 +176,7 @@ std::string counted(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-// Scout views are no part of a series, even where they carry its number.
+// Scout views are no part of a series, even if they carry its number.
 void drop_localizers(std::vector<DicomHeader>& images, std::vector<std::string>& warnings) {
   const auto first = std::stable_partition(images.begin(), images.end(),
                                            [](const DicomHeader& header) { return !header.is_localizer; });

@@ -154,7 +154,7 @@ TEST_F(DicomSeries, EveryLengthToWhichASliceCanBeCutIsNoticed) {
     const auto size = fs::file_size(folder_ / "f9");
     for (auto length = size - 1; length > 0; --length) {
       fs::resize_file(folder_ / "f9", length);
-      // Cut to nothing that looks like DICOM it is left out, with a warning: nobody can tell it from other
+      // A file cut to nothing that looks like DICOM is left out, with a warning: it cannot be told from other
       // files.
       std::string said = refusal(folder_);
       if (said.empty()) said = read_scan(folder_).warnings.empty() ? "" : read_scan(folder_).warnings.front();
@@ -210,7 +210,7 @@ TEST_F(DicomSeries, TheLargestCtOfSeveralSeriesIsReadAndAnyCanBeChosen) {
   EXPECT_THROW(read_series(folder_ / "more/deep/a1", "1.2.5"), InputError);
 }
 
-// As on a disc: names in capitals, each record with what lies under it.
+// Builds a DICOMDIR as on a disc: names in capitals, each record with its children.
 TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
   fs::create_directories(folder_ / "IMAGES" / "S1");
   fs::create_directories(folder_ / "images2");

@@ -16,7 +16,7 @@ struct FrameSize {
 };
 
 /// These decode what DCMTK does not decode, or not safely: its RLE decoder reads and writes where a damaged
-/// header tells it to. One frame each, into `values` with room for `size.bytes()`; false where the stream is
+/// header tells it to. One frame each, into `values` with room for `size.bytes()`; false if the stream is
 /// damaged, cut short, or of another size.
 bool decode_rle(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 bool decode_jpeg2000(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);

@@ -11,7 +11,7 @@
 
 namespace osteomill {
 
-/// The numbers of a header's field, parted by any of `separators`; nothing where a piece is not a number.
+/// The numbers of a header's field, parted by any of `separators`; nothing if a piece is not a number.
 /// "nan" and "inf" are numbers here: a caller that needs finite ones has to check.
 inline std::optional<std::vector<double>> parse_numbers(std::string_view text,
                                                         std::string_view separators = " \t\r\n") {

@@ -145,7 +145,7 @@ Placement placement_of(const std::string& subject, const Bytes& header, const Ve
   return {spacing.asDiagonal(), Vec3::Zero()};
 }
 
-// What a header says twice should be the same.
+// Checks that two statements of a header agree.
 void check_agreement(const std::string& subject, const Bytes& header, const Placement& placement,
                      const Vec3& spacing, std::vector<std::string>& warnings) {
   const Vec3 lengths = placement.steps.colwise().norm();

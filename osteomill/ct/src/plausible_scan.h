@@ -15,7 +15,7 @@
 
 namespace osteomill {
 
-/// Throws InputError naming `subject` where a grid is not one that a scanner makes of a bone: voxels under
+/// Throws InputError naming `subject` if a grid is not one that a scanner makes of a bone: voxels under
 /// 1 um or over 100 mm apart, or a first voxel over 100 m from the scanner's own origin. With such numbers
 /// later work would overflow or never end.
 inline void check_plausible(const std::string& subject, const GridGeometry& geometry) {
@@ -34,7 +34,7 @@ inline void check_plausible(const std::string& subject, const GridGeometry& geom
   }
 }
 
-/// Throws InputError naming `subject` where so many densities would take more memory than they may.
+/// Throws InputError naming `subject` if the densities would take more memory than `max_bytes`.
 inline void check_memory(const std::string& subject, std::uint64_t voxels, std::uint64_t max_bytes) {
   const std::uint64_t needed = voxels * sizeof(float);
   if (needed > max_bytes) {
@@ -44,7 +44,7 @@ inline void check_memory(const std::string& subject, std::uint64_t voxels, std::
   }
 }
 
-/// Throws InputError naming `subject` where a density is no finite number or beyond what any scanner writes:
+/// Throws InputError naming `subject` if a density is no finite number or beyond what any scanner writes:
 /// nothing sensible can be milled there, and gradients would overflow.
 inline void check_densities(const std::string& subject, const std::vector<float>& densities) {
   constexpr std::size_t kAtOnce = 1 << 22;

@@ -102,7 +102,7 @@ bool is_called(const Label& label, const std::string& said) {
   return said == std::to_string(label.value) || lower(said) == lower(label.name);
 }
 
-// Throws where it calls none of the labels.
+// Throws if it calls none of the labels.
 void mark_no_go(const std::string& subject, const std::string& said, std::vector<Label>& labels) {
   bool found = false;
   for (Label& label : labels) {
@@ -243,8 +243,8 @@ LabelTable read_label_table(const fs::path& path) {
   return table;
 }
 
-// What the key/value pairs of a segmentation of 3D Slicer's (.seg.nrrd) say: Segment0_Name, _Color (three
-// numbers from 0 to 1) and _LabelValue, and so on from 0. Throws InputError naming `subject`.
+// Returns the labels in the key/value pairs of a segmentation of 3D Slicer's (.seg.nrrd): Segment0_Name,
+// _Color (three numbers from 0 to 1) and _LabelValue, and so on from 0. Throws InputError naming `subject`.
 LabelTable label_table_of(const std::string& subject, const std::map<std::string, std::string>& key_values) {
   LabelTable table;
   for (int n = 0;; ++n) {

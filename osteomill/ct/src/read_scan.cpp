@@ -111,8 +111,8 @@ bool is_zip(const fs::path& file) {
 }
 
 // Unpacks the files of a zip archive into `folder`, where they have the names that they have in it. Throws
-// InputError naming the archive where it is damaged or encrypted, where a name leads out of the folder, or
-// where it unpacks to more than `max_bytes`, whatever its own directory says of that.
+// InputError naming the archive if it is damaged or encrypted, if a name leads out of the folder, or
+// if it unpacks to more than `max_bytes`, whatever its own directory says of that.
 void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t max_bytes) {
   note_input(archive);
   try {
@@ -122,7 +122,7 @@ void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t m
   }
 }
 
-// Of a folder without DICOM: its only volume file.
+// Reads the only volume file of a folder without DICOM.
 Scan read_folder(const fs::path& folder, const ReadOptions& options) {
   if (std::optional<Scan> scan = read_dicom(folder, options)) return std::move(*scan);
   std::vector<fs::path> volumes;
@@ -144,7 +144,7 @@ std::string with_name(std::string text, const std::string& unpacked, const std::
   return text;
 }
 
-// What is told of it names the archive, not where it was unpacked.
+// Reads an archive. Messages name the archive, not the folder into which it was unpacked.
 Scan read_zip(const fs::path& archive, const ReadOptions& options) {
   const TemporaryFolder unpacked;
   try {

@@ -82,8 +82,8 @@ void expect_numbers(const json& expected, const Scan& scan) {
   if (const json* samples = find(expected, {"samples"})) expect_samples(*samples, scan.grid);
 }
 
-// What expect.json says should happen: "load", "load_or_warn", "load_or_clean_error", "warn_or_error",
-// "error".
+// Expects the outcome that expect.json states: "load", "load_or_warn", "load_or_clean_error",
+// "warn_or_error", "error".
 void expect_outcome(const fs::path& path, const json& expected) {
   SCOPED_TRACE(path.string() + ": " + expected["note"].get<std::string>());
   const std::string outcome = expected["expect"].get<std::string>();
@@ -184,7 +184,7 @@ bool is_on_boundary(const DensityGrid& grid, double isovalue) {
   });
 }
 
-// What those who know each scan count bone from.
+// The suggestion must lie in the range that experts of each scan give for bone.
 TEST_P(RealScanIsovalue, SuggestedIsBone) {
   const auto& [path, known] = GetParam();
   OSTEOMILL_NEEDS_SHARED(path);
@@ -195,7 +195,7 @@ TEST_P(RealScanIsovalue, SuggestedIsBone) {
   EXPECT_FALSE(looks_like_labels(scan.grid));
 }
 
-// As programs save pictures: the whole range of densities, or what a window shows of it.
+// Densities in eight bits as programs save pictures: the whole range, or the part that a window shows.
 TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
   struct Window {
     const char* scan;

@@ -27,7 +27,7 @@ constexpr double kSamePlace_mm = 1e-4;
 constexpr double kDistanceTolerance = 0.05;
 // A gap wider than this share of those beside it lacks a slice.
 constexpr double kMissing = 1.5;
-// Between slices further apart than this, nobody knows what the bone is like.
+// Largest distance between slices, mm, over which the bone may be interpolated.
 constexpr double kMaxUnevenGap_mm = 10;
 // An uneven stack becomes at most as many times as many slices.
 constexpr double kMostSlices = 4;
@@ -113,7 +113,7 @@ bool are_even(std::span<const double> heights_mm, std::span<const double> gaps_m
   return true;
 }
 
-// Where a table's feed was changed the distances that follow are alike; beside a lost slice they are not.
+// If a table's feed was changed the distances that follow are alike; beside a lost slice they are not.
 bool slice_is_missing(std::span<const double> gaps_mm, std::size_t k) {
   double beside_mm = 0;
   if (k > 0) beside_mm = gaps_mm[k - 1];

@@ -37,15 +37,15 @@ struct SliceStack {
   /// then be more or fewer: their densities have to be interpolated (`even_out_slices`). Else empty.
   std::vector<double> heights_mm;
   /// By how much each of the grid's slices lies further along i and j than the one below: a gantry tilt. Zero
-  /// where the stack is straight; else they have to be shifted before they are in their place.
+  /// if the stack is straight; else they have to be shifted before they are in their place.
   double drift_i_mm = 0;
   double drift_j_mm = 0;
   std::vector<std::string> warnings;
 };
 
 /// Puts the slices in order of their position along the normal, lowest first, whatever order they come in.
-/// Where their distances differ, as where a table's feed was changed, the grid is as fine as nine tenths of
-/// them ask for, and a warning names the largest. Throws InputError naming `subject` where no grid holds them
+/// If their distances differ, as when a table's feed was changed, the grid is as fine as nine tenths of
+/// them ask for, and a warning names the largest. Throws InputError naming `subject` if no grid holds them
 /// all: fewer than two, not all of one size, spacing and orientation, two at one position, or a gap that is
 /// over 1.5 times those beside it (a slice is missing) or over 10 mm while others are less.
 SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices);
@@ -57,8 +57,8 @@ void even_out_slices(SliceStack& stack, std::vector<float>& densities);
 
 /// Moves every slice of a stack that was taken with a tilted gantry to its place in a straight grid, by
 /// linear interpolation within the slice. The grid grows so that nothing is lost; `densities` and `stack` are
-/// replaced, where there were no pixels the least density stands, and a warning says so. A straight stack is
-/// left alone. Throws InputError naming `subject` where the tilt is more than a gantry can do.
+/// replaced, places without pixels get the least density, and a warning says so. A straight stack is left
+/// alone. Throws InputError naming `subject` if the tilt is more than a gantry can do.
 void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vector<float>& densities);
 
 }  // namespace osteomill

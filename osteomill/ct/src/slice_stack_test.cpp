@@ -99,7 +99,7 @@ std::vector<float> pixels_of(const std::vector<SlicePlane>& slices, const SliceS
 
 TEST(SliceStack, UnevenDistancesAreEvenedOutAndNamed) {
   const auto density = [](const Vec3& p) { return 1000 + 3 * p.x() - 5 * p.y() + 7 * p.z(); };
-  // As after a change of the table's feed, with an overlap where it changed.
+  // Slices after a change of the table's feed, with an overlap where it changed.
   std::vector<SlicePlane> slices = series(11, 0);
   double height_mm = 3;
   for (std::size_t k = 0; k < slices.size(); ++k) {

@@ -64,7 +64,7 @@ InputError cut_short(const std::string& subject, std::uint64_t needed, std::uint
   return {subject, fmt::format("is cut short: its voxels need {} bytes, there are {}", needed, found)};
 }
 
-// `bytes` hold whole values, whose order of bytes is changed in place where it is not the machine's.
+// `bytes` hold whole values, whose order of bytes is changed in place if it is not the machine's.
 void append(std::span<char> bytes, const StoredVoxels& stored, std::vector<float>& densities) {
   with_type(stored.type, [&](auto value) {
     const bool swap = stored.big_endian != (std::endian::native == std::endian::big);
@@ -77,7 +77,7 @@ void append(std::span<char> bytes, const StoredVoxels& stored, std::vector<float
   });
 }
 
-// What lies behind the voxels: nothing, as a rule.
+// Checks the data behind the voxels; as a rule there are none.
 void check_rest(const std::string& subject, StoredVoxels& stored, std::uint64_t needed,
                 std::vector<std::string>& warnings) {
   ByteSource& source = stored.source;

@@ -41,8 +41,8 @@ struct StoredVoxels {
 void skip_to_last(StoredVoxels& stored, std::uint64_t count);
 
 /// Reads `count` densities. Nothing is allocated that the file cannot hold. Throws InputError naming
-/// `subject` where the voxels are not all there or damaged, or the densities would take over `max_bytes`;
-/// adds a warning where there is more.
+/// `subject` if the voxels are not all there or damaged, or the densities would take over `max_bytes`;
+/// adds a warning if there is more.
 std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
                                std::uint64_t max_bytes, std::vector<std::string>& warnings);
 
@@ -70,7 +70,7 @@ struct VolumeFormat {
   std::array<std::string_view, 2> endings;
   VolumeHeader (*read_header)(const std::filesystem::path& path);
 };
-/// By how the file's name ends; null where it is none of them.
+/// By how the file's name ends; null if it is none of them.
 const VolumeFormat* volume_format_of(const std::filesystem::path& path);
 
 /// Throws InputError naming the file.
@@ -83,20 +83,20 @@ struct HeaderFields {
   std::map<std::string, std::string> values{};
 
   bool has(const std::string& name) const { return values.contains(name); }
-  /// Empty where there is none.
+  /// Empty if there is none.
   std::string operator[](const std::string& name) const {
     return has(name) ? values.at(name) : std::string();
   }
-  /// Throws where there are none.
+  /// Throws if there are none.
   std::vector<double> numbers(const std::string& name) const;
-  /// A number of bytes or lines, not less than `min`; 0 where the field is not there. Throws where it is
+  /// A number of bytes or lines, not less than `min`; 0 if the field is not there. Throws if it is
   /// anything else.
   double count(const std::string& name, double min) const;
 };
 
-/// Opens the data file `name` that the header in the file `path` names, in the same folder. Where `name` is
+/// Opens the data file `name` that the header in the file `path` names, in the same folder. If `name` is
 /// empty the data follow the header, and `attached`, its stream, is returned. Throws InputError naming
-/// `subject` where the file cannot be read, or the data are in several files.
+/// `subject` if the file cannot be read, or the data are in several files.
 std::ifstream open_data(const std::string& subject, const std::filesystem::path& path,
                         const std::string& name, std::ifstream attached);
 
@@ -108,10 +108,10 @@ GridGeometry checked_geometry(const std::string& subject, const std::vector<doub
                               const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
                               double unit_mm, const Vec3& lps_from_axes = Vec3::Ones());
 
-/// Three finite numbers; throws InputError, calling them `name`, where they are not.
+/// Three finite numbers; throws InputError, calling them `name`, if they are not.
 Vec3 checked_point(const std::string& subject, const std::string& name, const std::vector<double>& numbers);
 
-/// Millimetres in a unit of length as headers name it ("mm", "um", ...); throws InputError where it is not
+/// Millimetres in a unit of length as headers name it ("mm", "um", ...); throws InputError if it is not
 /// known.
 double millimetres_in(const std::string& subject, std::string_view unit);
 

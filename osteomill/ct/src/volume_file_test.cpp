@@ -80,7 +80,7 @@ std::string swapped(std::string bytes, std::size_t size) {
   return bytes;
 }
 
-// Of a NIfTI-1 header the numbers that `Nifti` sets.
+// Returns a NIfTI-1 header with the bytes of the numbers that `Nifti` sets swapped.
 std::string swapped_header(std::string header) {
   const auto swap = [&](std::size_t at, std::size_t end, std::size_t size) {
     header.replace(at, end - at, swapped(header.substr(at, end - at), size));

@@ -35,7 +35,7 @@ bool holds_exactly(const DensityGrid& grid) {
   return holds;
 }
 
-// False where not all could be written.
+// False if not all could be written.
 template <typename Stored>
 bool write_values(gzFile file, const DensityGrid& grid) {
   std::vector<Stored> values;
@@ -48,7 +48,7 @@ bool write_values(gzFile file, const DensityGrid& grid) {
   return written;
 }
 
-// As many digits as read back to the same number.
+// Writes as many digits as read back to the same number.
 std::string vector_text(const Vec3& v) {
   return fmt::format("({},{},{})", v.x(), v.y(), v.z());
 }

@@ -67,7 +67,7 @@ TEST_F(ZipArchive, WhereverItIsCutOrDamagedThatIsNoticed) {
   const fs::path path = write_zip({{"a.nrrd", kNrrd}});
   std::ifstream in(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), {});
-  // What comes last in it, a remark's length, matters to nobody.
+  // Its last field, a remark's length, does not matter.
   for (std::size_t length = 1; length < bytes.size() - 10; ++length) {
     EXPECT_FALSE(refusal(write("cut.zip", bytes.substr(0, length))).empty()) << length;
   }
