@@ -51,8 +51,8 @@ void require_nothing_elsewhere(const Hdf5File& file) {
     file.refuse("'" + refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
 }
 
-// What the program does at a signal is not for the child to do. The library of C tells of a heap that is
-// damaged.
+// Restores the default action of signals: the program's own is not for the child. The C library reports a
+// damaged heap.
 void end_by_any_fault(std::uintmax_t bytes) {
   constexpr unsigned kLeast_s = 2, kWaitingShare = 20;
   constexpr std::uintmax_t kBytesPerSecond = 5'000'000;
@@ -66,8 +66,8 @@ void end_by_any_fault(std::uintmax_t bytes) {
   ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
 }
 
-// Nothing where the child put in all that it had to. Else the reason for which it refused the file, which is
-// empty where it broke off.
+// Nothing if the child put in all that it had to. Else the reason for which it refused the file, which is
+// empty if it broke off.
 std::optional<std::string> taken(PipeEnd& pipe, const std::function<void(PipeEnd&)>& take) {
   try {
     bool is_read = false;
@@ -133,7 +133,7 @@ Hdf5File open_hdf5(const fs::path& path) {
 
 void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& put,
                      const std::function<void(PipeEnd&)>& take) {
-  // Of what is read, for each byte of the file; and of a reason.
+  // Largest number of bytes that the child passes on, for each byte of the file, and that of a reason.
   constexpr std::uintmax_t kMostBytes = 10'000, kMostOfReason = 1'000'000;
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(path, error), most = kMostBytes * bytes + kMostOfReason;

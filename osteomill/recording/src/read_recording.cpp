@@ -22,7 +22,7 @@ namespace osteomill {
 
 namespace fs = std::filesystem;
 
-// What the process that reads passes on.
+// Members that the reading process passes on.
 static auto members_of(RunSetting& setting) {
   return std::tie(setting.key, setting.value, setting.unit);
 }
@@ -65,7 +65,7 @@ void require_our_version(const Hdf5File& recording, const Attributes& root) {
   }
 }
 
-// Of columns that belong together; of unequal lengths only where the recording is unfinished.
+// Returns the rows of columns that belong together; their lengths may differ only in an unfinished recording.
 std::size_t common_rows(const Hdf5File& recording, std::span<const Hdf5Column> columns, bool complete) {
   const Hdf5Column& first = columns.front();
   std::size_t rows = first.rows;
@@ -106,7 +106,7 @@ std::vector<TickRecord> read_records(const Hdf5File& recording, bool complete) {
   return records;
 }
 
-// Of one length.
+// Reads columns of one length.
 template <typename Value, std::size_t kCount>
 std::array<std::vector<Value>, kCount> read_together(const Hdf5File& recording, bool complete,
                                                      const std::array<const char*, kCount>& places) {
@@ -132,7 +132,7 @@ void put_cut(const Hdf5File& recording, const std::vector<Label>& labels, double
   *free = {static_cast<LabelMap::Place>(label - labels.begin() + 1), removed_mm3};
 }
 
-// What ticks cut of labels goes into their records.
+// Puts the cuts of labels into the records of their ticks.
 void read_cuts(const Hdf5File& recording, const std::vector<Label>& labels, bool complete,
                std::vector<TickRecord>& records) {
   if (labels.empty()) return;
@@ -200,7 +200,7 @@ SessionStart read_session_start(const Hdf5File& recording, hid_t group, const st
   return start;
 }
 
-// Of an unfinished recording only those of which records are there.
+// Reads the sessions; of an unfinished recording only those with records.
 std::vector<RecordedSession> read_sessions(const Hdf5File& open, const Recording& recording) {
   std::vector<RecordedSession> sessions;
   for (;;) {
@@ -211,7 +211,7 @@ std::vector<RecordedSession> read_sessions(const Hdf5File& open, const Recording
     const auto row = Attributes(open.path, group.get()).get<std::uint64_t>("row");
     const bool right = sessions.empty() ? row == 0 : row >= sessions.back().first;
     if (!recording.complete && row >= recording.records.size() && !sessions.empty()) break;
-    if (!right || row > recording.records.size()) open.refuse("'" + place + "' begins where it cannot");
+    if (!right || row > recording.records.size()) open.refuse("'" + place + "' begins at a wrong row");
     const RunDescription* first = sessions.empty() ? &recording.description : nullptr;
     sessions.push_back({row, read_session_start(open, group.get(), place, first)});
     sessions.back().start.run.labels = recording.description.labels;

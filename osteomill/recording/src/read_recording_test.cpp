@@ -61,12 +61,12 @@ class ChangedRecording : public ::testing::Test {
     ASSERT_GE(H5Fclose(file), 0);
     remove_seal();
   }
-  // As in a file that another program has written.
+  // Removes the seal, as in a file that another program has written.
   void remove_seal() {
     std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
     file << std::string(kUserBlockBytes, '\0');
   }
-  // What another process has sealed.
+  // Seals the file in another process.
   void seal_elsewhere() {
     const ::pid_t child = ::fork();
     if (child == 0) {
@@ -101,7 +101,7 @@ TEST_F(ChangedRecording, ASessionThatCannotBeIsRefused) {
     set_number(session, "row", 5);
     H5Gclose(session);
   });
-  expect_refused(path_, "'sessions/0' begins where it cannot");
+  expect_refused(path_, "'sessions/0' begins at a wrong row");
   change([](hid_t file) { H5Ldelete(file, "sessions/0", H5P_DEFAULT); });
   expect_refused(path_, "has ticks of no session");
 }
@@ -308,7 +308,7 @@ INSTANTIATE_TEST_SUITE_P(, DamagedRecording, ::testing::Bool(),
 
 TEST_P(DamagedRecording, EndsNoProgram) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "HDF5 reads beyond its memory in the child, and loses some where it refuses";
+  GTEST_SKIP() << "HDF5 reads beyond its memory in the child, and loses some when it refuses";
 #endif
   remove_seal();
   const std::string whole = bytes_of(path_);

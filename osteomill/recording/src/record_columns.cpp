@@ -75,22 +75,22 @@ Fields record_fields() {
   add_real(all, "compute_us", "us", &R::compute_us, "time of the algorithm's step, by the clock",
            kInLog | kByTheClock);
   add_real(all, "milling_us", "us", &R::milling_us, "time of milling, by the clock", kByTheClock);
-  add_real(all, "tick_cpu_us", "us", &R::tick_cpu_us,
-           "CPU time of the whole tick; 0 where it was not measured", kByTheClock);
+  add_real(all, "tick_cpu_us", "us", &R::tick_cpu_us, "CPU time of the whole tick; 0 if it was not measured",
+           kByTheClock);
   add_vector(
       all, "burr_force", "N", [](auto& r) -> auto& { return r.burr_force_W_N; },
       "force of the burr on the bone, frame W");
   add_real(all, "dt_s", "s", &R::dt_s, "how long the tick was taken to be");
-  add_switch(all, "spindle", &R::spindle_on, "1 where the burr could cut");
+  add_switch(all, "spindle", &R::spindle_on, "1 if the burr could cut");
   all.push_back(field<R>({"fault", "", NumberRange::count(0, static_cast<int>(WrenchFault::held_back)),
                           "what was done to the wrench (codes)"},
                          &R::fault));
   add_real(all, "energy_given_Nmm", "N mm", &R::energy_given_Nmm,
            "energy given to the hand less what it gave, since the session began", kInLog);
   add_switch(all, "paused", &R::paused, "1 in a pause: zero is sent and nothing computed");
-  add_switch(all, "let_go", &R::let_go, "1 where from this tick on nothing is felt until the tool is placed");
+  add_switch(all, "let_go", &R::let_go, "1 if from this tick on nothing is felt until the tool is placed");
   add_switch(all, "placed", &R::placed,
-             "1 where the tool was placed at the device before the tick, contacts forgotten");
+             "1 if the tool was placed at the device before the tick, contacts forgotten");
   all.push_back(
       field<R>({"owed_bricks", "", NumberRange::count(0),
                 "bricks of bone points that may have shown more bone than there was, left to later ticks"},
@@ -100,7 +100,7 @@ Fields record_fields() {
   add_vector(
       all, "cutting_torque", "N mm", [](auto& r) -> auto& { return r.cutting_torque_W_Nmm; },
       "of the torque sent, what the cutting adds (--cutting-reaction), frame W");
-  add_switch(all, "driven", &R::driven, "1 where what was sent reached a hand", kMayBeAbsent);
+  add_switch(all, "driven", &R::driven, "1 if what was sent reached a hand", kMayBeAbsent);
   return all;
 }
 

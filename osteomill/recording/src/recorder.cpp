@@ -31,7 +31,7 @@ namespace {
 constexpr auto kFlushEvery = 400ms;
 // Pieces of the file are written whole, unless records come so slowly that they would wait for longer.
 constexpr auto kWaitAtMost = 800ms;
-// The pushing thread wakes nobody (that would be a system call), so the writing thread looks by itself.
+// The pushing thread wakes no other (that would be a system call), so the writing thread looks by itself.
 constexpr auto kLookEvery = 2ms;
 constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
 
@@ -111,7 +111,7 @@ struct Recorder::Impl {
   }
 
   // A bounded part of the queue, so that records which come as fast as they are written cannot put off the
-  // flush. False where there is more.
+  // flush. False if there is more.
   bool take_some() {
     while (rows.size() < kRowsAtOnce) {
       const TickRecord* record = queue.front();
@@ -123,7 +123,7 @@ struct Recorder::Impl {
     return false;
   }
 
-  // False where nobody has said yet what it began from.
+  // Begins the session of a record; returns false if its initial state is not known yet.
   bool begin_session_of(const TickRecord& record) {
     const std::lock_guard lock(starts_mutex);
     for (; !starts.empty() && starts.front().first <= record.session; starts.pop_front()) {

@@ -353,7 +353,7 @@ TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
     ASSERT_EQ(::waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
     EXPECT_FALSE(fs::exists(folder / "run.h5"));
-    // Where there was no room for the first ticks.
+    // There was no room for the first ticks.
     if (limit_bytes < 2'000'000 && !fs::exists(unfinished_recording_path(folder / "run.h5"))) continue;
     const Recording recording = read_recording(unfinished_recording_path(folder / "run.h5"));
     for (std::size_t row = 0; row < recording.records.size(); ++row)

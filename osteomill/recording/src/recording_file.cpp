@@ -24,13 +24,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What comes seldom is written again with every flush until a piece is whole.
+// Rows of a piece for rare data, which are written again with every flush until a piece is whole.
 constexpr hsize_t kChunkOfFew = 64;
 // Higher levels take longer and save next to nothing: the last bits of poses and forces are noise.
 constexpr unsigned kDeflateLevel = 1;
 // Some ten seconds of pieces.
 constexpr std::uint64_t kFlushesRemembered = 10;
-// What HDF5 adds of its own until the next flush: where the pieces lie, and who is who in a session.
+// Room for HDF5's own data until the next flush, bytes: places of the pieces and names in a session.
 constexpr std::uint64_t kRoomForMetadata = 256 * 1024;
 
 constexpr const char* kConventions =
@@ -52,7 +52,7 @@ hid_t file_type(const NumberRange& range) {
 }
 
 // The library's metadata reach the disk only when the file is flushed. Left to itself it also writes some of
-// them whenever its cache is full, and a program killed between the two leaves a file that nobody can open.
+// them whenever its cache is full, and a program killed between the two leaves a file that cannot be opened.
 // So none leave the memory by themselves: `forget_flushed_metadata`.
 bool keep_metadata_until_flush(hid_t file) {
   H5AC_cache_config_t config;
@@ -77,7 +77,7 @@ unsigned long crc32_of_rest(std::istream& in) {
   return crc;
 }
 
-// Of the recordings that this process has finished.
+// Guards the recordings that this process has finished.
 std::mutex own_mutex;
 std::set<unsigned long> own_checksums;
 
@@ -91,7 +91,7 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
   const Hdf5Lock lock;
   const Hdf5Handle layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_userblock(layout.get(), kUserBlockBytes);
-  // What is written anew goes elsewhere: until the next flush the file on the disk speaks of the old place.
+  // Rewritten data go to a new place: until the next flush the file on the disk refers to the old one.
   H5Pset_file_space_strategy(layout.get(), H5F_FSPACE_STRATEGY_NONE, false, 1);
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_evict_on_close(access.get(), true);
@@ -157,8 +157,8 @@ std::uint64_t RecordingFile::end() const {
   return end;
 }
 
-// HDF5 leaves nobody knows what of a file whose writing failed half-way. Here it cannot: the disk is asked
-// for the room first, and what was written before it refused is whole.
+// Reserves room on the disk first, because HDF5 leaves an undefined file if writing fails half-way. So
+// everything written before a refusal is whole.
 void RecordingFile::reserve(std::uint64_t bytes) {
   const std::uint64_t wanted = end() + bytes + kRoomForMetadata;
   if (wanted <= reserved_) return;
@@ -345,7 +345,7 @@ void RecordingFile::flush(std::uint64_t dropped) {
   if (++flushes_ % kFlushesRemembered == 0) forget_flushed_metadata();
 }
 
-// Where each piece lies: 100 MB an hour. They go with a dataset that is closed (H5Pset_evict_on_close).
+// Frees HDF5's record of the pieces' places, 100 MB an hour, by closing each dataset (H5Pset_evict_on_close).
 void RecordingFile::forget_flushed_metadata() {
   for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_}) {
     for (Column& column : *columns) {

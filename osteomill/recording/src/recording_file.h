@@ -22,9 +22,10 @@ inline constexpr std::uint64_t kRecordingVersionBefore = 5;
 /// before anything is written: a full disk ends a recording and spoils nothing of it.
 class RecordingFile {
  public:
-  /// Columns are compressed in pieces of so many rows. A piece that is written once and whole costs least.
+  /// Columns are compressed in pieces of this number of rows. A piece that is written once and whole costs
+  /// least.
   static constexpr std::size_t kChunkRows = 512;
-  /// A row in so many has the bone's hash.
+  /// One row in this number has the bone's hash.
   static constexpr std::uint64_t kHashRows = 100;
 
   /// Creates the file, over one that is there.
@@ -94,18 +95,18 @@ class RecordingFile {
 /// known before HDF5 sees it.
 inline constexpr std::size_t kUserBlockBytes = 512;
 
-/// Writes the line into a recording that is finished and closed. Throws InputError where that fails.
+/// Writes the line into a recording that is finished and closed. Throws InputError if that fails.
 void write_checksum(const std::filesystem::path& path);
 
 /// `none`: an unfinished recording, or one that another program has rewritten. `our_own`: it is intact, and
 /// what this process has written.
 enum class Checksum : unsigned char { none, intact, broken, our_own };
 
-/// Throws InputError where the file cannot be read.
+/// Throws InputError if the file cannot be read.
 Checksum check_checksum(const std::filesystem::path& path);
 
 /// The description as attributes of the file's root, and its further settings as attributes of the group
-/// /settings, the unit of KEY in the attribute KEY.unit. Labels, where there are any, are three attributes of
+/// /settings, the unit of KEY in the attribute KEY.unit. Labels, if there are any, are three attributes of
 /// the group /labels each, VALUE.name, VALUE.colour ("#rrggbb") and VALUE.no_go (0 or 1). Failures are
 /// InputErrors that name the file; under Hdf5Lock. Throws std::invalid_argument for a key that is empty,
 /// stands twice or ends in ".unit".

@@ -48,7 +48,7 @@ void begin_at(const SessionStart& start, Volume& bone) {
   for (DensityBlock brick : start.bricks) edited.swap(brick);
 }
 
-// Of settings that may be out of range.
+// Makes an object from settings that may be out of range.
 template <typename Make>
 auto made(const Recording& recording, const Make& make) {
   try {

@@ -30,7 +30,7 @@ Volume fresh_bone(double radius_mm = 5) {
                                        testing_support::ball(Vec3::Zero(), radius_mm));
 }
 
-// Of all settings that a session has, none at its default.
+// Returns all settings of a session, none at its default.
 SessionSettings settings_of_all(const AlgorithmDescription& algorithm) {
   return {{.algorithm = algorithm,
            .cutting = {.spindle_speed_rpm = 30000, .tangential_share = 0.2},
@@ -53,7 +53,7 @@ std::unique_ptr<MillingSession> make(std::shared_ptr<Volume> bone, const Algorit
   return std::make_unique<MillingSession>(std::move(bone), densities, setup);
 }
 
-// What a hand does to a ball of bone: presses and slides, rests, jumps, vanishes, is placed elsewhere.
+// Moves like a hand on a ball of bone: presses and slides, rests, jumps, vanishes, is placed elsewhere.
 class Hand {
  public:
   TickRecord tick(MillingSession& session) {

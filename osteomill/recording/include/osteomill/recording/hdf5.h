@@ -49,7 +49,7 @@ class Hdf5Handle {
 
   hid_t get() const { return id_; }
   bool valid() const { return id_ >= 0; }
-  /// False where HDF5 could not close it in order.
+  /// False if HDF5 could not close it in order.
   bool close() {
     const hid_t id = std::exchange(id_, H5I_INVALID_HID);
     return id < 0 || closer_(id) >= 0;
@@ -60,7 +60,7 @@ class Hdf5Handle {
   Closer closer_ = nullptr;
 };
 
-/// Greater numbers overflow in sums of squares, and are refused where they are read.
+/// Greater numbers overflow in sums of squares, and are refused when they are read.
 inline constexpr double kMostReal = 1e12;
 
 /// HDF5's name for what stands in memory.

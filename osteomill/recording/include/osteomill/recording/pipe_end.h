@@ -30,11 +30,11 @@ class PipeEnd {
   PipeEnd& operator=(const PipeEnd&) = delete;
 
   bool takes() const { return does_ == Does::take; }
-  /// Throws std::runtime_error where the other end has gone.
+  /// Throws std::runtime_error if the other end has gone.
   void pass_bytes(void* data, std::size_t count);
   /// Passes how many there are of things of this size. Throws std::runtime_error for too many.
   std::size_t pass_count(std::size_t count, std::size_t size);
-  /// Throws std::runtime_error where not all that was put in could be written.
+  /// Throws std::runtime_error if not all that was put in could be written.
   void flush();
 
  private:

@@ -23,13 +23,13 @@ struct Hdf5File {
   [[noreturn]] void refuse(const std::string& reason) const;
 };
 
-/// Throws InputError where the path leads to no regular file, or to one that another program is writing.
+/// Throws InputError if the path leads to no regular file, or to one that another program is writing.
 void require_readable(const std::filesystem::path& path);
-/// Opens the file, without a lock of HDF5's. Throws InputError where it is not HDF5, or holds what leads out
+/// Opens the file, without a lock of HDF5's. Throws InputError if it is not HDF5, or holds what leads out
 /// of it: links, values in other files, filters that are not HDF5's own. Under Hdf5Lock.
 Hdf5File open_hdf5(const std::filesystem::path& path);
 /// Lets a child process `put` something into a pipe, and this one `take` it. Throws InputError, naming the
-/// file, with the reason for which the child refused it, or where the child ended otherwise, did not end, or
+/// file, with the reason for which the child refused it, or if the child ended otherwise, did not end, or
 /// cannot be started.
 void pass_from_child(const std::filesystem::path& path, const std::function<void(PipeEnd&)>& put,
                      const std::function<void(PipeEnd&)>& take);
@@ -62,10 +62,10 @@ struct Hdf5Column {
   std::size_t rows = 0;
 };
 
-/// Throws InputError where there is no such column, or it claims more rows than the file could hold.
+/// Throws InputError if there is no such column, or it claims more rows than the file could hold.
 Hdf5Column open_column(const Hdf5File& file, const std::string& place, hsize_t width = 1);
 
-/// Returns all values of a column. Throws InputError where they cannot be read.
+/// Returns all values of a column. Throws InputError if they cannot be read.
 template <typename Value>
 std::vector<Value> read_values(const Hdf5File& file, const Hdf5Column& column) {
   std::vector<Value> values(column.rows * column.width);

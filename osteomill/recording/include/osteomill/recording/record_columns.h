@@ -10,7 +10,7 @@
 namespace osteomill {
 
 /// Flags of the fields of a TickRecord: the CSV log has it (recordings have all); a clock measured it, so
-/// that it differs from run to run; it is not finite where the device gave no pose.
+/// that it differs from run to run; it is not finite if the device gave no pose.
 inline constexpr unsigned kInLog = 1, kByTheClock = 2, kMayBeMissing = 4;
 
 /// Returns the columns of recordings and logs, those of the CSV log in its order.
@@ -19,7 +19,7 @@ const std::vector<Field<TickRecord>>& fields_of<TickRecord>();
 
 /// Writes the CSV log: a header and a row a tick, `time_s` first and `compute_us` last. Numbers are the
 /// shortest that read back to the same double, with a point whatever the locale. Appears whole or not at all;
-/// throws InputError, naming the file, where it cannot be written.
+/// throws InputError, naming the file, if it cannot be written.
 void write_csv(const std::filesystem::path& path, std::span<const TickRecord> records);
 
 }  // namespace osteomill

@@ -14,7 +14,7 @@ namespace osteomill {
 
 /// Writes one record a tick to an HDF5 file (the layout: recording_file.h) from a thread of its own.
 ///
-/// While it runs the file is called NAME.part.h5 where NAME.h5 was asked for; `close` gives it its name, so a
+/// While it runs the file is called NAME.part.h5 if NAME.h5 was asked for; `close` gives it its name, so a
 /// file of the final name is always whole. Twice a second what was recorded so far is made safe: a program
 /// that is killed leaves a NAME.part.h5 that read_recording opens, less the last second at the most, and that
 /// other HDF5 programs open too (hence the extension stays last). A recorder destroyed without `close`, as
@@ -28,7 +28,7 @@ namespace osteomill {
 /// One thread pushes; another (or the same) makes, closes and destroys the recorder, after the last push.
 class Recorder {
  public:
-  /// So many records (16 s at 1000 Hz), or a few more, wait to be written before any is lost.
+  /// Number of records (16 s at 1000 Hz) that can wait to be written before any is lost.
   static constexpr std::size_t kCapacity = 16384;
 
   /// When the first session's records are written: at once, for a session that begins with the recording, or
