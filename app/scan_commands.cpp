@@ -48,7 +48,7 @@ void run_info(const InfoOptions& options) {
   fmt::print("{}", options.json ? to_json(summary) : to_text(summary));
 }
 
-// Of the commands that write a bone to a file, as it was scanned or as a recording left it.
+// Options of the commands that write a bone to a file, as it was scanned or as a recording left it.
 struct WriteOptions {
   ScanOptions scan;
   std::string out;
@@ -115,7 +115,7 @@ void add_info_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("info", "Show what was read of a scan");
   command->group("Scans");
   add_scan_options(*command, options->scan);
-  command->add_flag("--json", options->json, "As JSON");
+  command->add_flag("--json", options->json, "Print the summary as JSON");
   add_quiet_option(*command);
   command->callback([=] { run_info(*options); });
 }

@@ -40,12 +40,12 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
   static const std::vector<Field<S, std::string>> all{
       field<S>(
           text("series", "SERIES", app::kOfTheSource,
-               "Which DICOM series, where there are several: its number in what info lists, or the "
-               "beginning of its UID; else the largest CT"),
+               "DICOM series to read: its number in the list of info, or the beginning of its UID (default: "
+               "the largest CT)"),
           [](auto& s) -> auto& { return s.read.series; }),
       {text("as", "scan|labels", app::kOfTheSource,
-            "Take its values for densities, or for labels, all of which are bone; else as it says or looks, "
-            "and with --iso for densities"),
+            "Take the values as densities, or as labels, all of which are bone (default: by header and "
+            "content, with --iso as densities)"),
        [](const S& s) { return s.as_labels ? *s.as_labels ? "labels" : "scan" : ""; },
        [](S& s, const std::string& kind) {
          app::require_word("kind", kind, {"scan", "labels"});
@@ -53,11 +53,11 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
        }},
       field<S>(
           text("labels", "FILE", app::kOfWhatIsBone,
-               "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid"),
+               "Label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid"),
           [](auto& s) -> auto& { return s.labels.map; }),
       field<S>(
           text("label-table", "FILE", app::kOfWhatIsBone,
-               "Names and colours of labels: a colour table of 3D Slicer's"),
+               "Colour table of 3D Slicer with names and colours of the labels"),
           [](auto& s) -> auto& { return s.labels.table; }),
       {no_go, [](const S& s) { return fmt::format("{}", fmt::join(s.labels.no_go, ",")); },
        [](S& s, const std::string& labels) {
@@ -90,8 +90,8 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
           [&bytes = options.read.max_memory_bytes](double gigabytes) {
             bytes = static_cast<std::uint64_t>(gigabytes * 1e9);
           },
-          "Refuse a scan that takes more, with all that is made of it or unpacked; else what the machine "
-          "has or the program may take of it (cgroup v2)")
+          "Refuse a scan that needs more memory, including everything unpacked or made of it (default: the "
+          "memory of the machine, or the program's share of it by cgroup v2)")
       ->check(CLI::Range(1e-3, 1e6))
       ->type_name("GB");
 }
