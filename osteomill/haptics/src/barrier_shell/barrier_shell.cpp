@@ -347,7 +347,7 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
   if (ramp_ < 1) {
     ramp_ = std::min(1.0, ramp_ + std::max(0.0, dt_s) / kRamp_s);
     result.wrench = ramp_ * result.wrench + (1 - ramp_) * ramp_from_;
-    // Bone is paid for with what the hand gives.
+    // Scales the cutting force too: milling must not exceed the work of the hand.
     result.burr_force_W_N *= ramp_;
   }
   sent_ = result.wrench;
@@ -358,8 +358,8 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
   bricks_.begin_tick(tool_, X_WT_);
   ++counts_.ticks;
   if (!has_pose_) X_WD_before_ = X_WD;
-  // Nothing is known of where a tool came from that begins: in bone it is carried out, beside bone it has
-  // come from outside, however deep its rim may lie in it.
+  // At the start a tool whose centreline is in bone follows the device without force until it is outside. Any
+  // other tool counts as coming from outside, even if its surface overlaps bone.
   if (carried_ || !has_pose_) {
     carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
     X_WT_ = X_WD;

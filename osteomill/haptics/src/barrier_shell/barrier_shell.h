@@ -84,15 +84,15 @@ class BarrierShell final : public HapticAlgorithm {
   MoveSize leeway_left_;
   // Began inside bone and has not yet been outside: with the device, and nothing is felt.
   bool carried_ = false;
-  // True once all bone about it was known: until then it stands still.
+  // True once all bone around the tool was known; until then the tool stands still.
   bool has_begun_ = false;
-  // By how much the cores are yet smaller than they will be, for a tool that began in touch with bone.
+  // Inset of the cores, mm, still to be removed by growing, for a tool that began in touch with bone.
   double smaller_mm_ = 0;
-  // The wrench goes from what was sent to what is to be felt.
+  // Progress of the blend, 0 to 1, from the wrench sent before to the computed one.
   double ramp_ = 1;
   Wrench ramp_from_;
   Wrench sent_;
-  // At the end of the last tick; none if nothing is to be compared.
+  // The stored energy at the end of the last tick, valid if has_energy_.
   double energy_before_Nmm_ = 0;
   bool has_energy_ = false;
   Counts counts_;

@@ -11,16 +11,16 @@
 
 namespace osteomill {
 
-/// Keeps which bricks wait to be brought up to date after densities fell and which of them bear the tool, and
-/// bounds how much of that a tick does, counted in points. A value without pointers; all of it is safe in the
+/// Schedules the update of bricks after densities fell: which bricks wait, and on which of them the tool
+/// rests. Bounds the work of a tick, counted in points. A value without pointers; all of it is safe in the
 /// haptic tick.
 class UpdateQueue {
  public:
-  /// About the number of points a tick that are brought up to date in bricks that bear the tool. (Tried:
-  /// bringing a bearing brick up to date only once its surface has sunk by 2 um, judged by bone lost over
-  /// area. It took half the time but doubled the steps of torque, 0.28 N mm for 0.14; tooth, 3 N.)
+  /// About the number of points that a tick updates in bricks on which the tool rests. (Tried: updating such
+  /// a brick only once its surface has sunk by 2 um, judged by bone lost over area. It took half the time but
+  /// doubled the steps of torque, 0.28 N mm for 0.14; tooth, 3 N.)
   static constexpr int kBearingPerTick = 1500;
-  /// About the number of points a tick that are made in bricks that the tool meets for the first time.
+  /// About the number of points that a tick builds in bricks that the tool meets for the first time.
   static constexpr int kMadePerTick = 2500;
   static constexpr std::size_t kMostBearing = 1024;
 
@@ -29,11 +29,11 @@ class UpdateQueue {
   /// Takes out the next brick, if any waits.
   std::optional<VoxelIndex> next();
   bool is_empty() const { return walked_.empty() && waiting_.empty(); }
-  /// Returns how many bricks wait, those that bear the tool among them.
+  /// Returns how many bricks wait, including those on which the tool rests.
   std::size_t size() const;
 
-  /// Lists the slot of a brick that bears the tool, if there is room. The tool rests on these bricks: if they
-  /// waited with the others, it would stand still and drop once the last had its turn.
+  /// Lists the slot of a brick on which the tool rests, if there is room. If these bricks waited with the
+  /// others, the tool would stand still and drop once the last had its turn.
   void add_bearing(std::uint32_t slot) {
     if (bearing_count_ < kMostBearing) bearing_[bearing_count_++] = slot;
   }

@@ -10,7 +10,7 @@ namespace osteomill {
 
 namespace {
 
-// How far apart the burr is looked at, and how often at most; it is asked in every tick.
+// Distance between sample points on the burr, mm, and their largest number, because every tick samples them.
 constexpr double kApart_mm = 0.25;
 constexpr int kMaxLooks = 256;
 // Smallest cosine with the force's direction: at smaller ones the moved ball hardly reaches new space.

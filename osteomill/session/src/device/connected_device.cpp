@@ -36,7 +36,7 @@ constexpr double kUnitTolerance = 1e-3;
 constexpr int kWaitsForPose = 500;
 // More rounds than it takes to come down from any wrench.
 constexpr int kMostRoundsAtTheEnd = 50;
-// How long a maker's function may take before that is said, and how long closing waits for it.
+// Time that a maker's function may take before a message names it, and time that closing waits for it.
 constexpr double kHangs_s = 0.1;
 constexpr int kWaitsForTheEnd = 800;
 

@@ -28,7 +28,7 @@ VendorLibrary::VendorLibrary(std::string device, const char* variable,
     if (!library_) throw InputError(device_, dlerror());
     return;
   }
-  // A file that is there, but lacks a library that it needs, is told of before one that is not.
+  // Reports a file that exists but lacks a library that it needs before one that does not exist.
   std::string why;
   for (const char* name : names) {
     file_ = name;

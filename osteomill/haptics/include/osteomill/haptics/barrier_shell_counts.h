@@ -15,8 +15,9 @@ struct Counts {
   std::uint64_t most_points = 0;
   /// Ticks that ended before the solver was done, at the best certified pose.
   std::uint64_t unfinished = 0;
-  /// Ticks at whose start the stored energy was above that at the end of the tick before, with the device
-  /// where it was: what milling or points brought up to date have added. The rises in all, and the worst one.
+  /// Ticks at whose start, with the device's pose unchanged, the stored energy was above that at the end of
+  /// the tick before: milling or updated points have added energy. Then the sum of the rises, and the worst
+  /// one.
   std::uint64_t energy_rises = 0;
   double energy_risen_Nmm = 0;
   double worst_rise_Nmm = 0;

@@ -135,7 +135,8 @@ Pose LineProxy::drawn_tool(const Pose& X_WL) const {
   return X_WT;
 }
 
-// Eq. 1 can divide by nothing. What comes of it is seen where the wrench is sent; it must not last.
+// Eq. 1 can divide by zero. The session replaces the wrench, which is then not finite, by zero; the state is
+// dropped so that the next tick recovers.
 void LineProxy::forget_what_is_not_finite() {
   const auto is_usable = [](const Vec3& vector) { return vector.norm() < kFarthest; };
   if (memory_.intersection_W && !is_usable(*memory_.intersection_W)) memory_.intersection_W.reset();

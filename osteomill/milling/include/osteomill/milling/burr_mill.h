@@ -73,7 +73,7 @@ class BurrMill {
   /// Returns what the steps took of each label and no caller has taken out of the tally yet. Empty if the
   /// volume has no labels.
   LabelTally& by_label() { return by_label_; }
-  /// Returns the bone that was pressed for and not yet cut, in mm^3 of reference density.
+  /// Returns the unspent cutting budget, in mm^3 of reference density.
   double carry_mm3() const { return carry_mm3_; }
 
  private:

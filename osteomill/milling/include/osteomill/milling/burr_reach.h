@@ -13,9 +13,9 @@
 namespace osteomill {
 
 /// Finds where a ball overlaps voxels of one volume that are denser than a floor. It remembers, in bricks of
-/// 8 x 8 x 8 voxels and a bit a voxel, which ones held nothing when last looked at, so that a step costs
-/// little more than what it finds: a burr in its hole has emptied bricks all about it. It finds pieces of
-/// rows (i runs along a row), brick by brick.
+/// 8 x 8 x 8 voxels and a bit a voxel, which ones were empty at the last visit, so that a step costs little
+/// more than what it finds: a burr in its hole has emptied the bricks around it. It finds pieces of rows (i
+/// runs along a row), brick by brick.
 class BurrReach {
  public:
   /// Allocates all that `find` needs. `volume` outlives it; from the first `find` on its densities must not

@@ -65,8 +65,8 @@ class DensityGrid {
   void set(const VoxelIndex& v, float density) noexcept {
     densities_.set(place(v.i, v.j, v.k), density);
   }
-  /// Makes the memory for changes about `changed` ready before they come (CopyOnWriteFloats::prepare), as far
-  /// as a burr may go on from there in some tens of milliseconds.
+  /// Pre-faults the pages around `changed`, so that the tick does not page-fault
+  /// (CopyOnWriteFloats::prepare), as far as a burr may go on from there in some tens of milliseconds.
   void prepare_about(const VoxelBox& changed);
 
  private:

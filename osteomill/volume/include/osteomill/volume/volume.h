@@ -51,7 +51,7 @@ class Volume {
   }
   /// Lowers the density of one voxel. Safe in the haptic tick.
   void lower_density(const VoxelIndex& v, float density) noexcept { lower_row(v.j, v.k, &v.i, &density, 1); }
-  /// Has the memory for changes made ahead of them (DensityGrid::prepare_about). For another thread than the
+  /// Prepares the memory for coming changes (DensityGrid::prepare_about). For another thread than the
   /// one that lowers, if that one must not wait.
   void prepare_about(const VoxelBox& changed) { grid_.prepare_about(changed); }
   /// Returns a hash of what differs from the densities the bone was made with: 0 if nothing does, and the
