@@ -149,7 +149,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const double threads = options.threads;
   const double recorded = static_cast<double>(trials.size()), walls = options.no_stability ? 0 : recorded;
   const double whole = recorded + (static_cast<double>(others.size()) + walls) / threads;
-  // What an earlier comparison left there goes when this one is done, and not before.
+  // An earlier comparison's files there go when this one is done, and not before.
   write_folder_atomically(
       options.out,
       [&](const fs::path& beside) {

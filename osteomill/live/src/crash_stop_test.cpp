@@ -97,7 +97,7 @@ void overflow_the_stack() {
   const CrashStop crash_stop;
   SharedDevice device(sent, end.haptic_thread);
   std::unique_ptr<HapticThread> live = live_on(bone, device);
-  // As a program does that opens another bone: the new session is made while the old one is there.
+  // Makes the new session while the old one is there, as a program does that opens another bone.
   if (end.replaces_its_session) {
     live->start();
     live = live_on(bone, device);

@@ -111,7 +111,6 @@ TEST(RunMetrics, APathIsHowFarTheBurrGotAndNotHowMuchItTrembled) {
   EXPECT_NEAR(run_metrics(moving).path_mm, 10, 0.25);
 }
 
-// What is felt is measured while something is felt: free air before and after changes nothing but the shares.
 // Handle and tool lean by 20 degrees together; then the tool leans 2 degrees less than the handle, half of
 // the time.
 TEST(RunMetrics, TheLeanThatTheHandCommandsIsNoSpreadAgainstTheHandle) {
@@ -145,6 +144,7 @@ TEST(RunMetrics, BoneIsRemovedPerSecondOfCutting) {
   EXPECT_TRUE(std::isnan(run_metrics(cutting).removal_mm3_per_s));
 }
 
+// Free air before and after changes nothing but the shares: only what is felt is measured.
 TEST(RunMetrics, FreeAirIsNotMeasured) {
   const RunMetrics touching = run_metrics(simple_recording(4000));
   Recording longer = simple_recording(10000);

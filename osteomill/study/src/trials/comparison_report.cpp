@@ -79,7 +79,7 @@ std::string about_line_proxy(const Study& study, const MillingTool& tool) {
   return "";
 }
 
-// What was compared, whether that can show anything, and what it shows.
+// Says what was compared, whether that can show anything, and what it shows.
 Section opening(const Study& study, const std::vector<Recording>& recordings) {
   Section section{.tables = conclusions(study, probes_in(recordings))};
   if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};

@@ -102,7 +102,7 @@ TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
   for (MeasuredRun& r : rows)
     if (r.algorithm == "line-proxy" && r.phase == kHolding && r.seed < 4) r.not_reached = "the shaft turned";
   expect_says(answer_row(rows, "1 line-proxy"), "|5 of 8|");
-  // What most hands could not do is not recommended.
+  // An algorithm that most hands could not work with is not recommended.
   for (MeasuredRun& r : rows) {
     if (r.algorithm == "line-proxy") r.metrics.torque_Nmm.hp_share = 0.001;
     if (r.algorithm == "point-shell" && r.seed < 5) r.not_reached = "the shaft turned";

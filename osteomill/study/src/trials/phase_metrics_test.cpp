@@ -61,7 +61,7 @@ TEST(PhaseMetrics, AHoldThatIsNoneIsNamed) {
   for (std::size_t n = 0; n < wanders.records.size(); ++n)
     wanders.records[n].X_WT.position_mm.x() = 0.003 * static_cast<double>(n);
   EXPECT_EQ(measured_phase(wanders).not_reached, "the burr moved by more than 2 mm/s");
-  // What the hand itself did not reach comes first, and milling is no hold.
+  // The hand's own shortfall comes first, and milling is no hold.
   wanders.description.settings.push_back({std::string(kNotReachedKey), std::string("the tool was lost"), ""});
   EXPECT_EQ(measured_phase(wanders).not_reached, "the tool was lost; the burr moved by more than 2 mm/s");
   wanders.description.phase = kMilling;

@@ -235,7 +235,7 @@ std::vector<std::string> how_to_read(const Study& study) {
   return paragraphs;
 }
 
-// Of one hand, which settles nothing, whether the rule holds in it.
+// One hand settles nothing: its cell says whether the rule holds in it.
 Cell verdict_cell(const StudyFinding& finding, bool one_hand) {
   const Verdict verdict = one_hand ? finding.of_medians.verdict : finding.verdict;
   if (one_hand && verdict == Verdict::agrees) return {"holds in this hand", Look::faint};
@@ -288,7 +288,7 @@ Table verdicts_table(const Study& study) {
   return table;
 }
 
-// What one chooses an algorithm by: a figure of a phase, of which less is better.
+// A reason to choose an algorithm: a figure of a phase, of which less is better.
 struct Question {
   const char* name;
   std::string_view phase;
@@ -358,7 +358,7 @@ std::size_t hands_that_did_all(const Study& study, const AlgorithmId& algorithm)
   return done;
 }
 
-// What is less than this is rounding.
+// Less than this is rounding.
 std::string degrees_text(double degrees) {
   constexpr double kNone_deg = 1e-6;
   return degrees < kNone_deg ? "0" : fmt::format("{:.2g}", degrees);
@@ -556,9 +556,9 @@ Section findings_section(const Study& study) {
           "this project."}};
   if (study.seeds().size() > 1) {
     section.paragraphs.push_back(
-        "Hands agree with the paper, or do not, if so many more than half do that tossing a coin would give "
-        "as "
-        "many in one of twenty tries at most, which takes five hands; else it is not settled. p is the "
+        "Hands agree with the paper, or do not, if more than half do, and tossing a coin would give as many "
+        "in "
+        "one of twenty tries at most, which takes five hands; else it is not settled. p is the "
         "chance "
         "that as many or more would agree by the toss.");
   }

@@ -12,8 +12,8 @@ namespace osteomill {
 struct StudyFinding {
   /// The rule applied to the medians over the seeds.
   Finding of_medians;
-  /// The verdict of the hands: agreement, or its absence, if it is the same in so many more than half that
-  /// the sign test is significant, which takes five hands; else it is not settled. If it could be tested in
+  /// The verdict of the hands: agreement, or its absence, if it is the same in enough more than half for the
+  /// sign test to be significant, which takes five hands; else it is not settled. If it could be tested in
   /// no more than half, it is the verdict of the medians.
   Verdict verdict = Verdict::not_recorded;
   /// In how many seeds the rule holds, and to how many it can be applied.

@@ -16,7 +16,7 @@ enum class Unreached : unsigned char { marked, dropped };
 /// Writes into the folder's report/ what the study's slices hold so far: trials.csv, a row for each part of
 /// each trial (docs/studies.md), and report.html with the design's maps and, where it asks for them, the
 /// paper's findings; both say what share of the study they are of, and how many trials did not do all of
-/// their test. Whole or not at all. Returns the page's path. Throws InputError where no trial is done, a map
+/// their test. Whole or not at all. Returns the page's path. Throws InputError if no trial is done, a map
 /// has nothing to show, or writing fails.
 std::filesystem::path write_study_report(const StudyDesign& design, const StudyFolder& study,
                                          Unreached unreached = Unreached::marked);

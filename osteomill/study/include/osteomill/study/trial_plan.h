@@ -60,7 +60,7 @@ std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettin
 /// lost contact and did not find it again.
 RunMetrics phase_metrics(const Recording& recording);
 
-/// What a hold must keep to be one: the least share of the time in contact and of the time with the shaft
+/// The limits of a hold: the least share of the time in contact and of the time with the shaft
 /// against the wall, the furthest that the shaft may turn from its mean direction, and the longest path of
 /// the burr per second. Hands that hold still keep to 0.2 degrees and, by their tremor, 0.9 mm/s.
 inline constexpr double kHeldContact = 0.9, kHeldShaft = 0.5, kHeldTurn_deg = 3, kHeldPath_mm_per_s = 2;
