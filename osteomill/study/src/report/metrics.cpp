@@ -228,7 +228,10 @@ RunMetrics run_metrics(const Recording& recording, std::size_t first) {
   if (is_enough_contact(contact.torque)) metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
   if (is_enough_contact(contact.shaft)) {
     metrics.shaft = direction_metrics(shaft_W);
-    metrics.shaft_from_handle_deg = direction_metrics(shaft_D).spread_deg;
+    // An algorithm that shows the tool at the handle differs by rounding alone.
+    constexpr double kRounding_deg = 1e-6;
+    const double spread_deg = direction_metrics(shaft_D).spread_deg;
+    metrics.shaft_from_handle_deg = spread_deg < kRounding_deg ? 0 : spread_deg;
   }
   metrics.turns = shaft_turns(records, touches, rate_hz);
   metrics.torque_follows_force = torque_following_force(torque_Nmm, force_N, shaft_touches, rate_hz);

@@ -245,6 +245,8 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
     if (setting.key == kCommandLineKey || setting.key == kNotReachedKey) continue;
     settings.push_back(setting);
     settings.back().value = std::visit([](const auto& value) { return text_of(value); }, setting.value);
+    if (setting.key == kSamplePointsKey && std::get<std::string>(settings.back().value) == "0")
+      settings.back().value = "made as the tool comes near";
   }
   return settings;
 }

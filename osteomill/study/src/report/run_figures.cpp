@@ -266,7 +266,8 @@ std::string shaft_panel(const MeasuredRun& run, const PanelGrid& grid, const Pan
   return fmt::format(
       "{}set title \"{{/:Bold {}}}, {}\\n{}\" offset 0,-0.3\n"
       "set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\nset ytics {:.6g}\n"
-      "set xlabel 'Towards {} (°)' offset 0,0.4\nset ylabel 'Towards {} (°)' offset 1,0\n"
+      "set xlabel 'Towards {} of the scan (°)' offset 0,0.4\nset ylabel 'Towards {} of the scan (°)' offset "
+      "1,0\n"
       "plot {} using 1:2:3 with points pt 7 ps 0.38 lc palette notitle\nunset colorbox\n",
       panel_margins(grid, cell), run.algorithm.label, run.phase, words(run), -half_deg, half_deg, -half_deg,
       half_deg, round_down(half_deg), round_down(half_deg), axes.right_name, axes.up_name, figure.data(data));

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <ostream>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -50,31 +52,51 @@ std::vector<Section> differences(const std::vector<const Recording*>& recordings
        .tables = {std::move(table)}}};
 }
 
+double seconds_of(const Recording& recording) {
+  return recording.records.back().time_s - recording.records.front().time_s;
+}
+
+// The times of each phase, and that which was asked for if the recordings name it: "Milling took 12.9 to 18.1
+// s (20 s asked for)".
+std::string how_long(const std::vector<const Recording*>& recordings) {
+  std::map<std::string, std::pair<double, double>> least_and_most;
+  for (const Recording* recording : recordings) {
+    const double seconds = seconds_of(*recording);
+    const auto [phase, is_new] =
+        least_and_most.try_emplace(recording->description.phase, std::pair(seconds, seconds));
+    phase->second.first = std::min(phase->second.first, seconds);
+    phase->second.second = std::max(phase->second.second, seconds);
+  }
+  std::string text;
+  for (const auto& [phase, seconds] : least_and_most) {
+    const auto [least, most] = seconds;
+    const double* asked = find_setting<double>(recordings.front()->description, "script." + phase);
+    text += fmt::format(" {} took {}{:.3g} s{}.", phase.empty() ? "It" : "The " + phase,
+                        most - least < 0.1 ? "" : fmt::format("{:.3g} to ", least), most,
+                        asked == nullptr ? "" : fmt::format(" ({:.3g} s asked for)", *asked));
+  }
+  return text;
+}
+
 Section what_was_run(const std::vector<const Recording*>& recordings) {
   const RunDescription& d = recordings.front()->description;
-  double seconds = 0;
-  for (const Recording* recording : recordings) {
-    seconds = std::max(seconds, recording->records.back().time_s - recording->records.front().time_s);
-  }
   if (!differences_table(recordings).rows.empty())
     return {
         .title = "What was run",
-        .paragraphs = {fmt::format("{} recordings of up to {:.4g} s, which differ as the first table shows. "
-                                   "osteomill {}.",
-                                   recordings.size(), seconds, d.program_version)}};
-  return {
-      .title = "What was run",
-      .paragraphs = {fmt::format("Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
-                                 "{:.6g}. Tool: a burr of {:.4g} mm "
-                                 "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} of up to "
-                                 "{:.4g} s at {:.6g} ticks a "
-                                 "second, seed {}. osteomill {}.",
-                                 d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(),
-                                 d.spacing_mm.y(), d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm,
-                                 d.tool.shaft_radius_mm, d.tool.shaft_length_mm, recordings.size(),
-                                 recordings.size() == 1 ? "recording" : "recordings", seconds,
-                                 1 / d.tick_period_s, d.seed, d.program_version),
-                     "What is reported is what was sent to the hand at every tick."}};
+        .paragraphs = {fmt::format("{} recordings, which differ as the first table shows.{} osteomill {}.",
+                                   recordings.size(), how_long(recordings), d.program_version)}};
+  return {.title = "What was run",
+          .paragraphs = {
+              fmt::format("Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
+                          "{:.6g}. Tool: a burr of {:.4g} mm "
+                          "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} at {:.6g} "
+                          "ticks a second, seed {}.{} osteomill {}.",
+                          d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(), d.spacing_mm.y(),
+                          d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm, d.tool.shaft_radius_mm,
+                          d.tool.shaft_length_mm, recordings.size(),
+                          recordings.size() == 1 ? "recording" : "recordings", 1 / d.tick_period_s, d.seed,
+                          how_long(recordings), d.program_version),
+              "What is reported is what was sent to the hand at every tick."}};
 }
 
 struct RunFigure {

@@ -84,10 +84,23 @@ std::string panel(const Study& study, std::string_view phase, const Field<RunMet
   return range_for(all_values(study, phase, metric)) + plot + "\n";
 }
 
+// Breaks a text that is wider than a panel at the blank nearest to its middle.
+std::string in_two_lines(std::string text) {
+  constexpr std::size_t kWide = 26;
+  if (text.size() <= kWide) return text;
+  const std::size_t after = text.find(' ', text.size() / 2), before = text.rfind(' ', text.size() / 2);
+  const bool is_nearer = after == std::string::npos ||
+                         (before != std::string::npos && text.size() / 2 - before < after - text.size() / 2);
+  if (const std::size_t blank = is_nearer ? before : after; blank != std::string::npos)
+    text.replace(blank, 1, "\\n");
+  return text;
+}
+
 // The title stands over the whole panel: some are wider than its axes.
 std::string title(const Field<RunMetrics>& metric, const PanelGrid& grid, const PanelCell& cell) {
-  constexpr double kTitle_px = 16;
-  return fmt::format("set label 2 '{}' at screen {:.4f},screen {:.4f} center\n", label_of(metric),
+  constexpr double kTitle_px = 32;
+  return fmt::format("set label 2 \"{}\" at screen {:.4f},screen {:.4f} center\n",
+                     in_two_lines(label_of(metric)),
                      (cell.left_px + 0.55 * cell.wide_px) / PanelGrid::kWidth_px,
                      (cell.top_px - kTitle_px) / grid.height_px);
 }
@@ -358,12 +371,6 @@ std::size_t hands_that_did_all(const Study& study, const AlgorithmId& algorithm)
   return done;
 }
 
-// Less than this is rounding.
-std::string degrees_text(double degrees) {
-  constexpr double kNone_deg = 1e-6;
-  return degrees < kNone_deg ? "0" : fmt::format("{:.2g}", degrees);
-}
-
 std::string share_text(double share) {
   return std::isnan(share) ? "–" : fmt::format("{:.2g} %", 100 * share);
 }
@@ -392,7 +399,8 @@ Table answer_table(const Study& study, const std::map<std::string, Probe>& probe
         continue;
       }
       const double median = distribution_of(values).median;
-      std::vector<Cell::Piece> cell{{figure.unit.empty() ? share_text(median) : degrees_text(median)}};
+      std::vector<Cell::Piece> cell{
+          {figure.unit.empty() ? share_text(median) : fmt::format("{:.2g}", median)}};
       if (are_compared(study)) {
         const bool first = ranks[n].is_settled && ranks[n].place == 1;
         cell.push_back({"\n" + rank_text(ranks[n]), first ? Look::strong : Look::faint});
@@ -437,9 +445,9 @@ Figure draw_study_figure(const Study& study, std::string_view phase, const std::
                  .head_px = 52,
                  .left_px = 76,
                  .right_px = 10,
-                 .above_px = 34,
+                 .above_px = 52,
                  .below_px = 36};
-  grid.height_px = grid.head_px + 280 * static_cast<double>(grid.rows);
+  grid.height_px = grid.head_px + 298 * static_cast<double>(grid.rows);
   return draw_panels(
       fmt::format("study_{}", phase), grid,
       begin_panels("y") + "set format y '%g'\n" + tics(study) + legend_row(grid, legend(study, phase)),
