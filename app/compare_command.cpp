@@ -118,6 +118,24 @@ RunEvents events_of_a_part(double from, double to) {
   return events;
 }
 
+// In the hands of `seeds`, the first of which is the comparison's own.
+std::vector<MeasuredRun> hold_in_one_hole(const CompareOptions& options, const std::vector<TrialPlan>& trials,
+                                          const RunEvents& events) {
+  const auto own = std::ranges::find(trials, default_algorithm().id,
+                                     [](const TrialPlan& trial) { return trial.settings.algorithm.id; });
+  TrialPlan miller = own == trials.end() ? trials.front() : *own;
+  miller.settings.algorithm = default_algorithm();
+  std::vector<TrialPlan> hands{miller};
+  for (int n = 1; n < options.seeds; ++n)
+    hands.push_back(with_seed(miller, options.trial.milling.seed + static_cast<std::uint64_t>(n)));
+  std::vector<MeasuredRun> runs;
+  for (const std::vector<MeasuredRun>& of_hand :
+       run_trials(hands, "one hole", static_cast<std::size_t>(options.threads), events,
+                  [&](const TrialPlan& hand) { return osteomill::hold_in_one_hole(hand, trials); }))
+    runs.insert(runs.end(), of_hand.begin(), of_hand.end());
+  return runs;
+}
+
 void probe_algorithms(std::vector<TrialPlan>& trials) {
   const MillingTool& tool = trials.front().settings.tool;
   const Volume wall = flat_wall(tool), edge = sharp_edge(tool);
@@ -148,7 +166,9 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const std::vector<TrialPlan> others = other_hands(options, trials);
   const double threads = options.threads;
   const double recorded = static_cast<double>(trials.size()), walls = options.no_stability ? 0 : recorded;
-  const double whole = recorded + (static_cast<double>(others.size()) + walls) / threads;
+  const double holes = trials.size() > 1 ? options.seeds : 0;
+  const double whole = recorded + (static_cast<double>(others.size()) + holes + walls) / threads;
+  const double until_walls = 1 - walls / threads / whole, until_holes = until_walls - holes / threads / whole;
   // An earlier comparison's files there go when this one is done, and not before.
   write_folder_atomically(
       options.out,
@@ -160,10 +180,12 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
             paths.push_back(options.out / path.filename());
         }
         extras.others = run_study_trials(others, static_cast<std::size_t>(options.threads),
-                                         events_of_a_part(recorded / whole, 1 - walls / threads / whole));
+                                         events_of_a_part(recorded / whole, until_holes));
+        if (trials.size() > 1)
+          extras.in_one_hole = hold_in_one_hole(options, trials, events_of_a_part(until_holes, until_walls));
         if (!options.no_stability) {
-          extras.passivity = press_on_walls(options, trials.front().settings,
-                                            events_of_a_part(1 - walls / threads / whole, 1));
+          extras.passivity =
+              press_on_walls(options, trials.front().settings, events_of_a_part(until_walls, 1));
         }
       },
       is_of_a_comparison);

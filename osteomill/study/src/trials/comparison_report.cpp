@@ -152,14 +152,16 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   const Study study = study_of(group, extras);
   // Measured beside the recordings and kept nowhere else: they stay if no figure can be drawn.
   const bool has_further_rows = study.rows().size() + study.rows_of_other_grips().size() > recordings.size();
-  if (has_further_rows || !extras.passivity.empty()) create_folder(out_dir);
+  if (has_further_rows || !extras.passivity.empty() || !extras.in_one_hole.empty()) create_folder(out_dir);
   if (has_further_rows) write_study_csv(out_dir / kStudyCsv, study);
   if (!extras.passivity.empty()) write_passivity_csv(out_dir / "stability.csv", extras.passivity);
+  if (!extras.in_one_hole.empty()) write_study_csv(out_dir / "one-hole.csv", Study(extras.in_one_hole));
   const Section came = opening(study, recordings);
   if (came_out != nullptr) *came_out = came.tables;
   return write_report(group, out_dir, [&](const fs::path& figures) {
     PageText text{.title = kTitle, .opening = came, .sections = {findings_section(study)}};
     if (study.seeds().size() > 1) text.sections.push_back(hands_section(study, figures));
+    if (!extras.in_one_hole.empty()) text.sections.push_back(one_hole_section(Study(extras.in_one_hole)));
     if (!extras.passivity.empty()) {
       text.sections.push_back(
           passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, figures)));

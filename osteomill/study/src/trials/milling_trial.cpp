@@ -22,8 +22,16 @@ MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, c
       tick_s_(settings.tick_s),
       spindle_(settings.spindle) {}
 
+MillingTrial::MillingTrial(const MillingTrial& milled, const TrialSettings& other)
+    : session_(std::make_shared<Volume>(milled.volume()), milled.session_.densities(), other),
+      operator_(milled.operator_),
+      tick_s_(milled.tick_s_),
+      spindle_(milled.spindle_) {
+  session_.take_over(milled.session_.left());
+}
+
 MillingTrial::Tick MillingTrial::tick() {
-  const bool milling_phase = operator_.spindle_asked();
+  const bool milling_phase = is_milling();
   const double before_s = thread_cpu_s();
   TickRecord record = session_.tick(
       operator_, {.time_s = operator_.time_s(), .dt_s = tick_s_, .spindle_on = milling_phase && spindle_});

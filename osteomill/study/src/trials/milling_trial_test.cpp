@@ -1,9 +1,11 @@
 #include "osteomill/study/milling_trial.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "osteomill/study/metrics.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/sampling.h"
 
@@ -69,6 +71,24 @@ TEST_P(MillingTrialTest, TheSameSeedGivesTheSameBits) {
   expect_same_bits(first.milling, second.milling);
   expect_same_bits(first.holding, second.holding);
   EXPECT_NE(run(2).milling.back().X_WD.position_mm, first.milling.back().X_WD.position_mm);
+}
+
+// The hole is the other one's; hand and script go on, and nothing is milled.
+TEST_P(MillingTrialTest, HoldsInAHoleThatAnotherAlgorithmMilled) {
+  MillingTrial milled(bone_, densities_, entry_, settings_);
+  double last_s = 0;
+  while (milled.is_milling()) last_s = milled.tick().record.time_s;
+  TrialSettings other = settings_;
+  other.algorithm = algorithm_named(GetParam());
+  MillingTrial held(milled, other);
+  const std::uint64_t hole = held.volume().change_hash();
+  EXPECT_EQ(hole, milled.volume().change_hash());
+  std::vector<TickRecord> holding;
+  while (!held.finished()) holding.push_back(held.tick().record);
+  ASSERT_EQ(holding.size(), 1000u);
+  EXPECT_NEAR(holding.front().time_s, last_s + 1e-3, 1e-9);
+  EXPECT_EQ(held.volume().change_hash(), hole);
+  EXPECT_GT(std::ranges::count_if(holding, [](const TickRecord& r) { return contact_of(r).any(); }), 900);
 }
 
 TEST_P(MillingTrialTest, LeavesAHoleAndStandsInItWithItsShaftAgainstTheWall) {

@@ -37,6 +37,12 @@ struct MilledTrial {
   std::optional<std::string> faults;
 };
 
+void note_shortfall(const MillingTrial& trial, const ScriptSettings& script, Recording& phase) {
+  std::string missed = shortfall_words(trial.shortfall(), script, phase.description.phase);
+  if (!missed.empty())
+    phase.description.settings.push_back({std::string(kNotReachedKey), std::move(missed), ""});
+}
+
 MilledTrial mill(const TrialPlan& plan, MillingTrial& trial, const RunEvents& events) {
   const std::string& name = plan.settings.algorithm.id.name;
   const ScriptSettings& script = plan.settings.hand_and_device.script;
@@ -59,11 +65,7 @@ MilledTrial mill(const TrialPlan& plan, MillingTrial& trial, const RunEvents& ev
       events.progress(name, std::min(1.0, tick.record.time_s / asked_s));
     }
   }
-  for (Recording& phase : milled.phases) {
-    std::string missed = shortfall_words(trial.shortfall(), script, phase.description.phase);
-    if (!missed.empty())
-      phase.description.settings.push_back({std::string(kNotReachedKey), std::move(missed), ""});
-  }
+  for (Recording& phase : milled.phases) note_shortfall(trial, script, phase);
   milled.faults = faults.sentence();
   return milled;
 }
@@ -76,8 +78,8 @@ std::string new_comparison() {
 }
 
 bool is_of_a_comparison(const std::string& name) {
-  constexpr std::string_view kReport[] = {"report.html", "summary.csv", "study.csv", "stability.csv",
-                                          "figures"};
+  constexpr std::string_view kReport[] = {"report.html",   "summary.csv",  "study.csv",
+                                          "stability.csv", "one-hole.csv", "figures"};
   if (std::ranges::find(kReport, name) != std::end(kReport)) return true;
   return std::ranges::any_of(kPhases, [&](std::string_view phase) {
     const std::size_t dash = name.rfind(fmt::format("-{}.", phase));
@@ -138,6 +140,25 @@ TriedTrial try_trial(StudyTest test, const TrialPlan& plan) {
   }
   tried.cpu_s = thread_cpu_s() - before_s;
   return tried;
+}
+
+std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::vector<TrialPlan>& holds) {
+  MillingTrial milling(milled.bone, milled.densities, milled.entry, milled.settings);
+  while (milling.is_milling() && !milling.finished()) milling.tick();
+  std::vector<MeasuredRun> runs;
+  for (const TrialPlan& hold : holds) {
+    MillingTrial trial(milling, hold.settings);
+    Recording holding;
+    holding.path = fmt::format("{}, seed {}, in one hole", hold.settings.algorithm.id.name,
+                               milled.settings.hand_and_device.seed);
+    holding.description = describe_trial(hold, trial.algorithm().sample_point_count(), kHolding);
+    while (!trial.finished()) holding.records.push_back(trial.tick().record);
+    note_shortfall(trial, milled.settings.hand_and_device.script, holding);
+    runs.push_back(measured_phase(holding));
+    runs.back().recording = nullptr;
+    runs.back().seed = milled.settings.hand_and_device.seed;
+  }
+  return runs;
 }
 
 std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan) {

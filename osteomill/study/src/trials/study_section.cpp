@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/study/metric_table.h"
 #include "osteomill/study/noticeable.h"
 #include "osteomill/study/paper.h"
@@ -554,6 +555,17 @@ Section study_section(const Study& study, const std::vector<CaptionedFigure>& fi
   for (const std::string_view phase : study.phases())
     section.parts.push_back({.title = phase_title(phase), .tables = {algorithms_table(study, phase)}});
   return section;
+}
+
+Section one_hole_section(const Study& study) {
+  return {
+      .title = "Holding still in one hole",
+      .paragraphs = {fmt::format(
+          "Each algorithm's own hole differs, by up to some millimetres, so what is felt while holding "
+          "there is the algorithm's and the hole's. Here each hand milled once, with {}, and then held in "
+          "that hole with every algorithm.",
+          default_algorithm().id.label)},
+      .tables = {algorithms_table(study, kHolding)}};
 }
 
 Section findings_section(const Study& study) {

@@ -61,6 +61,9 @@ std::string which_to_take(const Study& study);
 /// algorithms are significant.
 Section study_section(const Study& study, const std::vector<CaptionedFigure>& figures);
 
+/// Returns the report's section on holdings of all algorithms in one hole, which `study` has alone.
+Section one_hole_section(const Study& study);
+
 /// Returns the report's section on what the paper says it found, each held against the study.
 Section findings_section(const Study& study);
 

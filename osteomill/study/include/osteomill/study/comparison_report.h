@@ -17,6 +17,8 @@ struct ReportExtras {
   /// beside the recordings, if that belongs to them.
   std::optional<std::vector<MeasuredRun>> others;
   std::vector<PassivityRow> passivity;
+  /// Holdings of all algorithms in the same hole, of each hand (hold_in_one_hole).
+  std::vector<MeasuredRun> in_one_hole;
 };
 
 /// Returns whether these are recordings of the test of section 8.2, and not of anything else that was milled.
@@ -24,10 +26,10 @@ bool are_of_comparison(const std::vector<Recording>& recordings);
 
 /// Writes the report of any session (write_report) with what the test of section 8.2 adds: what was compared
 /// and the verdict ahead of all, the paper's findings held against it, and if there are extras, a section on
-/// each. The extras' numbers go into study.csv and stability.csv, which are written even if the report fails.
-/// Draws no conclusions from recordings that differ in more than the algorithm (differences_table). Returns
-/// the page's path, and puts the results, the tables at its top, into `came_out`. Throws as write_report
-/// does.
+/// each. The extras' numbers go into study.csv, stability.csv and one-hole.csv, which are written even if the
+/// report fails. Draws no conclusions from recordings that differ in more than the algorithm
+/// (differences_table). Returns the page's path, and puts the results, the tables at its top, into
+/// `came_out`. Throws as write_report does.
 std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
                                               const std::filesystem::path& out_dir,
                                               const ReportExtras& extras = {},

@@ -37,7 +37,12 @@ class MillingTrial {
   /// Copies the bone. Throws std::invalid_argument if a setting is out of range.
   MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
                const TrialSettings& settings);
+  /// Goes on where `milled` is, on a copy of its bone and in a copy of its hand, with the algorithm of
+  /// `other`, whose hand, device and script do not count. Throws as the other constructor does.
+  MillingTrial(const MillingTrial& milled, const TrialSettings& other);
 
+  /// Returns whether the next tick is of the milling, and not of the holding.
+  bool is_milling() const { return operator_.spindle_asked(); }
   bool finished() const { return operator_.finished(); }
   /// Returns what the hand could not bring about.
   const ScriptShortfall& shortfall() const { return operator_.shortfall(); }

@@ -52,6 +52,10 @@ std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan);
 std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
                                           const RunEvents& events);
 
+/// Mills with `milled` and then holds in that same hole with each of `holds`, in the hand of `milled`.
+/// Returns the run of each holding. Throws std::invalid_argument if a setting is out of range.
+std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::vector<TrialPlan>& holds);
+
 /// Returns a text that no other comparison has (kComparisonKey).
 std::string new_comparison();
 
