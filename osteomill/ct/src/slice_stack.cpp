@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -21,7 +22,6 @@ namespace {
 // Scanners round directions and positions to a few digits; these let that pass and no more.
 constexpr double kDirectionTolerance = 1e-3;
 constexpr double kSpacingTolerance = 1e-3;
-constexpr double kSamePlace_mm = 1e-4;
 // A distance may differ from the mean one by this share of it, and a slice be off its place in the grid by
 // twice that, without being moved.
 constexpr double kDistanceTolerance = 0.05;
@@ -45,20 +45,15 @@ void check_plane(const std::string& subject, const SlicePlane& slice) {
 }
 
 void check_alike(const std::string& subject, const SlicePlane& first, const SlicePlane& other) {
-  const auto refuse = [&](const std::string& reason) { throw InputError(subject, reason); };
+  const char* const difference = difference_of(first, other);
+  if (difference == nullptr) return;
   if (first.columns != other.columns || first.rows != other.rows) {
-    refuse(fmt::format("slices differ in size: {} has {} x {} pixels, {} has {} x {}", first.name,
-                       first.columns, first.rows, other.name, other.columns, other.rows));
+    throw InputError(subject,
+                     fmt::format("slices differ in size: {} has {} x {} pixels, {} has {} x {}", first.name,
+                                 first.columns, first.rows, other.name, other.columns, other.rows));
   }
-  const auto differ = [](double a, double b) { return std::abs(a - b) > kSpacingTolerance * a; };
-  if (differ(first.column_distance_mm, other.column_distance_mm) ||
-      differ(first.row_distance_mm, other.row_distance_mm)) {
-    refuse(fmt::format("slices differ in pixel spacing: {} and {}", first.name, other.name));
-  }
-  if ((first.i_direction - other.i_direction).norm() > 2 * kDirectionTolerance ||
-      (first.j_direction - other.j_direction).norm() > 2 * kDirectionTolerance) {
-    refuse(fmt::format("slices differ in orientation: {} and {}", first.name, other.name));
-  }
+  throw InputError(subject,
+                   fmt::format("slices differ in {}: {} and {}", difference, first.name, other.name));
 }
 
 // Right-handed, with exact right angles; j is turned by what little it was off.
@@ -70,26 +65,29 @@ Mat3 axes_of(const SlicePlane& slice) {
   return axes;
 }
 
-void drop_copies(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
-                 SliceStack& stack) {
+// Leaves out copies of slices that lie where they do. Returns the first two that lie at one place and are no
+// copies, if there are any.
+std::optional<std::pair<std::size_t, std::size_t>> drop_copies(std::span<const SlicePlane> slices,
+                                                               const Vec3& normal, const SamePixels& is_copy,
+                                                               SliceStack& stack) {
   std::vector<std::size_t> kept, copies;
+  std::optional<std::pair<std::size_t, std::size_t>> others;
   for (const std::size_t n : stack.order) {
-    const bool first_here =
-        kept.empty() ||
-        !(normal.dot(slices[n].position_mm - slices[kept.back()].position_mm) < kSamePlace_mm);
-    (first_here ? kept : copies).push_back(n);
-    if (first_here) continue;
-    const SlicePlane& below = slices[kept.back()];
-    if (slices[n].instance.empty() || slices[n].instance != below.instance) {
-      throw InputError(
-          subject, fmt::format("{} and {} are different images at one position", below.name, slices[n].name));
-    }
+    const auto is_elsewhere = [&](std::size_t other) {
+      return !(normal.dot(slices[n].position_mm - slices[other].position_mm) < kSamePlace_mm);
+    };
+    const auto last_below = std::find_if(kept.rbegin(), kept.rend(), is_elsewhere);
+    const bool copied =
+        std::any_of(kept.rbegin(), last_below, [&](std::size_t other) { return is_copy(other, n); });
+    if (!copied && last_below != kept.rbegin() && !others) others = {kept.back(), n};
+    (copied ? copies : kept).push_back(n);
   }
   if (!copies.empty()) {
     stack.warnings.push_back(fmt::format("{} cop{} of other slices left out: {}", copies.size(),
                                          copies.size() == 1 ? "y" : "ies", slices[copies.front()].name));
   }
   stack.order = std::move(kept);
+  return others;
 }
 
 // How far each of the slices that were kept lies above the first.
@@ -99,6 +97,12 @@ std::vector<double> heights_of(std::span<const SlicePlane> slices, const Vec3& n
   std::vector<double> heights_mm;
   for (const std::size_t n : stack.order) heights_mm.push_back(normal.dot(slices[n].position_mm) - lowest_mm);
   return heights_mm;
+}
+
+std::vector<double> gaps_between(std::span<const double> heights_mm) {
+  std::vector<double> gaps_mm;
+  for (std::size_t k = 1; k < heights_mm.size(); ++k) gaps_mm.push_back(heights_mm[k] - heights_mm[k - 1]);
+  return gaps_mm;
 }
 
 bool are_even(std::span<const double> heights_mm, std::span<const double> gaps_mm) {
@@ -113,7 +117,105 @@ bool are_even(std::span<const double> heights_mm, std::span<const double> gaps_m
   return true;
 }
 
-// If a table's feed was changed the distances that follow are alike; beside a lost slice they are not.
+// In the order of the slices' numbers, which have to be consecutive; lowest first. Else empty.
+std::vector<std::size_t> order_by_number(std::span<const SlicePlane> slices, const Vec3& normal,
+                                         std::vector<std::size_t> order) {
+  for (const std::size_t n : order) {
+    if (!slices[n].number) return {};
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return *slices[a].number < *slices[b].number; });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    if (static_cast<long>(*slices[order[k]].number) - *slices[order[k - 1]].number != 1) return {};
+  }
+  if (normal.dot(slices[order.back()].position_mm - slices[order.front()].position_mm) < 0)
+    std::reverse(order.begin(), order.end());
+  return order;
+}
+
+// Whether a straight line with a value for each k comes as near to all of them.
+bool lie_on_a_line(std::span<const double> values, double within) {
+  const auto spread = [&](double slope) {
+    double least = values.front(), most = least;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const double off = values[k] - slope * static_cast<double>(k);
+      least = std::min(least, off);
+      most = std::max(most, off);
+    }
+    return most - least;
+  };
+  // The spread is a convex function of the slope.
+  const auto steps = static_cast<double>(values.size() - 1);
+  const double mean = (values.back() - values.front()) / steps;
+  double low = mean - 2 * within / steps, high = mean + 2 * within / steps;
+  for (int n = 0; n < 60; ++n) {
+    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+    (spread(a) < spread(b) ? high : low) = spread(a) < spread(b) ? b : a;
+  }
+  constexpr double kTie = 1 + 1e-6;
+  return spread(0.5 * (low + high)) <= 2 * within * kTie;
+}
+
+// The last decimal of positions, along the normal. Zeros at all ends count as decimals unless slices lie at
+// one place, which proves that they are none.
+double last_decimal_mm(std::span<const SlicePlane> slices, const SliceStack& stack, const Vec3& normal,
+                       bool at_one_place) {
+  double step_mm = 0;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    int decimals = 0;
+    for (const std::size_t n : stack.order)
+      decimals = std::max(decimals, slices[n].decimals[static_cast<std::size_t>(axis)]);
+    const auto ends_in_zero = [&](std::size_t n) {
+      const double tens = slices[n].position_mm[axis] * std::pow(10.0, decimals - 1);
+      return std::abs(tens - std::round(tens)) < 1e-3;
+    };
+    while (at_one_place && decimals > 0 && std::all_of(stack.order.begin(), stack.order.end(), ends_in_zero))
+      --decimals;
+    step_mm += std::abs(normal[axis]) * std::pow(10.0, -decimals);
+  }
+  return step_mm;
+}
+
+// Puts slices in the order of their numbers if positions that were rounded explain why they are not even.
+bool are_rounded(std::span<const SlicePlane> slices, const Vec3& normal, bool at_one_place,
+                 SliceStack& stack) {
+  // Else the distance of the slices is not known.
+  constexpr double kLeastHeight = 8;
+  const double step_mm = last_decimal_mm(slices, stack, normal, at_one_place);
+  SliceStack numbered = stack;
+  numbered.order = order_by_number(slices, normal, stack.order);
+  if (numbered.order.size() < 3) return false;
+  const std::vector<double> heights_mm = heights_of(slices, normal, numbered);
+  if (heights_mm.back() < kLeastHeight * step_mm || !lie_on_a_line(heights_mm, 0.5 * step_mm)) return false;
+  stack = std::move(numbered);
+  stack.warnings.push_back(
+      fmt::format("its positions are rounded to {:.4g} mm: slices were put in the order of their numbers, "
+                  "{:.6g} mm apart",
+                  step_mm, heights_mm.back() / static_cast<double>(heights_mm.size() - 1)));
+  return true;
+}
+
+// Leaves out copies. Returns whether the slices lie in the order of their numbers on an even grid, their
+// positions being rounded.
+bool settle_places(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
+                   const SamePixels& same_pixels, SliceStack& stack) {
+  const auto is_same_instance = [&](std::size_t a, std::size_t b) {
+    return !slices[a].instance.empty() && slices[a].instance == slices[b].instance;
+  };
+  auto others = drop_copies(slices, normal, is_same_instance, stack);
+  const std::vector<double> heights_mm = heights_of(slices, normal, stack);
+  if ((others || !are_even(heights_mm, gaps_between(heights_mm))) &&
+      are_rounded(slices, normal, others.has_value(), stack))
+    return true;
+  if (others && same_pixels) others = drop_copies(slices, normal, same_pixels, stack);
+  if (others) {
+    throw InputError(subject, fmt::format("{} and {} are different images at one position",
+                                          slices[others->first].name, slices[others->second].name));
+  }
+  return false;
+}
+
+// Where a table's feed was changed the distances that follow are alike; beside a lost slice they are not.
 bool slice_is_missing(std::span<const double> gaps_mm, std::size_t k) {
   double beside_mm = 0;
   if (k > 0) beside_mm = gaps_mm[k - 1];
@@ -123,17 +225,16 @@ bool slice_is_missing(std::span<const double> gaps_mm, std::size_t k) {
 
 // The grid's slices along the normal.
 void place_slices(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
-                  SliceStack& stack) {
+                  bool is_rounded, SliceStack& stack) {
   std::vector<double> heights_mm = heights_of(slices, normal, stack);
-  std::vector<double> gaps_mm;
-  for (std::size_t k = 1; k < heights_mm.size(); ++k) gaps_mm.push_back(heights_mm[k] - heights_mm[k - 1]);
+  const std::vector<double> gaps_mm = gaps_between(heights_mm);
   const auto between = [&](std::size_t k) {
     return fmt::format("{:.6g} mm between {} and {}", gaps_mm[k], slices[stack.order[k]].name,
                        slices[stack.order[k + 1]].name);
   };
   std::vector<double> sorted_mm = gaps_mm;
   std::sort(sorted_mm.begin(), sorted_mm.end());
-  const bool even = are_even(heights_mm, gaps_mm);
+  const bool even = is_rounded || are_even(heights_mm, gaps_mm);
   for (std::size_t k = 0; k < gaps_mm.size() && !even; ++k) {
     if (slice_is_missing(gaps_mm, k)) {
       throw InputError(subject, fmt::format("a slice is missing: {}, {:.6g} mm usually", between(k),
@@ -193,7 +294,20 @@ Shift shift_of(double pixels) {
 
 }  // namespace
 
-SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices) {
+const char* difference_of(const SlicePlane& one, const SlicePlane& other) {
+  if (one.columns != other.columns || one.rows != other.rows) return "size";
+  const auto differ = [](double a, double b) { return std::abs(a - b) > kSpacingTolerance * a; };
+  if (differ(one.column_distance_mm, other.column_distance_mm) ||
+      differ(one.row_distance_mm, other.row_distance_mm))
+    return "pixel spacing";
+  if ((one.i_direction - other.i_direction).norm() > 2 * kDirectionTolerance ||
+      (one.j_direction - other.j_direction).norm() > 2 * kDirectionTolerance)
+    return "orientation";
+  return nullptr;
+}
+
+SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices,
+                        const SamePixels& same_pixels) {
   if (slices.empty()) throw InputError(subject, "no slices");
   for (const SlicePlane& slice : slices) check_plane(subject, slice);
   for (const SlicePlane& slice : slices) check_alike(subject, slices.front(), slice);
@@ -206,7 +320,7 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
   std::stable_sort(stack.order.begin(), stack.order.end(), [&](std::size_t a, std::size_t b) {
     return normal.dot(slices[a].position_mm) < normal.dot(slices[b].position_mm);
   });
-  drop_copies(subject, slices, normal, stack);
+  const bool is_rounded = settle_places(subject, slices, normal, same_pixels, stack);
   if (stack.order.size() < 2) {
     throw InputError(subject,
                      "only one slice: its thickness cannot be known, and a volume needs at least two");
@@ -215,7 +329,7 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
   stack.geometry.dims = {lowest.columns, lowest.rows, 0};
   stack.geometry.spacing_mm = {lowest.column_distance_mm, lowest.row_distance_mm, 0};
   stack.geometry.origin_mm = lowest.position_mm;
-  place_slices(subject, slices, normal, stack);
+  place_slices(subject, slices, normal, is_rounded, stack);
   check_plausible(subject, stack.geometry);
   find_drift(subject, slices, stack);
   return stack;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,7 +28,21 @@ struct SlicePlane {
   Vec3 j_direction = Vec3::UnitY();
   /// Centre of the first pixel.
   Vec3 position_mm = Vec3::Zero();
+  /// How many decimals of each coordinate of the position the writer gave.
+  std::array<int, 3> decimals{};
+  /// The slice's number in its series.
+  std::optional<int> number{};
 };
+
+/// Slices nearer to each other than this along the normal lie at one place.
+inline constexpr double kSamePlace_mm = 1e-4;
+
+/// Returns whether two slices, by their numbers, have the same pixels.
+using SamePixels = std::function<bool(std::size_t, std::size_t)>;
+
+/// Returns in what two slices differ so that they cannot be of one volume: "size", "pixel spacing" or
+/// "orientation"; null if in nothing.
+const char* difference_of(const SlicePlane& one, const SlicePlane& other);
 
 /// Slices put in order along their common normal.
 struct SliceStack {
@@ -44,11 +61,15 @@ struct SliceStack {
 };
 
 /// Puts the slices in order of their position along the normal, lowest first, whatever order they come in.
-/// If their distances differ, as when a table's feed was changed, the grid is as fine as nine tenths of
-/// them ask for, and a warning names the largest. Throws InputError naming `subject` if no grid holds them
-/// all: fewer than two, not all of one size, spacing and orientation, two at one position, or a gap that is
-/// over 1.5 times those beside it (a slice is missing) or over 10 mm while others are less.
-SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices);
+/// Where their distances differ, as where a table's feed was changed, the grid is as fine as nine tenths of
+/// them ask for, and a warning names the largest. If every position lies within half of its last decimal of
+/// an even grid in the order of consecutive numbers of the slices, the writer has rounded it: that grid is
+/// taken, with a warning. Of slices at one position those that are copies, by their instance or by
+/// `same_pixels`, are left out. Throws InputError naming `subject` where no grid holds them all: fewer than
+/// two, not all of one size, spacing and orientation, two at one position, or a gap that is over 1.5 times
+/// those beside it (a slice is missing) or over 10 mm while others are less.
+SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices,
+                        const SamePixels& same_pixels = {});
 
 /// Interpolates slices that lie at uneven distances (`SliceStack::heights_mm`) linearly to the even ones of
 /// the stack's grid, from pixel to pixel, so along the axis of a tilted gantry's table. `densities`, slice

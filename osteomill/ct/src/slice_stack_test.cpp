@@ -1,6 +1,7 @@
 #include "slice_stack.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -67,6 +68,56 @@ TEST(SliceStack, RoundedPositionsAreNoGap) {
   std::vector<SlicePlane> slices = series(200, 0.625);
   for (SlicePlane& slice : slices) slice.position_mm.z() = std::round(100 * slice.position_mm.z()) / 100;
   EXPECT_NEAR(stack_slices("folder", slices).geometry.spacing_mm.z(), 0.625, 1e-3);
+}
+
+// As writers round them that give too few decimals.
+std::vector<SlicePlane> rounded_series(double distance_mm, int decimals) {
+  std::vector<SlicePlane> slices = series(24, distance_mm);
+  const double unit = std::pow(10.0, decimals);
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    slices[k].position_mm.z() = std::nearbyint(unit * slices[k].position_mm.z()) / unit;
+    slices[k].decimals = {decimals, decimals, std::max(decimals, 1)};
+    slices[k].number = static_cast<int>(k) + 1;
+  }
+  return slices;
+}
+
+TEST(SliceStack, PositionsThatAreRoundedLieInTheOrderOfTheirNumbers) {
+  for (const auto& [distance_mm, decimals] :
+       {std::pair{0.15, 1}, {0.25, 1}, {0.33, 1}, {0.4, 0}, {0.625, 0}}) {
+    std::vector<SlicePlane> slices = rounded_series(distance_mm, decimals);
+    std::shuffle(slices.begin(), slices.end(), std::mt19937(7));
+    const SliceStack stack = stack_slices("folder", slices);
+    EXPECT_NEAR(stack.geometry.spacing_mm.z(), distance_mm, std::pow(0.1, decimals) / 23) << distance_mm;
+    EXPECT_TRUE(stack.heights_mm.empty());
+    for (int k = 0; k < 24; ++k)
+      EXPECT_EQ(slices[stack.order[static_cast<std::size_t>(k)]].number, k + 1) << distance_mm;
+    ASSERT_EQ(stack.warnings.size(), 1U);
+    EXPECT_TRUE(contains(stack.warnings[0], decimals == 0 ? "rounded to 1 mm" : "rounded to 0.1 mm"));
+  }
+}
+
+TEST(SliceStack, RoundingIsNoExcuseForASliceThatIsMissingOrRepeated) {
+  std::vector<SlicePlane> missing = rounded_series(0.25, 1);
+  missing.erase(missing.begin() + 9);
+  EXPECT_TRUE(contains(refusal(missing), "a slice is missing"));
+  // Nor if the rest is numbered anew.
+  for (std::size_t k = 0; k < missing.size(); ++k) missing[k].number = static_cast<int>(k);
+  EXPECT_TRUE(contains(refusal(missing), "a slice is missing"));
+  std::vector<SlicePlane> repeated = rounded_series(0.4, 0);
+  for (std::size_t k = 0; k < 24; ++k) repeated[k].number = static_cast<int>(k % 12);
+  EXPECT_TRUE(contains(refusal(repeated), "different images at one position"));
+}
+
+TEST(SliceStack, ACopyIsKnownByItsPixels) {
+  std::vector<SlicePlane> slices = series(6, 0.5);
+  slices.push_back(slices[3]);
+  slices.back().instance = "another";
+  EXPECT_TRUE(contains(refusal(slices), "different images at one position"));
+  const SliceStack stack =
+      stack_slices("folder", slices, [](std::size_t a, std::size_t b) { return a + b == 9; });
+  EXPECT_EQ(stack.geometry.dims[2], 6);
+  EXPECT_TRUE(contains(stack.warnings.at(0), "1 copy of other slices"));
 }
 
 TEST(SliceStack, AMissingSliceIsNamedByItsNeighbours) {
