@@ -1,7 +1,9 @@
 #include "dicom_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcpixseq.h>
@@ -23,6 +25,9 @@ namespace {
 constexpr std::uint64_t kAlwaysAllowed_bytes = 1 << 26;
 constexpr std::uint64_t kMaxCompression = 2000;
 
+const std::array<DcmTagKey, 3> kPlaceTags{DCM_PixelSpacing, DCM_ImagePositionPatient,
+                                          DCM_ImageOrientationPatient};
+
 std::string text_of(DcmItem& data, const DcmTagKey& tag) {
   OFString text;
   if (data.findAndGetOFStringArray(tag, text).bad()) return {};
@@ -35,7 +40,54 @@ std::optional<int> short_of(DcmItem& data, const DcmTagKey& tag) {
   return number;
 }
 
-// The items of a sequence; none if there is no such sequence.
+// An element by which slices are marked, and the functional group that has it for a frame.
+struct MarkTag {
+  DcmTagKey group;
+  DcmTagKey tag;
+};
+
+// In the order of kMarkKinds; several elements may hold a mark.
+const std::array<std::vector<MarkTag>, kMarkKinds.size()>& mark_tags() {
+  const DcmTagKey none = DCM_UndefinedTagKey;
+  static const std::array<std::vector<MarkTag>, kMarkKinds.size()> tags{
+      {{{none, DCM_SeriesNumber}},
+       {{DCM_CTImageFrameTypeSequence, DCM_FrameType}, {none, DCM_ImageType}},
+       {{DCM_FrameContentSequence, DCM_StackID}},
+       {{DCM_FrameContentSequence, DCM_TemporalPositionIndex}, {none, DCM_TemporalPositionIdentifier}},
+       {{DCM_CardiacSynchronizationSequence, DCM_NominalPercentageOfCardiacPhase}},
+       {{DCM_FrameContentSequence, DCM_FrameAcquisitionNumber}, {none, DCM_AcquisitionNumber}},
+       {{DCM_MREchoSequence, DCM_EffectiveEchoTime}, {none, DCM_EchoTime}},
+       {{DCM_CTXRayDetailsSequence, DCM_KVP}},
+       {{DCM_CTReconstructionSequence, DCM_ConvolutionKernel}},
+       {{DCM_MRDiffusionSequence, DCM_DiffusionBValue}},
+       {{DCM_PixelMeasuresSequence, DCM_SliceThickness}},
+       {{DCM_FrameContentSequence, DCM_FrameAcquisitionDateTime},
+        {none, DCM_AcquisitionDateTime},
+        {none, DCM_AcquisitionTime}},
+       {{DCM_CardiacSynchronizationSequence, DCM_NominalCardiacTriggerDelayTime}, {none, DCM_TriggerTime}},
+       {{none, DCM_ContentTime}},
+       {{none, DCM_InstanceNumber}}}};
+  return tags;
+}
+
+// How many digits stand behind the point of each of three numbers.
+std::array<int, 3> decimals_of(std::string_view text) {
+  std::array<int, 3> decimals{};
+  for (int& of : decimals) {
+    const std::string_view number = text.substr(0, text.find('\\'));
+    text.remove_prefix(std::min(number.size() + 1, text.size()));
+    const std::size_t power = number.find_first_of("eE");
+    const std::string_view digits = number.substr(0, power);
+    const std::size_t point = digits.find('.');
+    if (point != std::string_view::npos) of = static_cast<int>(trimmed(digits.substr(point + 1)).size());
+    if (power != std::string_view::npos)
+      of -= parsed_number<int>(trimmed(number.substr(power + 1))).value_or(0);
+    of = std::clamp(of, 0, 16);
+  }
+  return decimals;
+}
+
+// The items of a sequence; none where there is no such sequence.
 std::vector<DcmItem*> items_of(DcmItem& data, const DcmTagKey& tag) {
   std::vector<DcmItem*> items;
   DcmSequenceOfItems* sequence = nullptr;
@@ -68,6 +120,10 @@ class FileReader {
   std::optional<std::vector<double>> frame_numbers(std::size_t frame, const DcmTagKey& group,
                                                    const DcmTagKey& tag, std::size_t count,
                                                    const char* name) const;
+  std::string frame_text(std::size_t frame, const DcmTagKey& group, const DcmTagKey& tag) const;
+  SliceMarks marks_of(std::size_t frame) const;
+  // Why the picture is no slice of a scan; empty if it may be one.
+  std::string no_slice() const;
   StoredPixels stored_pixels() const;
   SlicePlane plane_of(std::size_t frame) const;
   DicomSlice slice_of(std::size_t frame) const;
@@ -113,6 +169,31 @@ std::optional<std::vector<double>> FileReader::frame_numbers(std::size_t frame, 
   return std::nullopt;
 }
 
+std::string FileReader::frame_text(std::size_t frame, const DcmTagKey& group, const DcmTagKey& tag) const {
+  for (DcmItem* place : groups_of(frame, group)) {
+    if (std::string text = text_of(*place, tag); !text.empty()) return text;
+  }
+  return {};
+}
+
+SliceMarks FileReader::marks_of(std::size_t frame) const {
+  SliceMarks marks;
+  for (std::size_t mark = 0; mark < marks.size(); ++mark) {
+    for (const MarkTag& place : mark_tags()[mark]) {
+      if (marks[mark].empty()) marks[mark] = frame_text(frame, place.group, place.tag);
+    }
+  }
+  return marks;
+}
+
+std::string FileReader::no_slice() const {
+  if (short_of(data_, DCM_SamplesPerPixel).value_or(1) != 1 || !header_.photometric.starts_with("MONOCHROME"))
+    return fmt::format("a colour image ({})", header_.photometric);
+  const bool has_place = std::any_of(kPlaceTags.begin(), kPlaceTags.end(),
+                                     [&](const DcmTagKey& tag) { return !text_of(data_, tag).empty(); });
+  return has_place || header_.frames > 1 ? "" : "a picture without a place";
+}
+
 StoredPixels FileReader::stored_pixels() const {
   StoredPixels pixels;
   pixels.bits_allocated = short_of(data_, DCM_BitsAllocated).value_or(0);
@@ -148,6 +229,8 @@ SlicePlane FileReader::plane_of(std::size_t frame) const {
   plane.i_direction = Vec3(orientation->data());
   plane.j_direction = Vec3(orientation->data() + 3);
   plane.position_mm = Vec3(position->data());
+  plane.decimals = decimals_of(frame_text(frame, DCM_PlanePositionSequence, DCM_ImagePositionPatient));
+  if (header_.frames == 1) plane.number = parsed_number<int>(text_of(data_, DCM_InstanceNumber));
   return plane;
 }
 
@@ -159,6 +242,7 @@ DicomSlice FileReader::slice_of(std::size_t frame) const {
   slice.plane.name = header_.frames == 1 ? file_name : fmt::format("{} frame {}", file_name, frame + 1);
   slice.plane.instance = instance_uid.empty() ? "" : fmt::format("{}#{}", instance_uid, frame);
   slice.pixels = stored_pixels();
+  slice.marks = marks_of(frame);
   const auto rescale = [&](const DcmTagKey& tag, const char* name) {
     return frame_numbers(frame, DCM_PixelValueTransformationSequence, tag, 1, name);
   };
@@ -192,10 +276,9 @@ void FileReader::read_frames() {
   if (header_.columns < 1 || header_.rows < 1) {
     throw fault(fmt::format("has no size: {} columns x {} rows", header_.columns, header_.rows));
   }
-  if (short_of(data_, DCM_SamplesPerPixel).value_or(1) != 1 ||
-      !header_.photometric.starts_with("MONOCHROME")) {
-    throw fault(fmt::format("is a colour image ({}), not a scan", header_.photometric));
-  }
+  header_.no_slice = no_slice();
+  if (header_.no_slice.starts_with("a colour"))
+    throw fault(fmt::format("is {}, not a scan", header_.no_slice));
   if (data_.tagExists(DCM_ModalityLUTSequence))
     throw fault("needs a modality lookup table, which is not supported");
   if (header_.frames > 1 && own_.empty())
@@ -245,6 +328,10 @@ void describe(DcmDataset& data, DicomHeader& header) {
   header.columns = short_of(data, DCM_Columns).value_or(0);
   header.rows = short_of(data, DCM_Rows).value_or(0);
   header.listed_files = listed_files(data);
+  if (const std::string uid = text_of(data, DCM_ConcatenationUID); !uid.empty()) {
+    header.concatenation = {uid, short_of(data, DCM_InConcatenationNumber).value_or(0),
+                            short_of(data, DCM_InConcatenationTotalNumber).value_or(0)};
+  }
   header.is_localizer = text_of(data, DCM_ImageType).find("LOCALIZER") != std::string::npos;
 }
 

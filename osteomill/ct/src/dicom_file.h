@@ -11,6 +11,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/ct/read_scan.h"
 
+#include "series_parts.h"
 #include "slice_stack.h"
 
 class DcmDataset;
@@ -33,6 +34,15 @@ struct StoredPixels {
 struct DicomSlice {
   SlicePlane plane;
   StoredPixels pixels;
+  SliceMarks marks;
+};
+
+/// The file's place among those over which one Enhanced image was parted.
+struct Concatenation {
+  std::string uid;
+  int number = 0;
+  /// How many there are; 0 if it does not say.
+  int total = 0;
 };
 
 /// The header of one DICOM file.
@@ -58,7 +68,10 @@ struct DicomHeader {
   bool lost = false;
   /// Why no slice can be made of it.
   std::optional<InputError> fault;
-  /// A slice for each frame; empty if there is a fault.
+  /// A picture that is no slice of a scan, in half a sentence: in colour, or without any place.
+  std::string no_slice;
+  std::optional<Concatenation> concatenation;
+  /// A slice for each frame; empty where there is a fault.
   std::vector<DicomSlice> slices;
 
   /// The data as read, pixels still in the file; `with_dicom_stack` releases them.

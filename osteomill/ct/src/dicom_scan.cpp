@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -27,27 +31,92 @@ struct DicomImages {
   std::size_t other_files = 0;
 };
 
+// A frame of one of a series' files.
+struct SliceOf {
+  std::size_t header;
+  std::size_t frame;
+};
+
 // One series: pictures that were taken together, in the order of their files.
 struct DicomSeries {
   std::string uid;
   std::vector<DicomHeader> headers;
+  // Pictures that are no slices of it, with the reasons.
+  std::vector<std::string> left_out = {};
 
   bool is_ct() const { return headers.front().modality == "CT"; }
-  // Returns the planes of every slice, file by file. Throws the first fault of a file.
-  std::vector<SlicePlane> planes() const {
-    std::vector<SlicePlane> planes;
-    for (const DicomHeader& header : headers) {
-      if (header.fault) throw *header.fault;
-      for (const DicomSlice& slice : header.slices) planes.push_back(slice.plane);
+  bool has_fault() const {
+    return std::any_of(headers.begin(), headers.end(),
+                       [](const DicomHeader& header) { return header.fault; });
+  }
+  const DicomSlice& operator[](const SliceOf& slice) const {
+    return headers[slice.header].slices[slice.frame];
+  }
+  // Every slice, file by file.
+  std::vector<SliceOf> slices() const {
+    std::vector<SliceOf> all;
+    for (std::size_t n = 0; n < headers.size(); ++n) {
+      for (std::size_t frame = 0; frame < headers[n].slices.size(); ++frame) all.push_back({n, frame});
     }
+    return all;
+  }
+};
+
+std::vector<float> densities_of(const DicomSeries& series, const SliceOf& slice) {
+  const SlicePlane& plane = series[slice].plane;
+  std::vector<float> densities(static_cast<std::size_t>(plane.columns) *
+                               static_cast<std::size_t>(plane.rows));
+  read_dicom_densities(series.headers[slice.header],
+                       [&](std::size_t frame) { return frame == slice.frame ? densities.data() : nullptr; });
+  return densities;
+}
+
+// A series, or a part of one.
+struct DicomPart {
+  const DicomSeries* series;
+  // Its number in the list that users see: 3, or 3.1 if the series has several parts.
+  std::string number;
+  // See SeriesPart.
+  std::string told_by;
+  std::vector<SliceOf> slices;
+
+  // Throws the first fault of a file.
+  std::vector<SlicePlane> planes() const {
+    for (const DicomHeader& header : series->headers) {
+      if (header.fault) throw *header.fault;
+    }
+    std::vector<SlicePlane> planes;
+    for (const SliceOf& slice : slices) planes.push_back((*series)[slice].plane);
     return planes;
   }
-  // Returns the number of pixels of the readable slices.
+  SamePixels same_pixels() const {
+    return [this](std::size_t a, std::size_t b) {
+      const Vec3 apart_mm = (*series)[slices[a]].plane.position_mm - (*series)[slices[b]].plane.position_mm;
+      if (apart_mm.norm() > kSamePlace_mm) return false;
+      const std::vector<float> one = densities_of(*series, slices[a]),
+                               other = densities_of(*series, slices[b]);
+      // By their bits, since padding equals nothing.
+      return std::memcmp(one.data(), other.data(), one.size() * sizeof(float)) == 0;
+    };
+  }
+  bool is_volume() const {
+    try {
+      stack_slices("", planes(), same_pixels());
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
+  }
+  bool has(const fs::path& file) const {
+    return std::any_of(slices.begin(), slices.end(), [&](const SliceOf& slice) {
+      return series->headers[slice.header].file.filename() == file.filename();
+    });
+  }
   std::uint64_t pixel_count() const {
     std::uint64_t count = 0;
-    for (const DicomHeader& header : headers) {
-      count += static_cast<std::uint64_t>(header.columns) * static_cast<std::uint64_t>(header.rows) *
-               header.slices.size();
+    for (const SliceOf& slice : slices) {
+      const SlicePlane& plane = (*series)[slice].plane;
+      count += static_cast<std::uint64_t>(plane.columns) * static_cast<std::uint64_t>(plane.rows);
     }
     return count;
   }
@@ -96,16 +165,14 @@ std::optional<fs::path> file_named(const fs::path& folder, const fs::path& name)
   return std::nullopt;
 }
 
-// Returns size and spacing with which the series would be read.
-std::string size_and_spacing(const DicomSeries& series) {
+// As they would be read.
+std::string size_and_spacing(const DicomPart& part) {
   try {
-    const GridGeometry grid = stack_slices("", series.planes()).geometry;
+    const GridGeometry grid = stack_slices("", part.planes(), part.same_pixels()).geometry;
     return fmt::format("{} x {} x {}, {:.4g} x {:.4g} x {:.4g} mm", grid.dims[0], grid.dims[1], grid.dims[2],
                        grid.spacing_mm.x(), grid.spacing_mm.y(), grid.spacing_mm.z());
   } catch (const InputError&) {
-    std::size_t slices = 0;
-    for (const DicomHeader& header : series.headers) slices += header.slices.size();
-    return fmt::format("{} slices, no volume", slices);
+    return fmt::format("{} slices, no volume", part.slices.size());
   }
 }
 
@@ -132,51 +199,120 @@ std::vector<DicomSeries> sort_into_series(std::vector<DicomHeader> images) {
     const std::string uid =
         header.series_uid.empty() ? header.file.parent_path().string() : header.series_uid;
     auto series = std::find_if(all.begin(), all.end(), [&](const DicomSeries& s) { return s.uid == uid; });
-    if (series == all.end()) series = all.insert(all.end(), {uid, {}});
+    if (series == all.end()) series = all.insert(all.end(), {uid, {}, {}});
     series->headers.push_back(std::move(header));
   }
   return all;
-}
-
-// Returns a line that describes a series to a user: number, modality, description, size, spacing, where it
-// lies, UID.
-std::string describe_series(std::size_t number, const DicomSeries& series) {
-  const DicomHeader& first = series.headers.front();
-  return fmt::format("{}: {} \"{}\", {}, from {}, {}", number, first.modality, first.series_description,
-                     size_and_spacing(series), first.file.filename().string(), series.uid);
-}
-
-// Which of `all` is `wanted`: a number from 1, a UID or the beginning of one. Empty: the one with the most
-// pixels, CT before others. Throws InputError naming `subject` if none, or more than one, is.
-std::size_t pick_series(const std::string& subject, const std::vector<DicomSeries>& all,
-                        const std::string& wanted) {
-  if (wanted.empty()) {
-    const auto largest = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.is_ct(), a.pixel_count()) < std::pair(b.is_ct(), b.pixel_count());
-    });
-    return static_cast<std::size_t>(largest - all.begin());
-  }
-  if (const auto number = parsed_number<std::size_t>(wanted);
-      number && *number >= 1 && *number <= all.size()) {
-    return *number - 1;
-  }
-  std::vector<std::size_t> found;
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    if (all[n].uid == wanted) return n;
-    if (all[n].uid.starts_with(wanted)) found.push_back(n);
-  }
-  if (found.size() == 1) return found.front();
-  std::string list;
-  for (std::size_t n = 0; n < all.size(); ++n) list += (n > 0 ? "; " : "") + describe_series(n + 1, all[n]);
-  throw InputError(
-      subject, fmt::format("{} series {}, of: {}", found.empty() ? "has no" : "has several", wanted, list));
 }
 
 std::string counted(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-// Scout views are no part of a series, even if they carry its number.
+// Pictures in a series of slices that are meant to be no slices.
+void set_aside_pictures(DicomSeries& series) {
+  const auto first = std::stable_partition(
+      series.headers.begin(), series.headers.end(),
+      [](const DicomHeader& header) { return header.no_slice.empty() || !header.fault; });
+  if (first == series.headers.begin()) return;
+  for (auto header = first; header != series.headers.end(); ++header)
+    series.left_out.push_back(fmt::format("{}, {}", header->file.filename().string(), header->no_slice));
+  series.headers.erase(first, series.headers.end());
+}
+
+// Single slices that fit none of the others, unless there are as many of them.
+void set_aside_slices(DicomSeries& series, std::vector<DicomPart>& parts) {
+  const auto largest = std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
+    return a.slices.size() < b.slices.size();
+  });
+  const SlicePlane& usual = series[largest->slices.front()].plane;
+  const auto is_single = [](const DicomPart& part) { return part.slices.size() == 1; };
+  const auto singles = std::count_if(parts.begin(), parts.end(), is_single);
+  if (static_cast<std::size_t>(singles) >= largest->slices.size()) return;
+  for (const DicomPart& part : parts) {
+    if (!is_single(part)) continue;
+    const SlicePlane& plane = series[part.slices.front()].plane;
+    const char* const difference = difference_of(usual, plane);
+    series.left_out.push_back(difference != nullptr ? fmt::format("{}, of another {}", plane.name, difference)
+                                                    : fmt::format("{}, {}", plane.name, part.told_by));
+  }
+  std::erase_if(parts, is_single);
+}
+
+// What there is to choose from in a series: all of it or, where that is no one volume, its parts.
+std::vector<DicomPart> parts_of(DicomSeries& series, std::size_t number) {
+  set_aside_pictures(series);
+  const DicomPart whole{&series, fmt::format("{}", number), "", series.slices()};
+  if (series.has_fault() || whole.slices.empty()) return {whole};
+  std::vector<SliceMarks> marks;
+  for (const SliceOf& slice : whole.slices) marks.push_back(series[slice].marks);
+  std::vector<DicomPart> parts;
+  for (const SeriesPart& found : part_series(whole.planes(), marks, whole.same_pixels())) {
+    DicomPart& part = parts.emplace_back(DicomPart{&series, whole.number, found.told_by, {}});
+    for (const std::size_t n : found.slices) part.slices.push_back(whole.slices[n]);
+  }
+  set_aside_slices(series, parts);
+  if (std::any_of(parts.begin(), parts.end(), [](const DicomPart& part) { return part.slices.size() < 2; }))
+    return {whole};
+  for (std::size_t n = 0; n < parts.size() && parts.size() > 1; ++n)
+    parts[n].number += fmt::format(".{}", n + 1);
+  return parts;
+}
+
+// What a user knows a series by, in a line: number, modality, description, what tells it from other parts,
+// size, spacing, where it lies, UID.
+std::string describe(const DicomPart& part) {
+  const DicomHeader& first = part.series->headers[part.slices.empty() ? 0 : part.slices.front().header];
+  return fmt::format("{}: {} \"{}\", {}{}{}, from {}, {}", part.number, first.modality,
+                     first.series_description, part.told_by, part.told_by.empty() ? "" : ", ",
+                     size_and_spacing(part), first.file.filename().string(), part.series->uid);
+}
+
+// The one with the most pixels; CT before others, and of one series volumes before what is none.
+const DicomPart& largest_of(const std::vector<DicomPart>& all) {
+  const auto has_parts = [](const DicomPart& part) { return part.number.find('.') != std::string::npos; };
+  std::vector<std::pair<bool, std::uint64_t>> sizes;
+  for (const DicomPart& part : all) {
+    const bool counts = !has_parts(part) || part.is_volume();
+    sizes.emplace_back(part.series->is_ct(), counts ? part.pixel_count() : 0);
+  }
+  return all[static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin())];
+}
+
+// Which of `all` is `wanted`: a number in their list, a UID or the beginning of one. Empty: the one of
+// `file`, or the largest. Throws InputError naming `subject` where none, or more than one series, is.
+const DicomPart& pick_part(const std::string& subject, const std::vector<DicomPart>& all,
+                           const std::string& wanted, const fs::path& file) {
+  std::vector<DicomPart> found;
+  const auto add_if = [&](const auto& fits) {
+    if (found.empty()) std::copy_if(all.begin(), all.end(), std::back_inserter(found), fits);
+  };
+  if (wanted.empty() && file.empty()) return largest_of(all);
+  if (wanted.empty()) add_if([&](const DicomPart& part) { return part.has(file); });
+  const auto begins = [&](const DicomPart& part) { return part.series->uid.starts_with(wanted); };
+  if (!wanted.empty()) {
+    add_if([&](const DicomPart& part) { return part.number == wanted; });
+    add_if([&](const DicomPart& part) { return part.number.starts_with(wanted + "."); });
+    add_if([&](const DicomPart& part) { return part.series->uid == wanted; });
+    add_if(begins);
+  }
+  const bool of_one_series =
+      !found.empty() && std::all_of(found.begin(), found.end(), [&](const DicomPart& part) {
+        return part.series == found.front().series;
+      });
+  if (of_one_series) {
+    const std::string number = largest_of(found).number;
+    return *std::find_if(all.begin(), all.end(),
+                         [&](const DicomPart& part) { return part.number == number; });
+  }
+  if (wanted.empty()) throw InputError(subject, "is a picture of its own, not a slice of a scan");
+  std::string list;
+  for (const DicomPart& part : all) list += (list.empty() ? "" : "; ") + describe(part);
+  throw InputError(
+      subject, fmt::format("{} series {}, of: {}", found.empty() ? "has no" : "has several", wanted, list));
+}
+
+// Scout views are no part of a series, even where they carry its number.
 void drop_localizers(std::vector<DicomHeader>& images, std::vector<std::string>& warnings) {
   const auto first = std::stable_partition(images.begin(), images.end(),
                                            [](const DicomHeader& header) { return !header.is_localizer; });
@@ -198,34 +334,57 @@ void add_notes(const DicomHeader& first, std::vector<std::string>& warnings) {
 }
 
 // Slice after slice, as the stack has them.
-std::vector<float> read_densities(DicomSeries& series, const SliceStack& stack, std::size_t slices) {
+std::vector<float> read_densities(const DicomPart& part, const SliceStack& stack,
+                                  std::vector<DicomHeader>& headers) {
   const std::size_t slice_size =
       stack.geometry.voxel_count() / static_cast<std::size_t>(stack.geometry.dims[2]);
   std::vector<float> densities(slice_size * stack.order.size());
-  std::vector<float*> of_slice(slices, nullptr);
-  for (std::size_t k = 0; k < stack.order.size(); ++k) of_slice[stack.order[k]] = &densities[k * slice_size];
+  std::vector<std::vector<float*>> places;
+  for (const DicomHeader& header : headers) places.emplace_back(header.slices.size(), nullptr);
+  for (std::size_t k = 0; k < stack.order.size(); ++k) {
+    const SliceOf& slice = part.slices[stack.order[k]];
+    places[slice.header][slice.frame] = &densities[k * slice_size];
+  }
   std::size_t read = 0;
-  for (DicomHeader& header : series.headers) {
-    read_dicom_densities(header, [&](std::size_t /*frame*/) {
-      WorkProgress::done(read, slices);
-      return of_slice[read++];
+  for (std::size_t n = 0; n < headers.size(); ++n) {
+    read_dicom_densities(headers[n], [&](std::size_t frame) {
+      if (places[n][frame] != nullptr) WorkProgress::done(read++, stack.order.size());
+      return places[n][frame];
     });
-    header.data.reset();
+    headers[n].data.reset();
   }
   return densities;
 }
 
-Scan build_scan(const std::string& subject, DicomSeries series, std::vector<std::string> warnings,
-                const ReadOptions& options) {
-  const std::vector<SlicePlane> planes = series.planes();
-  SliceStack stack = stack_slices(subject, planes);
+// Files over which one image was parted, if some of them are not there.
+void check_concatenation(const DicomPart& part, std::vector<std::string>& warnings) {
+  std::set<std::pair<std::string, int>> found;
+  int total = 0;
+  for (const SliceOf& slice : part.slices) {
+    const auto& of = part.series->headers[slice.header].concatenation;
+    if (!of) continue;
+    found.insert({of->uid, of->number});
+    total = std::max({total, of->total, of->number});
+  }
+  if (found.size() < static_cast<std::size_t>(total)) {
+    warnings.push_back(
+        fmt::format("is a part: {} of the {} files over which its image is parted", found.size(), total));
+  }
+}
+
+Scan build_scan(const std::string& subject, const DicomPart& part, std::vector<DicomHeader>& headers,
+                std::vector<std::string> warnings, const ReadOptions& options) {
+  SliceStack stack = stack_slices(subject, part.planes(), part.same_pixels());
   const bool is_moved = !stack.heights_mm.empty() || stack.drift_i_mm != 0 || stack.drift_j_mm != 0;
   check_memory(subject, (is_moved ? 2 : 1) * stack.geometry.voxel_count(), options.max_memory_bytes);
-  add_notes(series.headers.front(), warnings);
+  const DicomHeader& first = headers[part.slices.front().header];
+  add_notes(first, warnings);
+  check_concatenation(part, warnings);
+  const bool in_hounsfield_units = first.in_hounsfield_units;
   std::vector<float> densities;
   {
     const WorkProgress::Part reading(0.95);
-    densities = read_densities(series, stack, planes.size());
+    densities = read_densities(part, stack, headers);
   }
   const WorkProgress::Part checking(1);
   check_densities(subject, densities);
@@ -233,11 +392,32 @@ Scan build_scan(const std::string& subject, DicomSeries series, std::vector<std:
   correct_gantry_tilt(subject, stack, densities);
   warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
   return {DensityGrid(stack.geometry, std::move(densities)), subject, "DICOM", std::move(warnings),
-          series.headers.front().in_hounsfield_units};
+          in_hounsfield_units};
 }
 
-// One of what may be several series.
-Scan read_images(const std::string& subject, DicomImages images, const ReadOptions& options) {
+// What was chosen for the user, and what else there is.
+void add_choice(const DicomPart& picked, const std::vector<DicomPart>& all, std::size_t series_count,
+                const std::string& wanted, std::vector<std::string>& warnings) {
+  if (series_count > 1 && wanted.empty()) {
+    warnings.push_back(fmt::format("holds {} series; the largest{} was read, {}", series_count,
+                                   picked.series->is_ct() ? " CT" : "", describe(picked)));
+  }
+  std::string others;
+  for (const DicomPart& part : all) {
+    if (part.series == picked.series && part.number != picked.number)
+      others += fmt::format("{}{} ({})", others.empty() ? "" : ", ", part.number,
+                            part.told_by.empty() ? size_and_spacing(part) : part.told_by);
+  }
+  if (!others.empty() && wanted != picked.number) {
+    warnings.push_back(fmt::format("a series holds several volumes; {} was read{}{}{}, --series chooses: {}",
+                                   picked.number, picked.told_by.empty() ? "" : " (", picked.told_by,
+                                   picked.told_by.empty() ? "" : ")", others));
+  }
+}
+
+// One of what may be several series; of the one to which `file` belongs, if one is named.
+Scan read_images(const std::string& subject, DicomImages images, const ReadOptions& options,
+                 const fs::path& file = {}) {
   std::vector<std::string> warnings;
   if (images.other_files > 0) {
     warnings.push_back(fmt::format("{} left out: not DICOM images", counted(images.other_files, "file")));
@@ -245,24 +425,40 @@ Scan read_images(const std::string& subject, DicomImages images, const ReadOptio
   for (const DicomHeader& header : images.headers) {
     if (header.lost) throw *header.fault;
   }
+  const std::size_t pictures = images.headers.size();
   drop_localizers(images.headers, warnings);
-  if (images.headers.empty()) throw InputError(subject, "holds no DICOM slices");
+  if (images.headers.empty()) {
+    throw InputError(subject, pictures == 0 ? "holds no DICOM slices"
+                                            : fmt::format("holds no slices of a scan, only {}",
+                                                          counted(pictures, "localizer")));
+  }
   std::vector<DicomSeries> all = sort_into_series(std::move(images.headers));
-  const std::size_t picked = pick_series(subject, all, options.series);
+  std::vector<DicomPart> parts;
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    for (DicomPart& part : parts_of(all[n], n + 1)) parts.push_back(std::move(part));
+  }
+  const DicomPart& picked = pick_part(subject, parts, options.series, file);
   std::vector<std::string> lines;
-  for (std::size_t n = 0; n < all.size() && all.size() > 1; ++n)
-    lines.push_back(describe_series(n + 1, all[n]));
-  if (lines.empty()) return build_scan(subject, std::move(all.front()), std::move(warnings), options);
-  if (options.series.empty()) {
-    warnings.push_back(fmt::format("holds {} series; the largest{} was read, {}", all.size(),
-                                   all[picked].is_ct() ? " CT" : "", lines[picked]));
+  for (const DicomPart& part : parts) {
+    if (parts.size() > 1) lines.push_back(describe(part));
+  }
+  add_choice(picked, parts, all.size(), options.series, warnings);
+  DicomSeries& series =
+      *std::find_if(all.begin(), all.end(), [&](const DicomSeries& of) { return &of == picked.series; });
+  if (!series.left_out.empty()) {
+    warnings.push_back(fmt::format("{} left out: {}{}", counted(series.left_out.size(), "picture"),
+                                   series.left_out.front(), series.left_out.size() > 1 ? "; ..." : ""));
   }
   try {
-    Scan scan = build_scan(subject, std::move(all[picked]), std::move(warnings), options);
+    Scan scan = build_scan(subject, picked, series.headers, warnings, options);
     scan.series = std::move(lines);
     return scan;
   } catch (const InputError& fault) {
-    throw InputError(fault.what(), fmt::format("it is series {} of {}", picked + 1, all.size()));
+    std::string more;
+    if (lines.size() > 1) more = fmt::format("it is series {} of {}", picked.number, all.size());
+    if (!series.left_out.empty()) more += (more.empty() ? "" : "; ") + warnings.back();
+    if (more.empty()) throw;
+    throw InputError(fault.what(), more);
   }
 }
 
@@ -281,7 +477,7 @@ std::optional<Scan> read_folder(const fs::path& folder, const ReadOptions& optio
 DicomImages series_of(DicomHeader header, std::uint64_t max_bytes) {
   const fs::path file = header.file;
   const std::string uid = header.series_uid;
-  const bool alone = header.frames > 1 || uid.empty();
+  const bool alone = uid.empty();
   DicomImages images;
   images.headers.push_back(std::move(header));
   if (alone) return images;
@@ -305,7 +501,7 @@ std::optional<Scan> read_file(const fs::path& file, const ReadOptions& options) 
     return read_images(subject, images_of_directory(*header, options.max_memory_bytes), options);
   if (!header->is_image()) throw InputError(subject, "is DICOM, but not an image");
   if (header->is_localizer) throw InputError(subject, "is a localizer, not a slice of a scan");
-  return read_images(subject, series_of(std::move(*header), options.max_memory_bytes), options);
+  return read_images(subject, series_of(std::move(*header), options.max_memory_bytes), options, file);
 }
 
 }  // namespace

@@ -210,7 +210,63 @@ TEST_F(DicomSeries, TheLargestCtOfSeveralSeriesIsReadAndAnyCanBeChosen) {
   EXPECT_THROW(read_series(folder_ / "more/deep/a1", "1.2.5"), InputError);
 }
 
-// Builds a DICOMDIR as on a disc: names in capitals, each record with its children.
+TEST_F(DicomSeries, TwoTimePointsOfASeriesAreTwoToChooseFrom) {
+  write_series();
+  for (int k = 0; k < 4; ++k) {
+    const auto slice = made_up_slice({.k = k, .instance = "1.2.9." + std::to_string(k)});
+    slice->getDataset()->putAndInsertString(DCM_TemporalPositionIdentifier, "2");
+    put_pixels(*slice->getDataset(), stored_values(k + 20), 16);
+    ASSERT_TRUE(save(*slice, folder_ / ("z" + std::to_string(k)), EXS_LittleEndianExplicit));
+  }
+  const Scan scan = read_scan(folder_);
+  expect_series(scan);
+  ASSERT_EQ(scan.series.size(), 2U);
+  EXPECT_TRUE(contains(scan.series[1], "1.2: CT \"made up\", temporal position 2, 7 x 5 x 4"))
+      << scan.series[1];
+  ASSERT_EQ(scan.warnings.size(), 1U);
+  EXPECT_TRUE(contains(scan.warnings[0], "1.1 was read")) << scan.warnings[0];
+  for (const Scan& other : {read_series(folder_, "1.2"), read_scan(folder_ / "z1")})
+    EXPECT_EQ((other.grid[{0, 0, 0}]), 2 * 2000 - 100);
+  expect_series(read_series(folder_, "1"));
+  expect_series(read_scan(folder_ / "f8"));
+  EXPECT_THROW(read_series(folder_, "1.3"), InputError);
+  // A series that is no volume is passed over.
+  for (const int k : {4, 7, 8}) {
+    const auto slice = made_up_slice({.k = k, .instance = "1.2.9." + std::to_string(k)});
+    slice->getDataset()->putAndInsertString(DCM_TemporalPositionIdentifier, "2");
+    ASSERT_TRUE(save(*slice, folder_ / ("z" + std::to_string(k)), EXS_LittleEndianExplicit));
+  }
+  expect_series(read_scan(folder_));
+}
+
+TEST_F(DicomSeries, AnOddPictureIsLeftOutByNameAndAWarning) {
+  write_series();
+  write_slice({.file = "turned", .k = 9, .instance = "1.2.9.1"});
+  DcmFileFormat file;
+  ASSERT_TRUE(file.loadFile((folder_ / "turned").c_str()).good());
+  file.getDataset()->putAndInsertString(DCM_ImageOrientationPatient, "0\\1\\0\\0\\0\\1");
+  ASSERT_TRUE(save(file, folder_ / "turned", EXS_LittleEndianExplicit));
+  expect_series(read_scan(folder_));
+  EXPECT_EQ(read_scan(folder_).warnings.at(0), "1 picture left out: turned, of another orientation");
+  EXPECT_TRUE(contains(refusal(folder_ / "turned"), "turned: is a picture of its own"));
+  // Nor a report in colour, or without a place.
+  file.getDataset()->putAndInsertString(DCM_PhotometricInterpretation, "RGB");
+  ASSERT_TRUE(save(file, folder_ / "turned", EXS_LittleEndianExplicit));
+  expect_series(read_scan(folder_));
+  EXPECT_EQ(read_scan(folder_).warnings.at(0), "1 picture left out: turned, a colour image (RGB)");
+  file.getDataset()->putAndInsertString(DCM_PhotometricInterpretation, "MONOCHROME2");
+  for (const DcmTagKey& tag : {DCM_ImageOrientationPatient, DCM_ImagePositionPatient, DCM_PixelSpacing})
+    file.getDataset()->findAndDeleteElement(tag);
+  ASSERT_TRUE(save(file, folder_ / "turned", EXS_LittleEndianExplicit));
+  expect_series(read_scan(folder_));
+  EXPECT_EQ(read_scan(folder_).warnings.at(0), "1 picture left out: turned, a picture without a place");
+  // Without it a slice is missing.
+  fs::remove(folder_ / "turned");
+  write_slice({.file = "f7", .k = 2, .image_type = "ORIGINAL\\PRIMARY\\LOCALIZER"});
+  EXPECT_TRUE(contains(refusal(folder_), "a slice is missing"));
+}
+
+// As on a disc: names in capitals, each record with what lies under it.
 TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
   fs::create_directories(folder_ / "IMAGES" / "S1");
   fs::create_directories(folder_ / "images2");
@@ -295,6 +351,13 @@ TEST_F(DicomSeries, FramesOfAnEnhancedFileLieWhereTheirGroupsSay) {
     split_fragments(folder_ / "many", false);
     EXPECT_TRUE(contains(refusal(folder_ / "many"), "which of its fragments"));
   }
+  // The first file of two over which the image is parted.
+  data.putAndInsertString(DCM_ConcatenationUID, "1.2.3.9");
+  data.putAndInsertUint16(DCM_InConcatenationNumber, 1);
+  data.putAndInsertUint16(DCM_InConcatenationTotalNumber, 2);
+  ASSERT_TRUE(file.saveFile((folder_ / "many").c_str(), EXS_JPEGLSLossless).good());
+  EXPECT_EQ(read_scan(folder_ / "many").warnings.at(0),
+            "is a part: 1 of the 2 files over which its image is parted");
   put(DCM_PixelValueTransformationSequence, 0, DCM_RescaleType, "ML_100G");
   ASSERT_TRUE(file.saveFile((folder_ / "many").c_str(), EXS_JPEGLSLossless).good());
   EXPECT_FALSE(read_scan(folder_ / "many").in_hounsfield_units);
@@ -324,7 +387,10 @@ TEST_F(DicomSeries, TwoImagesAtOnePlaceAreRefusedAndACopyIsNot) {
   fs::copy_file(folder_ / "f7", folder_ / "copy");
   expect_series(read_scan(folder_));
   EXPECT_TRUE(contains(read_scan(folder_).warnings.front(), "copy"));
+  // Another name does not make it another image.
   write_slice({.file = "other", .k = 2, .instance = "1.2.3.98"});
+  expect_series(read_scan(folder_));
+  write_slice({.file = "other", .k = 2, .instance = "1.2.3.98", .slope = "3"});
   EXPECT_TRUE(contains(refusal(folder_), "one position"));
 }
 

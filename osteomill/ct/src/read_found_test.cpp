@@ -1,0 +1,77 @@
+// Scans after public bug reports, beside the checkout. Unless said otherwise each is the same phantom.
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/ct/read_scan.h"
+
+#include "tests/shared_data.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::shared_data;
+
+struct Found {
+  const char* file;
+  /// Of the phantom; x and y are 0.4 mm unless they equal z's digits.
+  double slice_distance_mm = 0.5;
+  /// In one of the warnings; empty if there is none.
+  const char* warning = "";
+  const char* series = "";
+  double origin_z_mm = 3;
+};
+
+class FoundScan : public ::testing::TestWithParam<Found> {};
+
+TEST_P(FoundScan, IsThePhantom) {
+  const Found& found = GetParam();
+  const std::string path = std::string("found4/") + found.file;
+  OSTEOMILL_NEEDS_SHARED(path);
+  const Scan scan = read_scan(shared_data() / path, {.series = found.series});
+  const GridGeometry& geometry = scan.grid.geometry();
+  EXPECT_EQ(geometry.dims, (std::array<int, 3>{40, 36, 24}));
+  EXPECT_NEAR(geometry.spacing_mm.z(), found.slice_distance_mm, 0.0023);
+  EXPECT_TRUE(geometry.origin_mm.isApprox(Vec3(-8, -7, found.origin_z_mm), 1e-6));
+  const std::vector<float> densities = every_nth_density(scan.grid, 1);
+  const auto [min, max] = std::minmax_element(densities.begin(), densities.end());
+  EXPECT_EQ(*min, -1000);
+  EXPECT_EQ(*max, 1161);
+  EXPECT_EQ(std::count_if(densities.begin(), densities.end(), [](float density) { return density > 260; }),
+            2420);
+  std::string warnings;
+  for (const std::string& warning : scan.warnings) warnings += warning + "\n";
+  EXPECT_NE(warnings.find(found.warning), std::string::npos) << warnings;
+  EXPECT_EQ(warnings.empty(), std::string(found.warning).empty()) << warnings;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ReadFound, FoundScan,
+    ::testing::Values(Found{"04-two-acquisitions/half-a-slice-off.zip", 0.5, "1.2 (acquisition 2)"},
+                      Found{"04-two-acquisitions/half-a-slice-off.zip", 0.5, "", "1.2", 3.25},
+                      Found{"04-two-acquisitions/same-places.zip", 0.5, "1.2 (acquisition 2)"},
+                      Found{"04-two-acquisitions/same-places.zip", 0.5, "", "1.2"},
+                      Found{"07-copies/same-pixels.zip", 0.5, "3 copies"},
+                      Found{"08-odd-one/size.zip", 0.5, "zz.dcm, of another size"},
+                      Found{"14-enhanced-parts/two.zip"}, Found{"15-dynamic/files.zip", 0.5, "1.2 ("},
+                      Found{"15-dynamic/files.zip", 0.5, "", "1.3"},
+                      Found{"18-rounded-positions/0.15mm-1digits.zip", 0.1478, "rounded to 0.1 mm"},
+                      Found{"18-rounded-positions/0.25mm-1digits.zip", 0.25, "rounded to 0.1 mm"},
+                      Found{"18-rounded-positions/0.4mm-0digits.zip", 0.3913, "rounded to 1 mm"}));
+
+TEST(ReadFound, AFolderOfLocalizersSaysSo) {
+  OSTEOMILL_NEEDS_SHARED("found4/27-only-localizers/all.zip");
+  try {
+    read_scan(shared_data() / "found4/27-only-localizers/all.zip");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("only 2 localizers"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,210 @@
+#include "series_parts.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/parse_number.h"
+
+namespace osteomill {
+
+namespace {
+
+using Numbers = std::vector<std::size_t>;
+
+// Slices that share the value of a mark, or several values in turn.
+struct Group {
+  std::string first_value;
+  std::string last_value;
+  Numbers slices;
+  // Heights of the slices along the normal, ascending.
+  std::vector<double> heights_mm;
+};
+
+void add(Group& to, const Group& other) {
+  to.last_value = other.last_value;
+  to.slices.insert(to.slices.end(), other.slices.begin(), other.slices.end());
+  const auto middle = static_cast<std::ptrdiff_t>(to.heights_mm.size());
+  to.heights_mm.insert(to.heights_mm.end(), other.heights_mm.begin(), other.heights_mm.end());
+  std::inplace_merge(to.heights_mm.begin(), to.heights_mm.begin() + middle, to.heights_mm.end());
+}
+
+bool share_a_place(const Group& a, const Group& b) {
+  if (a.heights_mm.size() < b.heights_mm.size()) return share_a_place(b, a);
+  return std::any_of(b.heights_mm.begin(), b.heights_mm.end(), [&](double height_mm) {
+    const auto near = std::upper_bound(a.heights_mm.begin(), a.heights_mm.end(), height_mm - kSamePlace_mm);
+    return near != a.heights_mm.end() && *near < height_mm + kSamePlace_mm;
+  });
+}
+
+// A single slice may lie between others of its volume.
+bool overlap(const Group& a, const Group& b) {
+  return a.slices.size() > 1 && b.slices.size() > 1 && a.heights_mm.front() < b.heights_mm.back() &&
+         b.heights_mm.front() < a.heights_mm.back();
+}
+
+bool is_less(const std::string& a, const std::string& b) {
+  const auto number = [](const std::string& text) {
+    return parsed_number<double>(text).value_or(-std::numeric_limits<double>::infinity());
+  };
+  return std::pair(number(a), a) < std::pair(number(b), b);
+}
+
+// Parts one series.
+class Parting {
+ public:
+  Parting(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
+          const SamePixels& same_pixels)
+      : slices_(slices), marks_(marks), same_pixels_(same_pixels) {}
+
+  std::vector<SeriesPart> parts() const;
+
+ private:
+  std::vector<Numbers> by_shape() const;
+  // Replaces `part` by what it falls into.
+  void split(SeriesPart part, std::vector<SeriesPart>& parts) const;
+  // Those that share a value, in the order of their values.
+  std::vector<Group> by_value(const Numbers& slices, std::size_t mark) const;
+  // None if the mark does not tell parts apart.
+  std::vector<Group> by_mark(const Numbers& slices, std::size_t mark) const;
+  bool is_volume(const Numbers& slices, bool by_number = false) const;
+  bool are_volumes(std::span<const Group> groups) const {
+    return std::all_of(groups.begin(), groups.end(), [&](const Group& group) {
+      return group.slices.size() < 2 || is_volume(group.slices);
+    });
+  }
+
+  std::span<const SlicePlane> slices_;
+  std::span<const SliceMarks> marks_;
+  const SamePixels& same_pixels_;
+};
+
+std::vector<Numbers> Parting::by_shape() const {
+  std::vector<Numbers> shapes;
+  for (std::size_t n = 0; n < slices_.size(); ++n) {
+    const auto shape = std::find_if(shapes.begin(), shapes.end(), [&](const Numbers& of) {
+      return difference_of(slices_[of.front()], slices_[n]) == nullptr;
+    });
+    (shape == shapes.end() ? shapes.emplace_back() : *shape).push_back(n);
+  }
+  return shapes;
+}
+
+bool Parting::is_volume(const Numbers& slices, bool by_number) const {
+  std::vector<SlicePlane> planes;
+  for (const std::size_t n : slices) {
+    planes.push_back(slices_[n]);
+    if (!by_number) planes.back().number.reset();
+  }
+  try {
+    stack_slices("", planes,
+                 [&](std::size_t a, std::size_t b) { return same_pixels_(slices[a], slices[b]); });
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+std::vector<Group> Parting::by_value(const Numbers& slices, std::size_t mark) const {
+  Numbers sorted = slices;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](std::size_t a, std::size_t b) { return is_less(marks_[a][mark], marks_[b][mark]); });
+  const SlicePlane& first = slices_[slices.front()];
+  const Vec3 normal = first.i_direction.cross(first.j_direction);
+  std::vector<Group> groups;
+  for (const std::size_t n : sorted) {
+    const std::string& value = marks_[n][mark];
+    if (groups.empty() || groups.back().first_value != value) groups.push_back({value, value, {}, {}});
+    groups.back().slices.push_back(n);
+    groups.back().heights_mm.push_back(normal.dot(slices_[n].position_mm));
+  }
+  for (Group& group : groups) std::sort(group.heights_mm.begin(), group.heights_mm.end());
+  return groups;
+}
+
+// The values in turn, as long as they do not get in each other's way.
+std::vector<Group> joined(const std::vector<Group>& values, const auto& collide) {
+  std::vector<Group> groups;
+  for (const Group& value : values) {
+    if (groups.empty() || collide(groups.back(), value)) {
+      groups.push_back(value);
+    } else {
+      add(groups.back(), value);
+    }
+  }
+  return groups;
+}
+
+// Calls `collide` with pairs of groups that lie near each other, until one collides.
+bool any_collide(std::vector<Group> groups, const auto& collide) {
+  std::sort(groups.begin(), groups.end(),
+            [](const Group& a, const Group& b) { return a.heights_mm.front() < b.heights_mm.front(); });
+  for (std::size_t n = 0; n < groups.size(); ++n) {
+    for (std::size_t m = n + 1;
+         m < groups.size() && groups[m].heights_mm.front() <= groups[n].heights_mm.back() + kSamePlace_mm;
+         ++m) {
+      if (collide(groups[n], groups[m])) return true;
+    }
+  }
+  return false;
+}
+
+std::vector<Group> Parting::by_mark(const Numbers& slices, std::size_t mark) const {
+  const MarkKind& kind = kMarkKinds[mark];
+  const std::vector<Group> values = by_value(slices, mark);
+  if (values.size() < 2) return {};
+  const bool at_one_place = any_collide(values, share_a_place);
+  const auto collide = [&](const Group& a, const Group& b) {
+    return share_a_place(a, b) || (!kind.is_of_slices && overlap(a, b));
+  };
+  if (!at_one_place && (kind.is_of_slices || !any_collide(values, overlap))) return {};
+  // What lies at one place are copies, or slices whose positions are rounded.
+  if (at_one_place && is_volume(slices, kind.is_of_slices)) return {};
+  const std::vector<Group> groups = kind.is_ordered ? joined(values, collide) : values;
+  if (groups.size() < 2 || 2 * groups.size() > slices.size()) return {};
+  if (kind.is_of_slices) {
+    const bool alike = std::all_of(groups.begin(), groups.end(), [&](const Group& group) {
+      return group.slices.size() == groups.front().slices.size();
+    });
+    return alike && are_volumes(groups) ? groups : std::vector<Group>{};
+  }
+  // Slices of one volume, some of them with another mark.
+  if (!at_one_place && !are_volumes(groups) && is_volume(slices)) return {};
+  return groups;
+}
+
+void Parting::split(SeriesPart part, std::vector<SeriesPart>& parts) const {
+  for (std::size_t mark = 0; mark < kMarkKinds.size(); ++mark) {
+    for (Group& group : by_mark(part.slices, mark)) {
+      std::string value = group.first_value == group.last_value
+                              ? group.first_value
+                              : group.first_value + " to " + group.last_value;
+      if (value.empty()) value = "not given";
+      std::sort(group.slices.begin(), group.slices.end());
+      split({std::move(group.slices), fmt::format("{}{}{} {}", part.told_by, part.told_by.empty() ? "" : ", ",
+                                                  kMarkKinds[mark].name, value)},
+            parts);
+      part.slices.clear();
+    }
+    if (part.slices.empty()) return;
+  }
+  parts.push_back(std::move(part));
+}
+
+std::vector<SeriesPart> Parting::parts() const {
+  std::vector<SeriesPart> parts;
+  for (Numbers& shape : by_shape()) split({std::move(shape), ""}, parts);
+  return parts;
+}
+
+}  // namespace
+
+std::vector<SeriesPart> part_series(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
+                                    const SamePixels& same_pixels) {
+  return Parting(slices, marks, same_pixels).parts();
+}
+
+}  // namespace osteomill
