@@ -44,23 +44,28 @@ inline void check_memory(const std::string& subject, std::uint64_t voxels, std::
   }
 }
 
-/// Throws InputError naming `subject` if a density is no finite number or beyond what any scanner writes:
-/// nothing sensible can be milled there, and gradients would overflow.
-inline void check_densities(const std::string& subject, const std::vector<float>& densities) {
+/// Returns how many voxels have no density (NaN). Throws InputError naming `subject` where that is all of
+/// them, or a density is infinite or beyond what any scanner writes: nothing sensible can be milled there,
+/// and gradients would overflow.
+inline std::size_t check_densities(const std::string& subject, const std::vector<float>& densities) {
   constexpr std::size_t kAtOnce = 1 << 22;
   constexpr float kMost = 1e10f;
-  std::ptrdiff_t count = 0;
+  std::ptrdiff_t none = 0, beyond = 0;
   for (std::size_t first = 0; first < densities.size(); first += kAtOnce) {
     const std::size_t last = std::min(first + kAtOnce, densities.size());
-    count += std::count_if(densities.begin() + static_cast<std::ptrdiff_t>(first),
-                           densities.begin() + static_cast<std::ptrdiff_t>(last),
-                           [](float v) { return !(std::abs(v) <= kMost); });
+    const auto begin = densities.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = densities.begin() + static_cast<std::ptrdiff_t>(last);
+    none += std::count_if(begin, end, [](float v) { return std::isnan(v); });
+    beyond += std::count_if(begin, end, [](float v) { return std::abs(v) > kMost; });
     WorkProgress::done(last, densities.size());
   }
-  if (count > 0) {
-    throw InputError(subject, fmt::format("{} voxels hold no density: NaN, infinity or beyond {:g}", count,
+  if (beyond > 0) {
+    throw InputError(subject, fmt::format("{} voxels hold no density: infinity or beyond {:g}", beyond,
                                           static_cast<double>(kMost)));
   }
+  if (static_cast<std::size_t>(none) == densities.size())
+    throw InputError(subject, "holds no density at all: every voxel is NaN or padding");
+  return static_cast<std::size_t>(none);
 }
 
 }  // namespace osteomill

@@ -19,19 +19,18 @@ std::array<double, 3> to_array(const Vec3& v) {
 void summarise_values(double isovalue, ScanSummary& summary) {
   const DensityGrid& grid = summary.scan.grid;
   double sum = 0;
-  float min = grid[{0, 0, 0}];
+  float min = grid.outside_density();
   float max = min;
-  for_each_row(grid, [&](std::span<const float> row) {
-    for (const float density : row) {
-      sum += static_cast<double>(density);
-      min = std::min(min, density);
-      max = std::max(max, density);
-      summary.voxels_above_iso += static_cast<double>(density) > isovalue;
-    }
+  for_each_density(grid, [&](float density) {
+    sum += static_cast<double>(density);
+    min = std::min(min, density);
+    max = std::max(max, density);
+    summary.voxels_above_iso += static_cast<double>(density) > isovalue;
   });
   summary.value_min = static_cast<double>(min);
   summary.value_max = static_cast<double>(max);
-  summary.value_mean = sum / static_cast<double>(grid.geometry().voxel_count());
+  summary.value_mean =
+      sum / static_cast<double>(grid.geometry().voxel_count() - grid.voxels_without_density());
 }
 
 }  // namespace
@@ -81,6 +80,8 @@ std::string to_json(const ScanSummary& summary) {
   for (const Boundary& of : summary.suggested_iso.boundaries)
     json["boundaries"].push_back({{"density", of.density}, {"below", of.below}, {"above", of.above}});
   if (!summary.scan.series.empty()) json["series"] = summary.scan.series;
+  if (const std::size_t without = summary.scan.grid.voxels_without_density(); without > 0)
+    json["voxels_without_density"] = without;
   for (const LabelSummary& of : summary.labels) {
     json["labels"].push_back({{"value", of.label.value},
                               {"name", of.label.name},
@@ -110,6 +111,9 @@ std::string to_text(const ScanSummary& summary) {
   }
   text += fmt::format("values      {:.6g} to {:.6g}, mean {:.6g}\n", summary.value_min, summary.value_max,
                       summary.value_mean);
+  if (const std::size_t without = summary.scan.grid.voxels_without_density(); without > 0) {
+    text += fmt::format("no density  {} voxels (padding or NaN), taken for the least\n", without);
+  }
   const std::string suggested =
       fmt::format("{:.6g} suggested, {}", summary.suggested_iso.value, summary.suggested_iso.how);
   const bool given = summary.isovalue != summary.suggested_iso.value;

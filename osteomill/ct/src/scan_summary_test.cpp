@@ -1,5 +1,7 @@
 #include "osteomill/ct/scan_summary.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -34,6 +36,18 @@ TEST(ScanSummary, JsonHasTheContractsKeys) {
   EXPECT_EQ(json["warnings"].size(), 1U);
   EXPECT_EQ(json["boundaries"], nlohmann::json::parse(R"([{"density": 12, "below": 3, "above": 25}])"));
   EXPECT_EQ(json.size(), 12U);
+}
+
+TEST(ScanSummary, VoxelsWithoutADensityAreCountedAndEnterNothingElse) {
+  Scan scan = some_scan();
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  scan.grid = DensityGrid(scan.grid.geometry(), {-5, none, 10, none, 30, 35});
+  const ScanSummary summary = summarise(std::move(scan), {-7.0, "below all"}, -7.0);
+  EXPECT_EQ(summary.value_mean, 17.5);
+  EXPECT_EQ(summary.value_min, -5);
+  EXPECT_EQ(summary.voxels_above_iso, 4U);
+  EXPECT_EQ(nlohmann::json::parse(to_json(summary))["voxels_without_density"], 2);
+  EXPECT_NE(to_text(summary).find("no density  2 voxels"), std::string::npos);
 }
 
 TEST(ScanSummary, TextSaysTheSame) {

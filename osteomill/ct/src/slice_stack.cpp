@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -281,6 +282,12 @@ void find_drift(const std::string& subject, std::span<const SlicePlane> slices, 
   }
 }
 
+// Between two densities; one without any weight need not be there.
+double mixed(double one, double other, double share) {
+  if (share == 0) return one;
+  return share == 1 ? other : (1 - share) * one + share * other;
+}
+
 // How far a slice is moved: in whole pixels, and the fraction by which it lies further.
 struct Shift {
   int whole;
@@ -350,8 +357,8 @@ void even_out_slices(SliceStack& stack, std::vector<float>& densities) {
         densities.data() + static_cast<std::size_t>(above - heights_mm.begin() - 1) * slice_size;
     const float* const upper = lower + slice_size;
     for (std::size_t n = 0; n < slice_size; ++n) {
-      even.push_back(static_cast<float>((1 - share) * static_cast<double>(lower[n]) +
-                                        share * static_cast<double>(upper[n])));
+      even.push_back(
+          static_cast<float>(mixed(static_cast<double>(lower[n]), static_cast<double>(upper[n]), share)));
     }
   }
   densities = std::move(even);
@@ -381,7 +388,8 @@ void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vec
     throw InputError(subject,
                      fmt::format("slices lean by {:.1f} degrees, too far to put them straight", tilt_deg));
   }
-  const float outside = *std::min_element(densities.begin(), densities.end());
+  float outside = std::numeric_limits<float>::max();
+  for (const float density : densities) outside = std::min(outside, density);
   std::vector<float> moved;
   moved.reserve(cell_count(dims));
   for_each({{0, 0, 0}, {dims[0] - 1, dims[1] - 1, count - 1}},
@@ -393,9 +401,9 @@ void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vec
              const Shift shift_i = shift_of(step[0] * v.k), shift_j = shift_of(step[1] * v.k);
              const double a = shift_i.fraction, b = shift_j.fraction;
              const int i = v.i + first[0] - shift_i.whole, j = v.j + first[1] - shift_j.whole;
-             const double here = (1 - a) * at(i, j) + a * at(i - 1, j);
-             const double above = (1 - a) * at(i, j - 1) + a * at(i - 1, j - 1);
-             moved.push_back(static_cast<float>((1 - b) * here + b * above));
+             const double here = mixed(at(i, j), at(i - 1, j), a);
+             const double above = mixed(at(i, j - 1), at(i - 1, j - 1), a);
+             moved.push_back(static_cast<float>(mixed(here, above, b)));
            });
   geometry.origin_mm = geometry.world_from_voxel(Vec3(first[0], first[1], 0));
   geometry.dims = dims;

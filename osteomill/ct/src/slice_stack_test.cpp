@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -186,6 +187,22 @@ TEST(SliceStack, DistancesThatGrowAreNoticedHoweverSlowly) {
     slices[k].position_mm.z() = n + 0.0005 * n * n;
   }
   EXPECT_TRUE(contains(stack_slices("folder", slices).warnings.front(), "uneven"));
+}
+
+TEST(SliceStack, WhatHasNoDensitySpreadsNoFurtherThanItIsUsed) {
+  std::vector<SlicePlane> slices = series(5, 1);
+  slices[4].position_mm.z() += 0.25;
+  SliceStack stack = stack_slices("folder", slices);
+  std::vector<float> densities(5 * 48, 5.0F);
+  densities[48 * 2 + 7] = std::numeric_limits<float>::quiet_NaN();
+  even_out_slices(stack, densities);
+  EXPECT_EQ(stack.geometry.dims[2], 5);
+  // The second and third slice are interpolated with it.
+  EXPECT_EQ(
+      std::count_if(densities.begin(), densities.end(), [](float density) { return std::isnan(density); }),
+      2);
+  EXPECT_TRUE(std::isnan(densities[48 * 2 + 7]));
+  EXPECT_EQ(std::count(densities.begin(), densities.end(), 5.0F), 5 * 48 - 2);
 }
 
 TEST(SliceStack, UnevenDistancesThatAreTooLargeAreRefused) {

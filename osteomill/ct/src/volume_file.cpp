@@ -137,7 +137,10 @@ Scan read_volume_file(const fs::path& path, const VolumeFormat& format, const Re
                             header.warnings);
   }
   const WorkProgress::Part checking(1);
-  check_densities(subject, densities);
+  if (const std::size_t none = check_densities(subject, densities); none > 0) {
+    header.warnings.push_back(
+        fmt::format("{} voxels hold no density (NaN): the least of the others was put there", none));
+  }
   Scan scan{DensityGrid(header.geometry, std::move(densities)), subject, format.name,
             std::move(header.warnings)};
   scan.is_labels = header.is_labels || subject.find(".seg.") != std::string::npos;

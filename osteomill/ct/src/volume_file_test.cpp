@@ -377,15 +377,29 @@ TEST_F(VolumeFile, PlacesThatNoBoneCanHaveAreRefused) {
                        "mm apart"));
 }
 
-TEST_F(VolumeFile, VoxelsThatHoldNoDensityAreRefused) {
-  for (const float bad :
-       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1e30f}) {
-    std::string data = voxels<float>();
-    std::memcpy(data.data() + 4 * 7, &bad, 4);
-    std::string bytes = nrrd("encoding: raw\n" + kPlaced, data);
-    bytes.replace(bytes.find("short"), 5, "float");
-    EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "1 voxels hold no density"));
-  }
+// With one voxel that is no density.
+std::string floats_with(float odd, std::string data = voxels<float>()) {
+  std::memcpy(data.data() + 4 * 7, &odd, 4);
+  std::string bytes = nrrd("encoding: raw\n" + kPlaced, data);
+  return bytes.replace(bytes.find("short"), 5, "float");
+}
+
+TEST_F(VolumeFile, VoxelsBeyondAllDensityAreRefused) {
+  for (const float bad : {std::numeric_limits<float>::infinity(), -1e30f})
+    EXPECT_TRUE(contains(refusal(write("a.nrrd", floats_with(bad))), "1 voxels hold no density"));
+  std::string none;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (int n = 0; n < 24; ++n) none.append(reinterpret_cast<const char*>(&nan), 4);
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", floats_with(nan, none))), "no density at all"));
+}
+
+TEST_F(VolumeFile, AVoxelThatIsNoNumberCountsInNothing) {
+  const Scan scan = read_scan(write("a.nrrd", floats_with(std::numeric_limits<float>::quiet_NaN())));
+  EXPECT_EQ(scan.grid.voxels_without_density(), 1U);
+  EXPECT_FALSE(scan.grid.has_density(7));
+  EXPECT_EQ((scan.grid[{3, 1, 0}]), scan.grid.outside_density());
+  ASSERT_EQ(scan.warnings.size(), 1U);
+  EXPECT_TRUE(contains(scan.warnings[0], "1 voxels hold no density (NaN)"));
 }
 
 TEST_F(VolumeFile, WhatIsNoGreyVolumeIsRefused) {

@@ -64,7 +64,9 @@ std::optional<float> density_away(const Volume& volume, const VoxelIndex& bone, 
     const VoxelIndex here{v[0], v[1], v[2]};
     if (!volume.grid().contains(here) || volume.is_bone(here)) return std::nullopt;
   }
-  return volume.grid()[{v[0], v[1], v[2]}];
+  const VoxelIndex away{v[0], v[1], v[2]};
+  if (!volume.grid().has_density(volume.grid().linear_index(away))) return std::nullopt;
+  return volume.grid()[away];
 }
 
 // Returns the median density of the voxels around the bone that lie well outside of it.
@@ -87,10 +89,8 @@ std::optional<double> median_around(const Volume& volume) {
 
 double surroundings_without_a_surface(const Volume& volume) {
   const std::optional<double> others = median([&](const auto& take) {
-    for_each_row(volume.grid(), [&](std::span<const float> row) {
-      for (const float density : row) {
-        if (static_cast<double>(density) < volume.isovalue()) take(density);
-      }
+    for_each_density(volume.grid(), [&](float density) {
+      if (static_cast<double>(density) < volume.isovalue()) take(density);
     });
   });
   return others.value_or(volume.isovalue() - std::max(1.0, std::abs(volume.isovalue())));

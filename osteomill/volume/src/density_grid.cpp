@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
@@ -22,11 +23,25 @@ RowLayout layout_of(const GridGeometry& geometry) {
                           static_cast<std::size_t>(k));
 }
 
-// Returns the densities. Throws if their number is not that of the voxels, or zero.
-std::vector<float> checked(const GridGeometry& geometry, std::vector<float> densities) {
-  if (densities.empty() || densities.size() != geometry.voxel_count()) {
+// Null if all have a density.
+std::shared_ptr<const std::vector<bool>> without_density(const std::vector<float>& densities) {
+  const auto has_none = [](float density) { return std::isnan(density); };
+  if (std::none_of(densities.begin(), densities.end(), has_none)) return nullptr;
+  auto without = std::make_shared<std::vector<bool>>(densities.size());
+  std::transform(densities.begin(), densities.end(), without->begin(), has_none);
+  return without;
+}
+
+// What the grid is made of, and there is something; the least density in the place of none.
+std::vector<float> filled(const GridGeometry& geometry, std::vector<float> densities) {
+  const auto is_less = [](float a, float b) { return a < b || (std::isnan(b) && !std::isnan(a)); };
+  const auto least = std::min_element(densities.begin(), densities.end(), is_less);
+  if (densities.size() != geometry.voxel_count() || least == densities.end() || std::isnan(*least)) {
     throw std::invalid_argument("DensityGrid: as many densities as voxels, and at least one");
   }
+  const float lowest = *least;
+  std::replace_if(
+      densities.begin(), densities.end(), [](float density) { return std::isnan(density); }, lowest);
   return densities;
 }
 
@@ -35,11 +50,16 @@ std::vector<float> checked(const GridGeometry& geometry, std::vector<float> dens
 DensityGrid::DensityGrid(const GridGeometry& geometry, std::vector<float> densities)
     : geometry_(geometry),
       layout_(layout_of(geometry)),
-      densities_(checked(geometry, std::move(densities)), layout_),
+      without_density_(without_density(densities)),
+      densities_(filled(geometry, std::move(densities)), layout_),
       outside_density_(*densities_.data()) {
   for_each_row(*this, [this](std::span<const float> row) {
     outside_density_ = std::min(outside_density_, *std::min_element(row.begin(), row.end()));
   });
+  if (without_density_) {
+    voxels_without_density_ =
+        static_cast<std::size_t>(std::count(without_density_->begin(), without_density_->end(), true));
+  }
 }
 
 void DensityGrid::prepare_about(const VoxelBox& changed) {
@@ -70,8 +90,10 @@ std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every)
   densities.reserve(cell_count(dims) / every + 1);
   for (std::size_t n = 0; n < cell_count(dims); n += every) {
     const auto& [i, j, k] = cell_at(dims, n);
-    densities.push_back(grid[{i, j, k}]);
+    if (grid.has_density(n)) densities.push_back(grid[{i, j, k}]);
   }
+  // Few voxels have one.
+  if (densities.empty() && every > 1) return every_nth_density(grid, 1);
   return densities;
 }
 

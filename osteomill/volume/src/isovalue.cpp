@@ -30,21 +30,25 @@ bool is_less_dense(const Sample& a, const Sample& b) {
   return a.density < b.density;
 }
 
-std::vector<Sample> samples_of(const DensityGrid& grid) {
-  constexpr double kMaxSamples = 4e6;
+// Of every so many voxels along each axis, if the scan has a density there.
+std::vector<Sample> samples_of(const DensityGrid& grid, int step) {
   const GridGeometry& geometry = grid.geometry();
   const auto& dims = geometry.dims;
-  const int step =
-      static_cast<int>(std::ceil(std::cbrt(static_cast<double>(geometry.voxel_count()) / kMaxSamples)));
-  const auto at = [&](std::array<int, 3> v, std::size_t axis, int by) {
-    v[axis] = std::clamp(v[axis] + by, 0, dims[axis] - 1);
-    return static_cast<double>(grid[{v[0], v[1], v[2]}]);
+  const auto has_density = [&](const std::array<int, 3>& v) {
+    return grid.has_density(grid.linear_index({v[0], v[1], v[2]}));
+  };
+  const auto at = [&](const std::array<int, 3>& v, std::size_t axis, int by) {
+    std::array<int, 3> near = v;
+    near[axis] = std::clamp(near[axis] + by, 0, dims[axis] - 1);
+    const auto& [i, j, k] = has_density(near) ? near : v;
+    return static_cast<double>(grid[{i, j, k}]);
   };
   std::vector<Sample> samples;
   for (int k = 0; k < dims[2]; k += step) {
     WorkProgress::done(0);
     for (int j = 0; j < dims[1]; j += step) {
       for (int i = 0; i < dims[0]; i += step) {
+        if (!has_density({i, j, k})) continue;
         double change = 0;
         Vec3 gradient;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -59,6 +63,15 @@ std::vector<Sample> samples_of(const DensityGrid& grid) {
     }
   }
   return samples;
+}
+
+std::vector<Sample> samples_of(const DensityGrid& grid) {
+  constexpr double kMaxSamples = 4e6;
+  const int step = static_cast<int>(
+      std::ceil(std::cbrt(static_cast<double>(grid.geometry().voxel_count()) / kMaxSamples)));
+  std::vector<Sample> samples = samples_of(grid, step);
+  // Few voxels have a density.
+  return samples.empty() ? samples_of(grid, 1) : samples;
 }
 
 // Otsu 1979, eq. 18: how many of the samples, which ascend, are the lower of the two classes with the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -51,6 +52,35 @@ DensityGrid head(double offset, bool padded) {
     }
   }
   return DensityGrid(geometry, std::move(densities));
+}
+
+// Half of a volume's slices.
+DensityGrid first_half(const DensityGrid& grid) {
+  GridGeometry geometry = grid.geometry();
+  geometry.dims[2] /= 2;
+  std::vector<float> densities = every_nth_density(grid, 1);
+  densities.resize(geometry.voxel_count());
+  return DensityGrid(geometry, std::move(densities));
+}
+
+TEST(SuggestIsovalue, WhatHasNoDensityChangesNothing) {
+  for (const double offset : {0.0, 700.0}) {
+    const DensityGrid measured = first_half(head(offset, false));
+    GridGeometry geometry = measured.geometry();
+    geometry.dims[2] *= 2;
+    std::vector<float> densities = every_nth_density(measured, 1);
+    densities.resize(geometry.voxel_count(), std::numeric_limits<float>::quiet_NaN());
+    const DensityGrid grid(geometry, std::move(densities));
+    EXPECT_EQ(grid.voxels_without_density(), measured.geometry().voxel_count());
+    const SuggestedIsovalue suggested = suggest_isovalue(grid), expected = suggest_isovalue(measured);
+    EXPECT_EQ(suggested.value, expected.value);
+    EXPECT_EQ(suggested.how, expected.how);
+    EXPECT_EQ(every_nth_density(grid, 1), every_nth_density(measured, 1));
+    // Of every seventh voxel.
+    double counted = 0;
+    for (const float log_count : histogram_of(grid).log_counts) counted += std::expm1(log_count);
+    EXPECT_LT(counted, static_cast<double>(measured.geometry().voxel_count()) / 7 + 1);
+  }
 }
 
 TEST(SuggestIsovalue, LiesHalfwayBetweenBoneAndItsSurroundings) {

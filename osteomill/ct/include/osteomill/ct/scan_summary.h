@@ -44,8 +44,8 @@ std::vector<LabelSummary> summarise_labels(const Volume& bone);
 
 /// Returns a JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max,
 /// value_mean, suggested_iso, suggested_how, voxels_above_iso, warnings, boundaries, series if there are
-/// several, labels if there are any, and a line feed at its end. Bytes of a warning that are not UTF-8 are
-/// replaced.
+/// several, voxels_without_density and labels if there are any, and a line feed at its end. Bytes of a
+/// warning that are not UTF-8 are replaced.
 std::string to_json(const ScanSummary& summary);
 
 /// Returns the summary for people to read, a line for each fact.

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,8 @@ class DensityGrid {
  public:
   DensityGrid() = default;
   /// `densities` has `geometry.voxel_count()` values, i running fastest, all finite (the readers see to
-  /// that). Throws std::invalid_argument if the count differs or is 0.
+  /// that) or NaN if the scan has none for a voxel, which then gets the least of the others. Throws
+  /// std::invalid_argument if the count differs or is 0, or no voxel has a density.
   DensityGrid(const GridGeometry& geometry, std::vector<float> densities);
 
   const GridGeometry& geometry() const { return geometry_; }
@@ -37,6 +39,10 @@ class DensityGrid {
   }
   std::ptrdiff_t row_stride() const { return static_cast<std::ptrdiff_t>(layout_.row_stride); }
   std::ptrdiff_t slice_stride() const { return static_cast<std::ptrdiff_t>(layout_.slice_stride); }
+  /// Returns whether the scan has a density for a voxel, by its number (`linear_index`). What it has none for
+  /// counts in no statistics.
+  bool has_density(std::size_t voxel) const { return !without_density_ || !(*without_density_)[voxel]; }
+  std::size_t voxels_without_density() const { return voxels_without_density_; }
   /// Returns the least density of the grid as it was made.
   float outside_density() const { return outside_density_; }
 
@@ -77,6 +83,9 @@ class DensityGrid {
 
   GridGeometry geometry_;
   RowLayout layout_;
+  // By number; null if every voxel has a density.
+  std::shared_ptr<const std::vector<bool>> without_density_;
+  std::size_t voxels_without_density_ = 0;
   CopyOnWriteFloats densities_;
   VoxelBox prepared_;
   float outside_density_ = 0;
@@ -90,7 +99,18 @@ void for_each_row(const DensityGrid& grid, const Use& use) {
   for_each_with_progress(rows, [&](const VoxelIndex& v) { use(grid.row(v.j, v.k)); });
 }
 
-/// Returns the densities of every `every`th voxel in the order of their numbers.
+/// Calls `use` with the density of every voxel that has one, in the order of their numbers. Long work.
+template <typename Use>
+void for_each_density(const DensityGrid& grid, const Use& use) {
+  std::size_t voxel = 0;
+  for_each_row(grid, [&](std::span<const float> row) {
+    for (const float density : row) {
+      if (grid.has_density(voxel++)) use(density);
+    }
+  });
+}
+
+/// Returns the densities of every `every`th voxel in the order of their numbers, of those that have one.
 std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every);
 
 /// Returns one voxel's part in a hash that is the sum of all parts (modulo 2^64). So a change costs only what
