@@ -125,6 +125,7 @@ class FileReader {
   // Why the picture is no slice of a scan; empty if it may be one.
   std::string no_slice() const;
   StoredPixels stored_pixels() const;
+  std::optional<Padding> padding_of(const StoredPixels& pixels) const;
   SlicePlane plane_of(std::size_t frame) const;
   DicomSlice slice_of(std::size_t frame) const;
   void check_byte_count() const;
@@ -194,11 +195,62 @@ std::string FileReader::no_slice() const {
   return has_place || header_.frames > 1 ? "" : "a picture without a place";
 }
 
+// The value of an element that has the sign of the pixels, whatever sign its own representation has.
+std::optional<std::uint32_t> word_of(DcmItem& data, const DcmTagKey& tag, int bits_allocated) {
+  const auto value = parsed_number<long long>(text_of(data, tag));
+  if (!value) return std::nullopt;
+  return static_cast<std::uint32_t>(*value) & 0xFFFFFFFFU >> (32 - bits_allocated);
+}
+
+// A word as a pixel of its form, if it can be one.
+std::optional<double> stored_value_of(std::uint32_t word, const StoredPixels& pixels) {
+  const double value = value_of(word, pixels);
+  const std::uint32_t stored = word & 0xFFFFFFFFU >> (32 - pixels.bits_stored);
+  const std::uint32_t extended = static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) &
+                                 0xFFFFFFFFU >> (32 - pixels.bits_allocated);
+  return word == stored || word == extended ? std::optional(value) : std::nullopt;
+}
+
+std::optional<Padding> FileReader::padding_of(const StoredPixels& pixels) const {
+  const auto range = [](double one, double other) {
+    return Padding{{}, std::min(one, other), std::max(one, other)};
+  };
+  if (pixels.is_float) {
+    const bool is_double = pixels.bits_allocated == 64;
+    const auto number = [&](const DcmTagKey& of_float, const DcmTagKey& of_double) {
+      return parsed_number<double>(text_of(data_, is_double ? of_double : of_float));
+    };
+    const auto value = number(DCM_FloatPixelPaddingValue, DCM_DoubleFloatPixelPaddingValue);
+    if (!value) return std::nullopt;
+    return range(
+        *value,
+        number(DCM_FloatPixelPaddingRangeLimit, DCM_DoubleFloatPixelPaddingRangeLimit).value_or(*value));
+  }
+  const auto word = word_of(data_, DCM_PixelPaddingValue, pixels.bits_allocated);
+  if (!word) return std::nullopt;
+  Padding padding;
+  if (const auto value = stored_value_of(*word, pixels)) {
+    padding = range(*value, *value);
+    const auto limit = word_of(data_, DCM_PixelPaddingRangeLimit, pixels.bits_allocated);
+    if (const auto end = limit ? stored_value_of(*limit, pixels) : std::nullopt)
+      padding = range(*value, *end);
+  }
+  padding.word = word;
+  return padding;
+}
+
 StoredPixels FileReader::stored_pixels() const {
   StoredPixels pixels;
   pixels.bits_allocated = short_of(data_, DCM_BitsAllocated).value_or(0);
   pixels.bits_stored = short_of(data_, DCM_BitsStored).value_or(pixels.bits_allocated);
   pixels.is_signed = short_of(data_, DCM_PixelRepresentation).value_or(0) == 1;
+  pixels.is_float = !data_.tagExists(DCM_PixelData);
+  if (pixels.is_float) {
+    if (pixels.bits_allocated != (data_.tagExists(DCM_FloatPixelData) ? 32 : 64))
+      throw fault(fmt::format("has floats of {} bits", pixels.bits_allocated));
+    pixels.padding = padding_of(pixels);
+    return pixels;
+  }
   const int high_bit = short_of(data_, DCM_HighBit).value_or(pixels.bits_stored - 1);
   const bool whole_bytes =
       pixels.bits_allocated == 8 || pixels.bits_allocated == 16 || pixels.bits_allocated == 32;
@@ -207,6 +259,7 @@ StoredPixels FileReader::stored_pixels() const {
     throw fault(fmt::format("has pixels of {} bits in {}, the highest being bit {}, which is not supported",
                             pixels.bits_stored, pixels.bits_allocated, high_bit));
   }
+  pixels.padding = padding_of(pixels);
   return pixels;
 }
 
@@ -296,7 +349,10 @@ void FileReader::read_frames() {
 
 std::uint64_t bytes_of_pixels(DcmDataset& data, bool is_compressed) {
   DcmElement* pixels = nullptr;
-  if (data.findAndGetElement(DCM_PixelData, pixels).bad()) return 0;
+  const bool found = data.findAndGetElement(DCM_PixelData, pixels).good() ||
+                     data.findAndGetElement(DCM_FloatPixelData, pixels).good() ||
+                     data.findAndGetElement(DCM_DoubleFloatPixelData, pixels).good();
+  if (!found) return 0;
   if (!is_compressed) return pixels->getLength();
   std::uint64_t bytes = 0;
   const std::vector<DcmPixelItem*> items = pixel_items_of(data);

@@ -20,15 +20,38 @@ class DcmPixelItem;
 
 namespace osteomill {
 
+/// Stored values that only fill the picture: where nothing was measured, as outside of a round field of view.
+struct Padding {
+  /// Of integers, all bits of the value that fills; many writers use bits beyond the stored ones for it.
+  std::optional<std::uint32_t> word{};
+  /// A range of values, both ends of it included.
+  double least = 0;
+  double most = -1;
+
+  bool holds(double value) const { return value >= least && value <= most; }
+};
+
 /// The form in which the pixels of a slice are stored, and the meaning of their numbers.
 struct StoredPixels {
   int bits_allocated = 0;
   int bits_stored = 0;
   bool is_signed = false;
+  /// Floats of 32 or 64 bits.
+  bool is_float = false;
+  std::optional<Padding> padding{};
   /// Density = slope * stored value + intercept.
   double slope = 1;
   double intercept = 0;
 };
+
+/// Returns the number that a stored word of integer pixels stands for. Bits above the stored ones may hold
+/// anything; the sign is in the highest stored one.
+inline double value_of(std::uint32_t word, const StoredPixels& pixels) {
+  const int unused = 32 - pixels.bits_stored;
+  const std::uint32_t highest = word << unused;
+  return pixels.is_signed ? static_cast<double>(static_cast<std::int32_t>(highest) >> unused)
+                          : static_cast<double>(highest >> unused);
+}
 
 /// One slice: a file, or a frame of it.
 struct DicomSlice {
@@ -93,7 +116,8 @@ std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
 
 /// Decodes the pixels of the file of `header`, which has no fault, and writes the densities of frame f, row
 /// by row, to `frame_densities(f)`, which must have room for columns * rows (a null pointer: the frame is not
-/// wanted). Throws InputError naming the file if they cannot be decoded. Only within `with_dicom_stack`.
+/// wanted). Padding becomes NaN. Throws InputError naming the file where they cannot be decoded. Only within
+/// `with_dicom_stack`.
 void read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities);
 

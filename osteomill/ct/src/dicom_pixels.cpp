@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <span>
+#include <type_traits>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcfcache.h>
@@ -22,20 +24,29 @@ namespace {
 
 template <typename Stored>
 void rescale(std::span<const char> values, const StoredPixels& pixels, float* densities) {
-  // Bits above the stored ones may hold anything; the sign is in the highest stored one.
-  const int unused = 32 - pixels.bits_stored;
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const char* bytes = values.data();
   for (std::size_t n = 0; n < values.size() / sizeof(Stored); ++n, bytes += sizeof(Stored)) {
     Stored raw = 0;
     std::memcpy(&raw, bytes, sizeof(raw));
-    const std::uint32_t highest = std::uint32_t{raw} << unused;
-    const auto value = pixels.is_signed ? static_cast<double>(static_cast<std::int32_t>(highest) >> unused)
-                                        : static_cast<double>(highest >> unused);
-    densities[n] = static_cast<float>(pixels.slope * value + pixels.intercept);
+    double value = 0;
+    bool is_padding = false;
+    if constexpr (std::is_floating_point_v<Stored>) {
+      value = static_cast<double>(raw);
+    } else {
+      value = value_of(raw, pixels);
+      is_padding = pixels.padding && pixels.padding->word == std::uint32_t{raw};
+    }
+    is_padding = is_padding || (pixels.padding && pixels.padding->holds(value));
+    densities[n] = is_padding ? kNone : static_cast<float>(pixels.slope * value + pixels.intercept);
   }
 }
 
 void rescale_frame(std::span<const char> values, const StoredPixels& pixels, float* densities) {
+  if (pixels.is_float) {
+    return pixels.bits_allocated == 64 ? rescale<double>(values, pixels, densities)
+                                       : rescale<float>(values, pixels, densities);
+  }
   switch (pixels.bits_allocated) {
     case 8:
       return rescale<std::uint8_t>(values, pixels, densities);
@@ -65,6 +76,7 @@ class FrameReader {
   std::vector<unsigned char> stream_of(std::size_t frame) const;
   void decode_jpeg(std::span<const unsigned char> stream);
   void read_uncompressed(std::size_t frame);
+  void read_floats(std::size_t frame);
   void read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCache* cache);
 
   const DicomHeader& header_;
@@ -163,8 +175,30 @@ void FrameReader::read_uncompressed(std::size_t frame) {
   }
 }
 
+void FrameReader::read_floats(std::size_t frame) {
+  const auto copy = [&](const auto* numbers, unsigned long count) {
+    const std::size_t first = frame * size_.values();
+    if (numbers == nullptr || count < first + size_.values()) throw fault("is cut short");
+    std::memcpy(values_.data(), numbers + first, size_.bytes());
+  };
+  unsigned long count = 0;
+  if (size_.bytes_a_value == 4) {
+    const Float32* numbers = nullptr;
+    if (data_.findAndGetFloat32Array(DCM_FloatPixelData, numbers, &count).bad()) numbers = nullptr;
+    copy(numbers, count);
+  } else {
+    const Float64* numbers = nullptr;
+    if (data_.findAndGetFloat64Array(DCM_DoubleFloatPixelData, numbers, &count).bad()) numbers = nullptr;
+    copy(numbers, count);
+  }
+}
+
 std::span<const char> FrameReader::read(std::size_t frame) {
   const std::span<char> values(values_.data(), size_.bytes());
+  if (header_.slices[frame].pixels.is_float) {
+    read_floats(frame);
+    return values;
+  }
   if (items_.empty()) {
     read_uncompressed(frame);
     return values;

@@ -407,6 +407,75 @@ TEST_F(DicomSeries, ATiltedGantryIsPutStraight) {
   EXPECT_NEAR(static_cast<double>(scan.grid[moved]), 2 * stored_value(3, 1, 2) - 100, 1e-3);
 }
 
+TEST_F(DicomSeries, PaddingIsNoDensity) {
+  struct Case {
+    int is_signed;
+    int bits;
+    int padding;
+    int limit;
+    // In both corners of every slice.
+    int first;
+    int last;
+  };
+  // A value beyond the bits that are stored; a negative one, however it is written; and a range, either way.
+  for (const Case& of : {Case{0, 16, 63536, 0, 63536, 63536}, Case{0, 12, 63536, 0, 63536, 63536},
+                         Case{1, 16, 63536, 0, -2000, -2000}, Case{1, 12, -2000, 0, -2000, 2096},
+                         Case{0, 16, 65000, 65010, 65000, 65010}, Case{0, 16, 65010, 65000, 65005, 65010},
+                         Case{1, 16, -2010, -2000, -2010, -2000}}) {
+    for (int k = 0; k < 4; ++k) {
+      const auto slice = made_up_slice({.k = k, .bits = of.bits});
+      DcmDataset& data = *slice->getDataset();
+      std::vector<int> values = stored_values(k);
+      values.front() = of.first;
+      values.back() = of.last;
+      put_pixels(data, values, 16);
+      data.putAndInsertUint16(DCM_PixelRepresentation, static_cast<Uint16>(of.is_signed));
+      data.putAndInsertUint16(DCM_PixelPaddingValue, static_cast<Uint16>(of.padding));
+      if (of.limit != 0) data.putAndInsertUint16(DCM_PixelPaddingRangeLimit, static_cast<Uint16>(of.limit));
+      ASSERT_TRUE(save(*slice, folder_ / ("f" + std::to_string(k)), EXS_LittleEndianExplicit));
+    }
+    SCOPED_TRACE(std::to_string(of.padding) + " in " + std::to_string(of.bits) + " bits");
+    const Scan scan = read_scan(folder_);
+    EXPECT_EQ(scan.grid.voxels_without_density(), 8U);
+    for (int k = 0; k < 4; ++k) {
+      for (const VoxelIndex& v : {VoxelIndex{0, 0, k}, VoxelIndex{kColumns - 1, kRows - 1, k}}) {
+        EXPECT_FALSE(scan.grid.has_density(scan.grid.linear_index(v)));
+        EXPECT_EQ(scan.grid[v], 2 * stored_value(1, 0, 0) - 100);
+      }
+      EXPECT_EQ((scan.grid[{3, 2, k}]), 2 * stored_value(3, 2, k) - 100);
+    }
+  }
+}
+
+TEST_F(DicomSeries, PixelsMayBeFloats) {
+  for (const bool is_double : {false, true}) {
+    for (int k = 0; k < 4; ++k) {
+      const auto slice = made_up_slice({.k = k});
+      DcmDataset& data = *slice->getDataset();
+      for (const DcmTagKey& tag : {DCM_PixelData, DCM_BitsStored, DCM_HighBit, DCM_PixelRepresentation})
+        data.findAndDeleteElement(tag);
+      data.putAndInsertUint16(DCM_BitsAllocated, is_double ? 64 : 32);
+      const std::vector<int> values = stored_values(k);
+      std::vector<Float64> doubles(values.begin(), values.end());
+      if (k == 2) doubles[2] = -7.5;
+      const std::vector<Float32> floats(doubles.begin(), doubles.end());
+      if (is_double) {
+        data.putAndInsertFloat64Array(DCM_DoubleFloatPixelData, doubles.data(), doubles.size());
+        data.putAndInsertFloat64(DCM_DoubleFloatPixelPaddingValue, -7.5);
+      } else {
+        data.putAndInsertFloat32Array(DCM_FloatPixelData, floats.data(), floats.size());
+        data.putAndInsertFloat32(DCM_FloatPixelPaddingValue, -7.5F);
+      }
+      ASSERT_TRUE(save(*slice, folder_ / ("f" + std::to_string(k)), EXS_LittleEndianExplicit));
+    }
+    const Scan scan = read_scan(folder_);
+    EXPECT_EQ(scan.grid.voxels_without_density(), 1U);
+    EXPECT_EQ((scan.grid[{3, 2, 3}]), 2 * stored_value(3, 2, 3) - 100);
+    fs::resize_file(folder_ / "f1", fs::file_size(folder_ / "f1") - 8);
+    EXPECT_TRUE(contains(refusal(folder_), "f1: is cut short"));
+  }
+}
+
 TEST_F(DicomSeries, AFolderWithoutSlicesIsRefused) {
   EXPECT_TRUE(contains(refusal(folder_), "holds no DICOM slices"));
   write("notes.txt", "hello");

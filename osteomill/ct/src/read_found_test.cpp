@@ -57,6 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Found{"04-two-acquisitions/same-places.zip", 0.5, "", "1.2"},
                       Found{"07-copies/same-pixels.zip", 0.5, "3 copies"},
                       Found{"08-odd-one/size.zip", 0.5, "zz.dcm, of another size"},
+                      Found{"09-float-pixels/all.zip"}, Found{"30-padding/high.zip"},
                       Found{"14-enhanced-parts/two.zip"}, Found{"15-dynamic/files.zip", 0.5, "1.2 ("},
                       Found{"15-dynamic/files.zip", 0.5, "", "1.3"},
                       Found{"18-rounded-positions/0.15mm-1digits.zip", 0.1478, "rounded to 0.1 mm"},

@@ -21,8 +21,8 @@ struct Scan {
   std::vector<std::string> warnings;
   /// True if the file says so, as DICOM does of CT.
   bool in_hounsfield_units = false;
-  /// If there are several DICOM series, a line on each in the order of their numbers: modality, description,
-  /// size, spacing, one of its files, UID.
+  /// If there are several DICOM series, or volumes in one, a line on each in the order of their numbers:
+  /// modality, description, what tells it from others of its series, size, spacing, one of its files, UID.
   std::vector<std::string> series = {};
   /// True if the file says that its values are labels, by its name (.seg.nrrd) or in its header.
   bool is_labels = false;
@@ -30,8 +30,8 @@ struct Scan {
 
 /// Chooses what to read, and how much of the machine that may take.
 struct ReadOptions {
-  /// The DICOM series to read if there are several: its number (from 1), its UID or the beginning of that. If
-  /// empty, the largest CT is read, with a warning.
+  /// The DICOM series to read if there are several: its number (from 1; 3.1 for one of several volumes in a
+  /// series), its UID or the beginning of that. If empty, the largest CT is read, with a warning.
   std::string series;
   /// The most memory that the densities may take, and the most that is unpacked of an archive. By default,
   /// the memory that the program may take.
@@ -42,8 +42,9 @@ struct ReadOptions {
 /// with the rest of its series beside it; an Enhanced multi-frame file), NRRD, MetaImage or NIfTI, or a zip
 /// archive or folder of any of these. W is the patient's LPS frame in mm (NIfTI's RAS is turned into it);
 /// stored values are rescaled to what they mean (RescaleSlope, RescaleIntercept). Throws InputError, naming
-/// the path and the reason, if it is not a scan that can be placed in space without guessing. Bounded memory:
-/// what the header asks for is held against the file and the options before it is allocated. Names of
+/// the path and the reason, if it is not a scan that can be placed in space without guessing. Voxels for
+/// which it has no density, padding and NaN, are known to the grid (`DensityGrid::has_density`). Bounded
+/// memory: what the header asks for is held against the file and the options before it is allocated. Names of
 /// patients, their dates and numbers are never read.
 Scan read_scan(const std::filesystem::path& path, const ReadOptions& options = {});
 
