@@ -106,16 +106,7 @@ auto read_pixels_of(E_TransferSyntax syntax, int bits) {
   return [=](Bytes bytes, const fs::path& folder) {
     save_sound_slice(folder);
     const auto damaged = made_up_slice({.bits = bits});
-    auto* pixels = new DcmPixelData(DCM_PixelData);
-    auto* sequence = new DcmPixelSequence(DCM_PixelSequenceTag);
-    sequence->insert(new DcmPixelItem(DCM_PixelItemTag));
-    auto* item = new DcmPixelItem(DCM_PixelItemTag);
-    std::vector<Uint8> even(bytes.begin(), bytes.end());
-    if (even.size() % 2 != 0) even.push_back(0);
-    item->putUint8Array(even.data(), even.size());
-    sequence->insert(item);
-    pixels->putOriginalRepresentation(syntax, nullptr, sequence);
-    damaged->getDataset()->insert(pixels, OFTrue);
+    put_fragment(*damaged->getDataset(), syntax, bytes);
     damaged->saveFile((folder / "damaged").c_str(), syntax);
     read_as_info_does(folder);
   };

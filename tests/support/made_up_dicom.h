@@ -120,6 +120,20 @@ inline DcmPixelSequence* fragments(DcmDataset& data, E_TransferSyntax syntax) {
   return sequence;
 }
 
+/// Makes the pixels of one frame those of a compressed stream.
+inline void put_fragment(DcmDataset& data, E_TransferSyntax syntax, std::span<const unsigned char> stream) {
+  auto* sequence = new DcmPixelSequence(DCM_PixelSequenceTag);
+  sequence->insert(new DcmPixelItem(DCM_PixelItemTag));
+  auto* item = new DcmPixelItem(DCM_PixelItemTag);
+  std::vector<Uint8> even(stream.begin(), stream.end());
+  if (even.size() % 2 != 0) even.push_back(0);
+  item->putUint8Array(even.data(), even.size());
+  sequence->insert(item);
+  auto* pixels = new DcmPixelData(DCM_PixelData);
+  pixels->putOriginalRepresentation(syntax, nullptr, sequence);
+  data.insert(pixels, OFTrue);
+}
+
 inline std::vector<unsigned char> bytes_of(DcmPixelItem& fragment) {
   Uint8* bytes = nullptr;
   fragment.getUint8Array(bytes);

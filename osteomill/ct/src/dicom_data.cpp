@@ -1,9 +1,15 @@
 #include "dicom_data.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstring>
 #include <exception>
+#include <fstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcistrmf.h>
@@ -65,6 +71,10 @@ void set_up_dcmtk() {
     jpeg.addAppender(dcmtk::log4cplus::SharedAppenderPtr(new ComplaintAppender));
     DJDecoderRegistration::registerCodecs();
     DJLSDecoderRegistration::registerCodecs();
+    // Writers may say one of the plain syntaxes and use another.
+    dcmAutoDetectDatasetXfer.set(OFTrue);
+    // What follows are at best zeros, which it would take for elements.
+    dcmStopParsingAfterElement.set(DCM_PixelData);
     // Elements of an unknown kind (UN) that the dictionary knows.
     dcmEnableUnknownVRConversion.set(OFTrue);
     return true;
@@ -84,6 +94,10 @@ bool looks_like_dicom(const fs::path& path) {
   return head.size() >= 8 && (head[0] == 2 || head[0] == 8) && head[1] == 0 && head[3] == 0;
 }
 
+bool are_zeros(const std::vector<char>& block) {
+  return block.front() == 0 && std::memcmp(block.data(), block.data() + 1, block.size() - 1) == 0;
+}
+
 // How many items there can be: every one begins with its tag, in either order of bytes. Reads it all.
 std::uint64_t count_items(ByteSource& source, std::uint64_t& bytes, std::uint64_t max_bytes) {
   std::uint64_t items = 0;
@@ -91,6 +105,12 @@ std::uint64_t count_items(ByteSource& source, std::uint64_t& bytes, std::uint64_
   std::vector<char> block(1 << 18);
   for (std::size_t count = block.size(); count == block.size() && bytes <= max_bytes; bytes += count) {
     count = source.read(block);
+    WorkProgress::done(0);
+    // A sparse file has gigabytes of them.
+    if (are_zeros(block)) {
+      last_four = 0;
+      continue;
+    }
     for (std::size_t n = 0; n < count; ++n) {
       last_four = last_four << 8 | static_cast<unsigned char>(block[n]);
       items += last_four == 0xFEFF00E0 || last_four == 0xFFFEE000;
@@ -99,23 +119,92 @@ std::uint64_t count_items(ByteSource& source, std::uint64_t& bytes, std::uint64_
   return items;
 }
 
-// If the data set is deflated it begins behind the meta group, as DCMTK reads that.
-std::optional<std::streamoff> start_of_deflated(const fs::path& path) {
+// What comes before the data set.
+struct MetaGroup {
+  // The UID; empty if the file says none.
+  std::string syntax;
+  std::streamoff end = 0;
+};
+
+MetaGroup read_meta_group(const fs::path& path) {
   DcmInputFileStream stream(path.c_str());
   DcmMetaInfo meta;
   meta.transferInit();
   const bool read = meta.read(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
   meta.transferEnd();
   OFString syntax;
-  meta.findAndGetOFString(DCM_TransferSyntaxUID, syntax);
-  if (!read || syntax != UID_DeflatedExplicitVRLittleEndianTransferSyntax) return std::nullopt;
-  return static_cast<std::streamoff>(stream.tell());
+  if (read) meta.findAndGetOFString(DCM_TransferSyntaxUID, syntax);
+  return {syntax.c_str(), static_cast<std::streamoff>(stream.tell())};
 }
 
-void check_bounds(const fs::path& path) {
+// Syntaxes that came after DCMTK 3.6.7. HTJ2K is read as the JPEG 2000 of which it is a part.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kLaterSyntaxes{
+    {{"1.2.840.10008.1.2.4.110", "JPEG XL lossless"},
+     {"1.2.840.10008.1.2.4.111", "JPEG XL of a JPEG"},
+     {"1.2.840.10008.1.2.4.112", "JPEG XL"},
+     {"1.2.840.10008.1.2.4.201", ""},
+     {"1.2.840.10008.1.2.4.202", ""},
+     {"1.2.840.10008.1.2.4.203", ""},
+     {"1.2.840.10008.1.2.4.204", "JPIP HTJ2K"},
+     {"1.2.840.10008.1.2.4.205", "JPIP HTJ2K deflated"},
+     {"1.2.840.10008.1.2.8.1", "deflated frames"},
+     {"1.2.840.113619.5.2", "a private syntax of GE"}}};
+
+bool is_htj2k(std::string_view uid) {
+  return std::find(kLaterSyntaxes.begin(), kLaterSyntaxes.end(), std::pair(uid, std::string_view())) !=
+         kLaterSyntaxes.end();
+}
+
+// Whether there is a decoder.
+bool is_decoded(E_TransferSyntax syntax) {
+  static constexpr std::array kDecoded{EXS_LittleEndianImplicit,
+                                       EXS_LittleEndianExplicit,
+                                       EXS_BigEndianExplicit,
+                                       EXS_DeflatedLittleEndianExplicit,
+                                       EXS_RLELossless,
+                                       EXS_JPEGProcess1,
+                                       EXS_JPEGProcess2_4,
+                                       EXS_JPEGProcess6_8,
+                                       EXS_JPEGProcess10_12,
+                                       EXS_JPEGProcess14,
+                                       EXS_JPEGProcess14SV1,
+                                       EXS_JPEGLSLossless,
+                                       EXS_JPEGLSLossy,
+                                       EXS_JPEG2000LosslessOnly,
+                                       EXS_JPEG2000};
+  return std::find(kDecoded.begin(), kDecoded.end(), syntax) != kDecoded.end();
+}
+
+// Its name and UID; empty if there is a decoder for it, or none is named.
+std::string undecodable(const std::string& uid) {
+  const DcmXfer syntax(uid.c_str());
+  if (uid.empty() || is_htj2k(uid) || is_decoded(syntax.getXfer())) return {};
+  std::string name = syntax.getXfer() == EXS_Unknown ? "an unknown transfer syntax" : syntax.getXferName();
+  for (const auto& [later, its_name] : kLaterSyntaxes) {
+    if (uid == later) name = its_name;
+  }
+  return fmt::format("{} ({})", name, uid);
+}
+
+// Fills `file`; false if it is damaged.
+bool load(const fs::path& path, const MetaGroup& meta, DcmFileFormat& file) {
+  if (!is_htj2k(meta.syntax))
+    return file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
+  DcmInputFileStream stream(path.c_str());
+  file.transferInit();
+  file.getMetaInfo()->read(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes);
+  file.getMetaInfo()->putAndInsertString(DCM_TransferSyntaxUID, UID_JPEG2000TransferSyntax);
+  const bool read = file.read(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
+  file.transferEnd();
+  return read;
+}
+
+void check_bounds(const fs::path& path, const MetaGroup& meta) {
   const std::string subject = path.string();
   std::ifstream in = open_regular_file(subject, path);
-  const std::optional<std::streamoff> deflated = start_of_deflated(path);
+  // A deflated data set begins behind the meta group.
+  std::optional<std::streamoff> deflated;
+  if (meta.syntax == UID_DeflatedExplicitVRLittleEndianTransferSyntax) deflated = meta.end;
   if (!deflated && fs::file_size(path) / kMinItemBytes <= kMaxItems) return;
   in.seekg(deflated.value_or(0));
   ByteSource source(std::move(in), deflated ? Packing::deflate : Packing::none);
@@ -142,9 +231,11 @@ std::optional<DicomData> load_dicom(const fs::path& path, std::uint64_t max_byte
                      fmt::format("is {:.3g} GB long, over the {:.3g} GB that its voxels may take",
                                  static_cast<double>(bytes) * 1e-9, static_cast<double>(max_bytes) * 1e-9));
   }
-  check_bounds(path);
+  const MetaGroup meta = read_meta_group(path);
+  check_bounds(path, meta);
   DicomData data{std::make_shared<DcmFileFormat>()};
-  data.damaged = data.file->loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).bad();
+  data.damaged = !load(path, meta, *data.file);
+  data.undecodable = undecodable(meta.syntax);
   return data;
 }
 

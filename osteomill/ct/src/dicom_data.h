@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 class DcmFileFormat;
 
@@ -15,6 +16,8 @@ struct DicomData {
   std::shared_ptr<DcmFileFormat> file;
   /// The file is cut short or damaged; elements read before that stand.
   bool damaged = false;
+  /// The transfer syntax if it is one that nothing here decodes; else empty.
+  std::string undecodable{};
 };
 
 /// Reads a DICOM file; nothing if it is not DICOM at all. Throws InputError naming the file if it

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "dicom_data.h"
+#include "dicom_text.h"
 #include "header_text.h"
 
 namespace osteomill {
@@ -128,12 +129,16 @@ class FileReader {
   std::optional<Padding> padding_of(const StoredPixels& pixels) const;
   SlicePlane plane_of(std::size_t frame) const;
   DicomSlice slice_of(std::size_t frame) const;
+  // Old multi-frame images, as of cone-beam CT, say where the first frame lies and how far apart they are.
+  void place_frames();
   void check_byte_count() const;
 
   DcmDataset& data_;
   DicomHeader& header_;
   std::vector<DcmItem*> shared_;
   std::vector<DcmItem*> own_;
+  // How far each frame lies along the normal from the first; empty if each has a place of its own.
+  std::vector<double> offsets_mm_;
 };
 
 std::optional<std::vector<double>> FileReader::numbers(DcmItem& data, const DcmTagKey& tag, std::size_t count,
@@ -172,7 +177,7 @@ std::optional<std::vector<double>> FileReader::frame_numbers(std::size_t frame, 
 
 std::string FileReader::frame_text(std::size_t frame, const DcmTagKey& group, const DcmTagKey& tag) const {
   for (DcmItem* place : groups_of(frame, group)) {
-    if (std::string text = text_of(*place, tag); !text.empty()) return text;
+    if (std::string text = shown_text(*place, tag); !text.empty()) return text;
   }
   return {};
 }
@@ -282,6 +287,8 @@ SlicePlane FileReader::plane_of(std::size_t frame) const {
   plane.i_direction = Vec3(orientation->data());
   plane.j_direction = Vec3(orientation->data() + 3);
   plane.position_mm = Vec3(position->data());
+  if (!offsets_mm_.empty())
+    plane.position_mm += plane.i_direction.cross(plane.j_direction) * offsets_mm_[frame];
   plane.decimals = decimals_of(frame_text(frame, DCM_PlanePositionSequence, DCM_ImagePositionPatient));
   if (header_.frames == 1) plane.number = parsed_number<int>(text_of(data_, DCM_InstanceNumber));
   return plane;
@@ -306,6 +313,27 @@ DicomSlice FileReader::slice_of(std::size_t frame) const {
   return slice;
 }
 
+void FileReader::place_frames() {
+  const InputError nowhere = fault("has several frames and does not say where each of them lies");
+  const std::string along = text_of(data_, DCM_FrameIncrementPointer);
+  // Frames of a film follow each other in time.
+  if (!along.empty() && along.find("0018,2005") == std::string::npos) throw nowhere;
+  if (const auto heights_mm =
+          numbers(data_, DCM_SliceLocationVector, header_.frames, "SliceLocationVector")) {
+    for (const double height_mm : *heights_mm) offsets_mm_.push_back(height_mm - heights_mm->front());
+  } else if (const auto spacing_mm = frame_numbers(0, DCM_PixelMeasuresSequence, DCM_SpacingBetweenSlices, 1,
+                                                   "SpacingBetweenSlices")) {
+    for (std::size_t frame = 0; frame < header_.frames; ++frame)
+      offsets_mm_.push_back(spacing_mm->front() * static_cast<double>(frame));
+  } else {
+    throw nowhere;
+  }
+  header_.warning = fmt::format(
+      "its frames have no places of their own: they were put along the normal, the second {:.6g} mm from the "
+      "first",
+      offsets_mm_[1]);
+}
+
 void FileReader::check_byte_count() const {
   const std::uint64_t needed = static_cast<std::uint64_t>(header_.columns) *
                                static_cast<std::uint64_t>(header_.rows) * header_.frames *
@@ -325,6 +353,8 @@ void FileReader::read_frames() {
     if (frames->front() < 1 || frames->front() > 1 << 16) throw fault("has no sensible NumberOfFrames");
     header_.frames = static_cast<std::size_t>(frames->front());
   }
+  if (!header_.undecodable.empty() && header_.is_image())
+    throw fault(fmt::format("is encoded as {}, which is not supported", header_.undecodable));
   if (header_.pixel_bytes == 0) throw fault("has no pixels");
   if (header_.columns < 1 || header_.rows < 1) {
     throw fault(fmt::format("has no size: {} columns x {} rows", header_.columns, header_.rows));
@@ -334,8 +364,7 @@ void FileReader::read_frames() {
     throw fault(fmt::format("is {}, not a scan", header_.no_slice));
   if (data_.tagExists(DCM_ModalityLUTSequence))
     throw fault("needs a modality lookup table, which is not supported");
-  if (header_.frames > 1 && own_.empty())
-    throw fault("has several frames and does not say where each of them lies");
+  if (header_.frames > 1 && own_.empty()) place_frames();
   check_byte_count();
   std::string unit;
   for (DcmItem* place : groups_of(0, DCM_PixelValueTransformationSequence)) {
@@ -378,9 +407,9 @@ void describe(DcmDataset& data, DicomHeader& header) {
   header.is_compressed = DcmXfer(data.getOriginalXfer()).isEncapsulated();
   header.pixel_bytes = bytes_of_pixels(data, header.is_compressed);
   header.series_uid = text_of(data, DCM_SeriesInstanceUID);
-  header.series_description = text_of(data, DCM_SeriesDescription);
-  header.modality = text_of(data, DCM_Modality);
-  header.photometric = text_of(data, DCM_PhotometricInterpretation);
+  header.series_description = shown_text(data, DCM_SeriesDescription);
+  header.modality = shown_text(data, DCM_Modality);
+  header.photometric = shown_text(data, DCM_PhotometricInterpretation);
   header.columns = short_of(data, DCM_Columns).value_or(0);
   header.rows = short_of(data, DCM_Rows).value_or(0);
   header.listed_files = listed_files(data);
@@ -417,6 +446,7 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t
     std::optional<DicomData> loaded = load_dicom(path, max_bytes);
     if (!loaded) return std::nullopt;
     header.data = std::move(loaded->file);
+    header.undecodable = std::move(loaded->undecodable);
     DcmDataset& data = *header.data->getDataset();
     describe(data, header);
     header.lost = loaded->damaged && header.pixel_bytes == 0;

@@ -83,6 +83,8 @@ struct DicomHeader {
   /// A scout view to plan a scan by, not a part of it.
   bool is_localizer = false;
   bool is_compressed = false;
+  /// The transfer syntax if it is one that nothing here decodes; else empty.
+  std::string undecodable;
   /// The size of its pixels as they are stored; 0 if it has none.
   std::uint64_t pixel_bytes = 0;
   /// For a DICOMDIR, the images that it names, relative to its folder.
@@ -94,6 +96,8 @@ struct DicomHeader {
   /// A picture that is no slice of a scan, in half a sentence: in colour, or without any place.
   std::string no_slice;
   std::optional<Concatenation> concatenation;
+  /// What a user should know of how it was read; empty if nothing.
+  std::string warning;
   /// A slice for each frame; empty where there is a fault.
   std::vector<DicomSlice> slices;
 
@@ -116,9 +120,10 @@ std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
 
 /// Decodes the pixels of the file of `header`, which has no fault, and writes the densities of frame f, row
 /// by row, to `frame_densities(f)`, which must have room for columns * rows (a null pointer: the frame is not
-/// wanted). Padding becomes NaN. Throws InputError naming the file where they cannot be decoded. Only within
-/// `with_dicom_stack`.
-void read_dicom_densities(const DicomHeader& header,
+/// wanted). Padding becomes NaN. Returns whether compressed values are signed, some below zero, though the
+/// header says that they are not: they are taken as they say themselves. Throws InputError naming the file
+/// where they cannot be decoded. Only within `with_dicom_stack`.
+bool read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities);
 
 /// Reads DICOM. From a folder it reads one of the series that lie in it and the folders in it; returns

@@ -64,6 +64,10 @@ class FrameReader {
 
   // Stays until the next one is read.
   std::span<const char> read(std::size_t frame);
+  // The form of the values that were read last: as the header says, unless the compressed data know better.
+  StoredPixels form(std::size_t frame);
+  // Whether that mattered.
+  bool was_signed_after_all() const { return signed_after_all_; }
 
  private:
   InputError fault(const std::string& reason) const { return {header_.file.string(), reason}; }
@@ -87,6 +91,8 @@ class FrameReader {
   DcmFileCache cache_;
   // DCMTK wants an even number of bytes.
   std::vector<char> values_;
+  bool stream_is_signed_ = false;
+  bool signed_after_all_ = false;
 };
 
 FrameReader::FrameReader(const DicomHeader& header)
@@ -211,6 +217,7 @@ std::span<const char> FrameReader::read(std::size_t frame) {
     case EXS_JPEG2000LosslessOnly:
     case EXS_JPEG2000:
       if (!decode_jpeg2000(stream, size_, values)) throw damaged();
+      stream_is_signed_ = is_signed_jpeg2000(stream);
       break;
     default:
       decode_jpeg(stream);
@@ -218,15 +225,30 @@ std::span<const char> FrameReader::read(std::size_t frame) {
   return values;
 }
 
+StoredPixels FrameReader::form(std::size_t frame) {
+  StoredPixels pixels = header_.slices[frame].pixels;
+  if (!stream_is_signed_ || pixels.is_signed) return pixels;
+  // The decoder has put the sign into all bits.
+  const auto value_bytes = static_cast<std::size_t>(size_.bytes_a_value);
+  for (std::size_t n = value_bytes - 1; n < size_.bytes(); n += value_bytes)
+    signed_after_all_ = signed_after_all_ || values_[n] < 0;
+  pixels.is_signed = true;
+  pixels.bits_stored = pixels.bits_allocated;
+  return pixels;
+}
+
 }  // namespace
 
-void read_dicom_densities(const DicomHeader& header,
+bool read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities) {
   FrameReader reader(header);
   for (std::size_t frame = 0; frame < header.slices.size(); ++frame) {
     float* densities = frame_densities(frame);
-    if (densities != nullptr) rescale_frame(reader.read(frame), header.slices[frame].pixels, densities);
+    if (densities == nullptr) continue;
+    const std::span<const char> values = reader.read(frame);
+    rescale_frame(values, reader.form(frame), densities);
   }
+  return reader.was_signed_after_all();
 }
 
 }  // namespace osteomill

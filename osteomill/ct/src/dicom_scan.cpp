@@ -265,7 +265,7 @@ std::string describe(const DicomPart& part) {
   const DicomHeader& first = part.series->headers[part.slices.empty() ? 0 : part.slices.front().header];
   return fmt::format("{}: {} \"{}\", {}{}{}, from {}, {}", part.number, first.modality,
                      first.series_description, part.told_by, part.told_by.empty() ? "" : ", ",
-                     size_and_spacing(part), first.file.filename().string(), part.series->uid);
+                     size_and_spacing(part), first.file.filename().string(), in_one_line(part.series->uid));
 }
 
 // The one with the most pixels; CT before others, and of one series volumes before what is none.
@@ -335,7 +335,7 @@ void add_notes(const DicomHeader& first, std::vector<std::string>& warnings) {
 
 // Slice after slice, as the stack has them.
 std::vector<float> read_densities(const DicomPart& part, const SliceStack& stack,
-                                  std::vector<DicomHeader>& headers) {
+                                  std::vector<DicomHeader>& headers, std::vector<std::string>& warnings) {
   const std::size_t slice_size =
       stack.geometry.voxel_count() / static_cast<std::size_t>(stack.geometry.dims[2]);
   std::vector<float> densities(slice_size * stack.order.size());
@@ -346,12 +346,18 @@ std::vector<float> read_densities(const DicomPart& part, const SliceStack& stack
     places[slice.header][slice.frame] = &densities[k * slice_size];
   }
   std::size_t read = 0;
+  bool signed_after_all = false;
   for (std::size_t n = 0; n < headers.size(); ++n) {
-    read_dicom_densities(headers[n], [&](std::size_t frame) {
+    signed_after_all |= read_dicom_densities(headers[n], [&](std::size_t frame) {
       if (places[n][frame] != nullptr) WorkProgress::done(read++, stack.order.size());
       return places[n][frame];
     });
     headers[n].data.reset();
+  }
+  if (signed_after_all) {
+    warnings.push_back(
+        "its compressed pixels are signed though its header says that they are not: they were read as "
+        "signed");
   }
   return densities;
 }
@@ -380,11 +386,12 @@ Scan build_scan(const std::string& subject, const DicomPart& part, std::vector<D
   const DicomHeader& first = headers[part.slices.front().header];
   add_notes(first, warnings);
   check_concatenation(part, warnings);
+  if (!first.warning.empty()) warnings.push_back(first.warning);
   const bool in_hounsfield_units = first.in_hounsfield_units;
   std::vector<float> densities;
   {
     const WorkProgress::Part reading(0.95);
-    densities = read_densities(part, stack, headers);
+    densities = read_densities(part, stack, headers, warnings);
   }
   const WorkProgress::Part checking(1);
   check_densities(subject, densities);

@@ -476,6 +476,141 @@ TEST_F(DicomSeries, PixelsMayBeFloats) {
   }
 }
 
+// A file's own word for its transfer syntax, which is not the one that it has.
+void say_syntax(const fs::path& path, const std::string& said) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  in.close();
+  const std::size_t at = bytes.find(std::string("\x02\0\x10\0UI", 6));
+  ASSERT_NE(at, std::string::npos);
+  const auto length = static_cast<unsigned char>(bytes[at + 6]);
+  ASSERT_LE(said.size(), length);
+  std::string padded = said;
+  padded.resize(length, '\0');
+  bytes.replace(at + 8, length, padded);
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST_F(DicomSeries, AnotherPlainSyntaxThanIsSaidIsNoticed) {
+  for (const auto& [has, said] : {std::pair{EXS_LittleEndianImplicit, UID_LittleEndianImplicitTransferSyntax},
+                                  {EXS_LittleEndianExplicit, UID_LittleEndianImplicitTransferSyntax},
+                                  {EXS_BigEndianExplicit, UID_LittleEndianExplicitTransferSyntax}}) {
+    write_series(has);
+    for (int k = 0; k < 4; ++k) say_syntax(folder_ / ("f" + std::to_string(9 - k)), said);
+    expect_series(read_scan(folder_));
+  }
+}
+
+TEST_F(DicomSeries, ASyntaxThatIsNotDecodedIsNamed) {
+  // None longer than what the slice says before.
+  for (const auto& [uid, name] :
+       {std::pair{"1.2.840.10008.1.2.4.92", "(1.2.840.10008.1.2.4.92), which is not"},
+        {"1.2.840.113619.5.2", "a private syntax of GE (1.2.840.113619.5.2)"},
+        {"1.2.3.4", "an unknown transfer syntax (1.2.3.4)"}}) {
+    write_series();
+    write_slice({.file = "f7", .k = 2, .syntax = EXS_JPEGProcess14SV1});
+    say_syntax(folder_ / "f7", uid);
+    const std::string said = refusal(folder_);
+    EXPECT_TRUE(contains(said, "f7: is encoded as") && contains(said, name)) << said;
+  }
+}
+
+TEST_F(DicomSeries, ASignedStreamUnderAnUnsignedHeaderIsReadAsItSays) {
+  for (const bool is_signed : {true, false}) {
+    for (int k = 0; k < 4; ++k) {
+      const auto slice = made_up_slice({.k = k, .bits = 16});
+      std::vector<int> values = stored_values(k);
+      if (is_signed) values.front() = -1000;
+      const std::vector<unsigned char> stream = jpeg2000_stream(values, kColumns, kRows, 16, is_signed);
+      put_fragment(*slice->getDataset(), EXS_JPEG2000LosslessOnly, stream);
+      ASSERT_TRUE(
+          slice->saveFile((folder_ / ("f" + std::to_string(k))).c_str(), EXS_JPEG2000LosslessOnly).good());
+    }
+    const Scan scan = read_scan(folder_);
+    EXPECT_EQ((scan.grid[{0, 0, 0}]), is_signed ? 2 * -1000 - 100 : -100);
+    EXPECT_EQ((scan.grid[{3, 2, 3}]), 2 * stored_value(3, 2, 3) - 100);
+    EXPECT_EQ(scan.warnings.size(), is_signed ? 1U : 0U);
+    if (is_signed) {
+      EXPECT_TRUE(contains(scan.warnings.at(0), "read as signed"));
+    }
+  }
+}
+
+TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
+  const auto write = [&](const DcmTagKey& tag, const std::string& text, const std::string& orientation) {
+    const auto file = made_up_slice({});
+    DcmDataset& data = *file->getDataset();
+    std::vector<int> values;
+    for (int k = 0; k < 3; ++k) {
+      for (const int value : stored_values(k)) values.push_back(value);
+    }
+    put_pixels(data, values, 12);
+    data.putAndInsertString(DCM_NumberOfFrames, "3");
+    data.putAndInsertString(DCM_ImageOrientationPatient, orientation.c_str());
+    data.putAndInsertString(tag, text.c_str());
+    ASSERT_TRUE(save(*file, folder_ / "many", EXS_LittleEndianExplicit));
+  };
+  for (const auto& [tag, text] : {std::pair{DCM_SpacingBetweenSlices, std::string("0.75")},
+                                  {DCM_SliceLocationVector, "5\\5.75\\6.5"}}) {
+    write(tag, text, "0\\1\\0\\0\\0\\1");
+    const Scan scan = read_scan(folder_ / "many");
+    EXPECT_EQ(scan.grid.geometry().dims, (std::array<int, 3>{kColumns, kRows, 3}));
+    EXPECT_NEAR(scan.grid.geometry().spacing_mm.z(), 0.75, 1e-9);
+    EXPECT_TRUE(scan.grid.geometry().direction.col(2).isApprox(Vec3::UnitX()));
+    EXPECT_EQ((scan.grid[{3, 2, 2}]), 2 * stored_value(3, 2, 2) - 100);
+    EXPECT_TRUE(contains(scan.warnings.at(0), "the second 0.75 mm from the first"));
+  }
+  // Against the normal the last lies lowest.
+  write(DCM_SpacingBetweenSlices, "-0.75", "1\\0\\0\\0\\1\\0");
+  EXPECT_EQ((read_scan(folder_ / "many").grid[{3, 2, 0}]), 2 * stored_value(3, 2, 2) - 100);
+  write(DCM_SpacingBetweenSlices, "0", "1\\0\\0\\0\\1\\0");
+  EXPECT_TRUE(contains(refusal(folder_ / "many"), "one position"));
+  write(DCM_SliceThickness, "0.75", "1\\0\\0\\0\\1\\0");
+  EXPECT_TRUE(contains(refusal(folder_ / "many"), "where each of them lies"));
+}
+
+TEST_F(DicomSeries, WhatFollowsThePixelsIsNotRead) {
+  write_series();
+  // Sparse: only reading all of it would take its time.
+  fs::resize_file(folder_ / "f7", 1'000'000'000);
+  expect_series(read_scan(folder_));
+}
+
+TEST_F(DicomSeries, DescriptionsAreShownInUtf8) {
+  for (const auto& [set, text, shown] :
+       {std::array{"ISO_IR 100",
+                   "Sch\xE4"
+                   "del",
+                   "Sch\xC3\xA4"
+                   "del"},
+        {"ISO_IR 192", "\xE9\xAA\xA8", "\xE9\xAA\xA8"},
+        {"ISO_IR 144", "\xBA\xDE\xE1\xE2\xEC", "\xD0\x9A\xD0\xBE\xD1\x81\xD1\x82\xD1\x8C"},
+        {"",
+         "Sch\xE4"
+         "del",
+         "Sch\xC3\xA4"
+         "del"},
+        {"",
+         "Sch\xC3\xA4"
+         "del",
+         "Sch\xC3\xA4"
+         "del"},
+        {"ISO_IR 100",
+         "a\x1B[31mb\x9B"
+         "c\x7F",
+         "a?[31mb?c?"},
+        {"no such set", "\xE4\x1B", "\xC3\xA4?"}}) {
+    for (int k = 0; k < 4; ++k) {
+      const auto slice = made_up_slice({.k = k, .series = "1.2." + std::to_string(k / 2)});
+      slice->getDataset()->putAndInsertString(DCM_SpecificCharacterSet, set);
+      slice->getDataset()->putAndInsertString(DCM_SeriesDescription, text);
+      ASSERT_TRUE(save(*slice, folder_ / ("f" + std::to_string(k)), EXS_LittleEndianExplicit));
+    }
+    const std::string line = read_scan(folder_).series.at(0);
+    EXPECT_TRUE(contains(line, '"' + std::string(shown) + '"')) << line;
+  }
+}
+
 TEST_F(DicomSeries, AFolderWithoutSlicesIsRefused) {
   EXPECT_TRUE(contains(refusal(folder_), "holds no DICOM slices"));
   write("notes.txt", "hello");

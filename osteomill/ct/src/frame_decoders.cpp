@@ -144,6 +144,15 @@ bool decode_jpeg2000(Bytes bytes, const FrameSize& size, std::span<char> values)
   return true;
 }
 
+bool is_signed_jpeg2000(Bytes bytes) {
+  // The code stream begins with SOC and SIZ; the first component's precision, and its sign in the highest
+  // bit, come behind the sizes and the number of components.
+  constexpr std::array<unsigned char, 4> kStart{0xFF, 0x4F, 0xFF, 0x51};
+  constexpr std::ptrdiff_t kPrecision = 42;
+  const auto start = std::search(bytes.begin(), bytes.end(), kStart.begin(), kStart.end());
+  return bytes.end() - start > kPrecision && (start[kPrecision] & 0x80) != 0;
+}
+
 bool jpeg_fits(Bytes bytes, JpegKind kind, const FrameSize& size) {
   const auto number = [&](std::size_t n) { return bytes[n] << 8 | bytes[n + 1]; };
   if (bytes.size() < 2 || number(0) != 0xFFD8) return false;

@@ -21,6 +21,9 @@ struct FrameSize {
 bool decode_rle(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 bool decode_jpeg2000(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 
+/// Returns whether a JPEG 2000 stream says that its values have a sign.
+bool is_signed_jpeg2000(std::span<const unsigned char> stream);
+
 enum class JpegKind { jpeg, jpeg_ls };
 /// Returns whether a stream is of the kind that it is said to be, and has nothing but well-formed segments
 /// before a grey image of that size with no more bits than `size` has room for. DCMTK does not check this: it

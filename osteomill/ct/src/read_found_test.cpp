@@ -57,20 +57,74 @@ INSTANTIATE_TEST_SUITE_P(
                       Found{"04-two-acquisitions/same-places.zip", 0.5, "", "1.2"},
                       Found{"07-copies/same-pixels.zip", 0.5, "3 copies"},
                       Found{"08-odd-one/size.zip", 0.5, "zz.dcm, of another size"},
-                      Found{"09-float-pixels/all.zip"}, Found{"30-padding/high.zip"},
-                      Found{"14-enhanced-parts/two.zip"}, Found{"15-dynamic/files.zip", 0.5, "1.2 ("},
+                      Found{"03-multiframe-cbct/ct-class.dcm", 0.5, "no places of their own"},
+                      Found{"12-mislabelled/implicit-said-explicit.zip"}, Found{"09-float-pixels/all.zip"},
+                      Found{"30-padding/high.zip"}, Found{"14-enhanced-parts/two.zip"},
+                      Found{"15-dynamic/files.zip", 0.5, "1.2 ("},
                       Found{"15-dynamic/files.zip", 0.5, "", "1.3"},
                       Found{"18-rounded-positions/0.15mm-1digits.zip", 0.1478, "rounded to 0.1 mm"},
                       Found{"18-rounded-positions/0.25mm-1digits.zip", 0.25, "rounded to 0.1 mm"},
                       Found{"18-rounded-positions/0.4mm-0digits.zip", 0.3913, "rounded to 1 mm"}));
 
-TEST(ReadFound, AFolderOfLocalizersSaysSo) {
-  OSTEOMILL_NEEDS_SHARED("found4/27-only-localizers/all.zip");
+struct Refused {
+  const char* file;
+  const char* reason;
+};
+class FoundRefusal : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(FoundRefusal, SaysWhy) {
+  const auto& [file, reason] = GetParam();
+  const std::string path = std::string("found4/") + file;
+  OSTEOMILL_NEEDS_SHARED(path);
   try {
-    read_scan(shared_data() / "found4/27-only-localizers/all.zip");
+    read_scan(shared_data() / path);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("only 2 localizers"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ReadFound, FoundRefusal,
+                         ::testing::Values(Refused{"27-only-localizers/all.zip", "only 2 localizers"},
+                                           Refused{"10-syntax/jpegxl.zip", "JPEG XL lossless (1.2.840"}));
+
+TEST(ReadFound, HighThroughputJpeg2000IsReadToTheBit) {
+  OSTEOMILL_NEEDS_SHARED("found4/10-syntax/htj2k");
+  const Scan scan = read_scan(shared_data() / "found4/10-syntax/htj2k");
+  struct Slice {
+    double min;
+    double max;
+    double mean;
+  };
+  // In the order of their places, which need not be that of their files.
+  const std::array<Slice, 2> slices{{{-2000, 2278, 152.6963}, {-2048, 1433, -754.2929}}};
+  const auto& dims = scan.grid.geometry().dims;
+  ASSERT_EQ(dims, (std::array<int, 3>{512, 512, 2}));
+  for (int k = 0; k < 2; ++k) {
+    double min = 1e9, max = -1e9, sum = 0;
+    for (int j = 0; j < dims[1]; ++j) {
+      for (const float density : scan.grid.row(j, k)) {
+        min = std::min(min, static_cast<double>(density));
+        max = std::max(max, static_cast<double>(density));
+        sum += static_cast<double>(density);
+      }
+    }
+    const Slice& expected = slices[max == slices[0].max ? 0 : 1];
+    EXPECT_EQ(min, expected.min);
+    EXPECT_EQ(max, expected.max);
+    EXPECT_NEAR(sum / (512 * 512), expected.mean, 1e-4);
+  }
+}
+
+TEST(ReadFound, DescriptionsAreUtf8WithoutControlCharacters) {
+  OSTEOMILL_NEEDS_SHARED("found4/19-characters/latin1.zip");
+  const std::string latin = read_scan(shared_data() / "found4/19-characters/latin1.zip").series.at(0);
+  EXPECT_NE(latin.find("\"Sch\xC3\xA4"
+                       "del axial Knochen\""),
+            std::string::npos)
+      << latin;
+  for (const std::string& line : read_scan(shared_data() / "found4/19-characters/terminal.zip").series) {
+    EXPECT_NE(line.find("\"?]0;owned??[31mred?[2J\""), std::string::npos) << line;
   }
 }
 

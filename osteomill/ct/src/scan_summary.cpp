@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "osteomill/base/input_error.h"
+
 namespace osteomill {
 
 namespace {
@@ -99,7 +101,7 @@ std::string to_text(const ScanSummary& summary) {
   const auto& [columns, rows, slices] = geometry.dims;
   const Vec3& spacing = geometry.spacing_mm;
   const Vec3& origin = geometry.origin_mm;
-  std::string text = fmt::format("{} ({})\n", summary.scan.name, summary.scan.format);
+  std::string text = fmt::format("{} ({})\n", in_one_line(summary.scan.name), summary.scan.format);
   text += fmt::format("voxels      {} x {} x {}\n", columns, rows, slices);
   text += fmt::format("spacing     {:.6g} x {:.6g} x {:.6g} mm\n", spacing[0], spacing[1], spacing[2]);
   text += fmt::format("size        {:.6g} x {:.6g} x {:.6g} mm\n", spacing[0] * columns, spacing[1] * rows,
@@ -123,15 +125,17 @@ std::string to_text(const ScanSummary& summary) {
     text += fmt::format("boundary    {:.4g}, with {:.4g} below and {:.4g} above\n", of.density, of.below,
                         of.above);
   text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
-  for (const std::string& series : summary.scan.series) text += fmt::format("series      {}\n", series);
+  for (const std::string& series : summary.scan.series)
+    text += fmt::format("series      {}\n", in_one_line(series));
   for (const LabelSummary& of : summary.labels) {
     text += fmt::format(
-        "label       {} {}, {}: {} voxels, {:.5g} mm³, {:.0f} % bone{}\n", of.label.value, of.label.name,
-        hex_colour(of.label), of.voxels, of.volume_mm3,
+        "label       {} {}, {}: {} voxels, {:.5g} mm³, {:.0f} % bone{}\n", of.label.value,
+        in_one_line(of.label.name), hex_colour(of.label), of.voxels, of.volume_mm3,
         of.voxels > 0 ? 100.0 * static_cast<double>(of.bone_voxels) / static_cast<double>(of.voxels) : 0.0,
         of.label.no_go ? ", no-go" : "");
   }
-  for (const std::string& warning : summary.scan.warnings) text += fmt::format("warning: {}\n", warning);
+  for (const std::string& warning : summary.scan.warnings)
+    text += fmt::format("warning: {}\n", in_one_line(warning));
   return text;
 }
 

@@ -1,0 +1,76 @@
+#include "dicom_text.h"
+
+#include <cstddef>
+#include <string_view>
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcspchrs.h>
+#include <dcmtk/dcmdata/dctk.h>
+
+#include "header_text.h"
+
+namespace osteomill {
+
+namespace {
+
+// The bytes of the character with which `text` begins, as UTF-8 has it; 0 if it does not.
+std::size_t length_of_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t n) {
+    return n < text.size() ? static_cast<unsigned>(static_cast<unsigned char>(text[n])) : 0;
+  };
+  const auto follows = [&](std::size_t n) { return (byte(n) & 0xC0) == 0x80; };
+  if (byte(0) < 0x80) return 1;
+  if (byte(0) >= 0xC2 && byte(0) < 0xE0 && follows(1)) return 2;
+  // Neither too long a form, nor half of a pair.
+  const unsigned two = byte(0) << 8 | byte(1);
+  if (two >= 0xE0A0 && two < 0xF000 && follows(1) && follows(2) && !(two >= 0xEDA0 && two < 0xEE00)) return 3;
+  if (two >= 0xF090 && two < 0xF490 && follows(1) && follows(2) && follows(3)) return 4;
+  return 0;
+}
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = length_of_utf8(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
+// Of UTF-8: C0, DEL and C1.
+std::string without_controls(std::string_view text) {
+  std::string shown;
+  while (!text.empty()) {
+    const std::string_view character = text.substr(0, length_of_utf8(text));
+    const auto first = static_cast<unsigned char>(character[0]);
+    const bool is_control = character.size() == 1
+                                ? first < ' ' || first == 127
+                                : first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
+    shown += is_control ? "?" : character;
+    text.remove_prefix(character.size());
+  }
+  return shown;
+}
+
+bool convert(const OFString& from, const OFString& text, OFString& converted) {
+  DcmSpecificCharacterSet sets;
+  return sets.selectCharacterSet(from, "ISO_IR 192").good() && sets.convertString(text, converted).good() &&
+         is_utf8(converted.c_str());
+}
+
+}  // namespace
+
+std::string shown_text(DcmItem& data, const DcmTagKey& tag) {
+  OFString text, sets;
+  if (data.findAndGetOFStringArray(tag, text).bad()) return {};
+  data.findAndGetOFStringArray(DCM_SpecificCharacterSet, sets);
+  OFString converted = text;
+  if (!(sets.empty() ? is_utf8(text.c_str()) : convert(sets, text, converted)) && !is_utf8(text.c_str()) &&
+      !convert("ISO_IR 100", text, converted)) {
+    converted.clear();
+    for (const char c : text) converted += static_cast<unsigned char>(c) < 0x80 ? c : '?';
+  }
+  return trimmed(without_controls(converted.c_str()));
+}
+
+}  // namespace osteomill
