@@ -53,8 +53,9 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
          s.as_labels = kind == "labels";
        }},
       field<S>(
-          text("labels", "FILE", app::kOfWhatIsBone,
-               "Label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid"),
+          text(
+              "labels", "FILE", app::kOfWhatIsBone,
+              "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage, DICOM segmentation), on any grid"),
           [](auto& s) -> auto& { return s.labels.map; }),
       field<S>(
           text("label-table", "FILE", app::kOfWhatIsBone,
@@ -145,6 +146,7 @@ Volume bone_of(Scan scan, double isovalue) {
 
 LabelsRead labels_of(const ScanOptions& options, const Scan& scan) {
   LabelFiles files = options.labels;
+  if (files.map.empty() && scan.is_labels && !scan.labels.empty()) return labels_in(scan, files);
   if (files.map.empty() && scan.is_labels && is_label_file(options.scan)) files.map = options.scan;
   if (files.map.empty()) {
     if (!files.table.empty() || !files.no_go.empty())

@@ -1,3 +1,5 @@
+#include "osteomill/ct/read_labels.h"
+
 #include "fuzz/targets.h"
 #include "tests/support/made_up_dicom.h"
 
@@ -62,6 +64,25 @@ std::vector<std::string> file_seeds(const fs::path& folder) {
     seeds.push_back(read_bytes(folder / "a"));
   }
   return seeds;
+}
+
+// The bytes are a segmentation, read as a scan and as the labels of one.
+void read_segmentation(Bytes bytes, const fs::path& folder) {
+  static const Scan scan = [&] {
+    for (int k = 0; k < 4; ++k)
+      save(*made_up_slice({.k = k}), folder / ("I" + std::to_string(k)), EXS_LittleEndianExplicit);
+    Scan read = read_scan(folder);
+    for (int k = 0; k < 4; ++k) fs::remove(folder / ("I" + std::to_string(k)));
+    return read;
+  }();
+  write_bytes(folder / "segmentation", bytes);
+  read_labels({folder / "segmentation", "", {}}, scan.grid.geometry(), 1 << 26);
+  read_as_info_does(folder / "segmentation");
+}
+
+std::vector<std::string> segmentation_seeds(const fs::path& folder) {
+  save(*made_up_segmentation(), folder / "a", EXS_LittleEndianExplicit);
+  return {read_bytes(folder / "a")};
 }
 
 std::vector<std::string> directory_seeds(const fs::path& folder) {
@@ -145,6 +166,7 @@ std::vector<Target> dicom_targets() {
   return {{"dicom", read_file, file_seeds},
           {"dicomdir", read_directory, directory_seeds},
           {"deflated", read_deflated, deflated_seeds},
+          {"dicom-seg", read_segmentation, segmentation_seeds},
           pixels("rle", EXS_RLELossless, 12),
           pixels("jpeg-lossy-8", EXS_JPEGProcess1, 8),
           pixels("jpeg-lossy-12", EXS_JPEGProcess2_4, 12),

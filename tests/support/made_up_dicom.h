@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -104,7 +105,71 @@ inline std::unique_ptr<DcmFileFormat> made_up_slice(const Slice& slice) {
   return file;
 }
 
-/// Saves a file. Returns false if it cannot be encoded in this way, or not written.
+/// The segment of a made-up segmentation at a voxel; 0 for none. The last slice but one has none at all.
+inline int segment_at(int i, int j, int k) {
+  if (k == 2) return 0;
+  return i >= 3 && j > k ? 2 : i > 1 ? 1 : 0;
+}
+
+/// Two segments, the first of which reaches under the second, on the grid of the first four made-up slices.
+/// `second_height`: of the second frame.
+inline std::unique_ptr<DcmFileFormat> made_up_segmentation(const std::string& second_height = "10.75") {
+  auto file = made_up_slice({.series = "1.2.8", .modality = "SEG"});
+  DcmDataset& data = *file->getDataset();
+  for (const DcmTagKey& tag :
+       {DCM_RescaleSlope, DCM_RescaleIntercept, DCM_ImagePositionPatient, DCM_PixelData})
+    data.findAndDeleteElement(tag);
+  data.putAndInsertString(DCM_SOPClassUID, UID_SegmentationStorage);
+  data.putAndInsertString(DCM_SegmentationType, "BINARY");
+  data.putAndInsertString(DCM_SpecificCharacterSet, "ISO_IR 100");
+  data.putAndInsertString(DCM_NumberOfFrames, "6");
+  for (const DcmTagKey& tag : {DCM_BitsAllocated, DCM_BitsStored}) data.putAndInsertUint16(tag, 1);
+  data.putAndInsertUint16(DCM_HighBit, 0);
+  const auto item_of = [](DcmItem& in, const DcmTagKey& tag, int number = 0) -> DcmItem& {
+    DcmItem* item = nullptr;
+    in.findOrCreateSequenceItem(tag, item, number);
+    return *item;
+  };
+  DcmItem& measures = item_of(item_of(data, DCM_SharedFunctionalGroupsSequence), DCM_PixelMeasuresSequence);
+  measures.putAndInsertString(DCM_PixelSpacing, "0.25\\0.5");
+  measures.putAndInsertString(DCM_SpacingBetweenSlices, "0.75");
+  const std::array<const char*, 2> names{"mandible",
+                                         "Sch\xE4"
+                                         "del"};
+  for (int segment = 1; segment <= 2; ++segment) {
+    DcmItem& item = item_of(data, DCM_SegmentSequence, segment - 1);
+    item.putAndInsertUint16(DCM_SegmentNumber, static_cast<Uint16>(segment));
+    item.putAndInsertString(DCM_SegmentLabel, names[static_cast<std::size_t>(segment) - 1]);
+    const std::array<Uint16, 3> white{65535, 32896, 32896};
+    item.putAndInsertUint16Array(DCM_RecommendedDisplayCIELabValue, white.data(), white.size());
+  }
+  std::vector<Uint8> bits((6 * kRows * kColumns + 7) / 8 + 1);
+  std::size_t bit = 0;
+  int frame = 0;
+  for (const int k : {3, 0, 1}) {
+    for (int segment = 1; segment <= 2; ++segment, ++frame) {
+      DcmItem& groups = item_of(data, DCM_PerFrameFunctionalGroupsSequence, frame);
+      const std::string height =
+          frame == 1 && second_height != "10.75" ? second_height : std::to_string(10 + 0.75 * k);
+      item_of(groups, DCM_PlanePositionSequence)
+          .putAndInsertString(DCM_ImagePositionPatient, ("1\\2\\" + height).c_str());
+      item_of(groups, DCM_SegmentIdentificationSequence)
+          .putAndInsertUint16(DCM_ReferencedSegmentNumber, static_cast<Uint16>(segment));
+      for (int j = 0; j < kRows; ++j) {
+        for (int i = 0; i < kColumns; ++i, ++bit) {
+          const int found = segment_at(i, j, k);
+          if (found == segment || (segment == 1 && found == 2 && i == 3))
+            bits[bit / 8] = static_cast<Uint8>(bits[bit / 8] | 1U << bit % 8);
+        }
+      }
+    }
+  }
+  if (bits.size() % 2 != 0) bits.push_back(0);
+  data.putAndInsertUint8Array(DCM_PixelData, bits.data(), bits.size());
+  return file;
+}
+
+/// False where it cannot be encoded so, or not written.
 inline bool save(DcmFileFormat& file, const std::filesystem::path& path, E_TransferSyntax syntax) {
   register_encoders();
   return file.getDataset()->chooseRepresentation(syntax, nullptr).good() &&

@@ -19,8 +19,10 @@
 #include <dcmtk/oflog/appender.h>
 #include <dcmtk/oflog/oflog.h>
 #include <dcmtk/oflog/spi/logevent.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <pthread.h>
+#include <unistd.h>
 
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/work_progress.h"
@@ -199,6 +201,16 @@ bool load(const fs::path& path, const MetaGroup& meta, DcmFileFormat& file) {
   return read;
 }
 
+// Where the hole begins with which a sparse file ends: nothing but zeros follow.
+std::uint64_t end_of_data(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  off_t end = 0;
+  for (off_t data = 0; file >= 0 && (data = ::lseek(file, end, SEEK_DATA)) >= 0;)
+    end = ::lseek(file, data, SEEK_HOLE);
+  if (file >= 0) ::close(file);
+  return static_cast<std::uint64_t>(end);
+}
+
 void check_bounds(const fs::path& path, const MetaGroup& meta) {
   const std::string subject = path.string();
   std::ifstream in = open_regular_file(subject, path);
@@ -208,7 +220,7 @@ void check_bounds(const fs::path& path, const MetaGroup& meta) {
   if (!deflated && fs::file_size(path) / kMinItemBytes <= kMaxItems) return;
   in.seekg(deflated.value_or(0));
   ByteSource source(std::move(in), deflated ? Packing::deflate : Packing::none);
-  const std::uint64_t max_bytes = deflated ? kMaxInflation * source.bytes_in_file() : source.max_bytes();
+  const std::uint64_t max_bytes = deflated ? kMaxInflation * source.bytes_in_file() : end_of_data(path);
   std::uint64_t bytes = 0;
   const std::uint64_t items = count_items(source, bytes, max_bytes);
   if (deflated && (!source.ended_well() || bytes > max_bytes)) {

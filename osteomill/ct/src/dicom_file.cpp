@@ -129,6 +129,7 @@ class FileReader {
   std::optional<Padding> padding_of(const StoredPixels& pixels) const;
   SlicePlane plane_of(std::size_t frame) const;
   DicomSlice slice_of(std::size_t frame) const;
+  void describe_segments();
   // Old multi-frame images, as of cone-beam CT, say where the first frame lies and how far apart they are.
   void place_frames();
   void check_byte_count() const;
@@ -193,7 +194,9 @@ SliceMarks FileReader::marks_of(std::size_t frame) const {
 }
 
 std::string FileReader::no_slice() const {
-  if (short_of(data_, DCM_SamplesPerPixel).value_or(1) != 1 || !header_.photometric.starts_with("MONOCHROME"))
+  const bool is_grey = header_.photometric.starts_with("MONOCHROME") ||
+                       (header_.is_segmentation && header_.photometric.starts_with("PALETTE"));
+  if (short_of(data_, DCM_SamplesPerPixel).value_or(1) != 1 || !is_grey)
     return fmt::format("a colour image ({})", header_.photometric);
   const bool has_place = std::any_of(kPlaceTags.begin(), kPlaceTags.end(),
                                      [&](const DcmTagKey& tag) { return !text_of(data_, tag).empty(); });
@@ -244,6 +247,65 @@ std::optional<Padding> FileReader::padding_of(const StoredPixels& pixels) const 
   return padding;
 }
 
+// CIELab as DICOM has it (Part 3, C.10.7.1.1), white being D50, as sRGB.
+std::array<std::uint8_t, 3> colour_of(const std::array<double, 3>& lab) {
+  const double lightness = (100 * lab[0] / 65535 + 16) / 116;
+  const auto part = [](double f) { return f > 6.0 / 29 ? f * f * f : (f - 16.0 / 116) * 108 / 841; };
+  const Vec3 white(0.9642, 1, 0.8249);
+  const Vec3 xyz =
+      white.cwiseProduct(Vec3(part(lightness + (255 * lab[1] / 65535 - 128) / 500), part(lightness),
+                              part(lightness - (255 * lab[2] / 65535 - 128) / 200)));
+  Mat3 srgb_from_xyz;
+  srgb_from_xyz << 3.1338561, -1.6168667, -0.4906146, -0.9787684, 1.9161415, 0.0334540, 0.0719453, -0.2289914,
+      1.4052427;
+  const Vec3 linear = srgb_from_xyz * xyz;
+  std::array<std::uint8_t, 3> colour{};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const double light = std::clamp(linear[static_cast<Eigen::Index>(n)], 0.0, 1.0);
+    const double level = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+    colour[n] = static_cast<std::uint8_t>(std::lround(255 * level));
+  }
+  return colour;
+}
+
+std::vector<LabelName> segments_of(DcmItem& data) {
+  std::vector<LabelName> segments;
+  for (DcmItem* item : items_of(data, DCM_SegmentSequence)) {
+    LabelName segment{short_of(*item, DCM_SegmentNumber).value_or(0), shown_text(*item, DCM_SegmentLabel)};
+    std::array<double, 3> lab{};
+    bool has_colour = true;
+    for (unsigned long n = 0; n < 3; ++n) {
+      Uint16 level = 0;
+      has_colour = has_colour && item->findAndGetUint16(DCM_RecommendedDisplayCIELabValue, level, n).good();
+      lab[n] = level;
+    }
+    if (has_colour) segment.colour = colour_of(lab);
+    segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+void FileReader::describe_segments() {
+  header_.segments = segments_of(data_);
+  const auto distance = [&](const DcmTagKey& tag, const char* name) {
+    const auto found = frame_numbers(0, DCM_PixelMeasuresSequence, tag, 1, name);
+    return found ? found->front() : 0;
+  };
+  header_.slice_distance_mm = distance(DCM_SpacingBetweenSlices, "SpacingBetweenSlices");
+  if (header_.slice_distance_mm == 0)
+    header_.slice_distance_mm = distance(DCM_SliceThickness, "SliceThickness");
+  const std::string type = text_of(data_, DCM_SegmentationType);
+  if (type == "FRACTIONAL")
+    header_.least_segment_value =
+        0.5F * static_cast<float>(short_of(data_, DCM_MaximumFractionalValue).value_or(255));
+  for (std::size_t frame = 0; frame < header_.slices.size() && type != "LABELMAP"; ++frame) {
+    const auto segment =
+        frame_numbers(frame, DCM_SegmentIdentificationSequence, DCM_ReferencedSegmentNumber, 1, "segment");
+    if (!segment) throw fault("is a segmentation that does not say what its frames show");
+    header_.slices[frame].segment = static_cast<int>(segment->front());
+  }
+}
+
 StoredPixels FileReader::stored_pixels() const {
   StoredPixels pixels;
   pixels.bits_allocated = short_of(data_, DCM_BitsAllocated).value_or(0);
@@ -256,6 +318,7 @@ StoredPixels FileReader::stored_pixels() const {
     pixels.padding = padding_of(pixels);
     return pixels;
   }
+  if (header_.is_segmentation && pixels.bits_allocated == 1) return pixels;
   const int high_bit = short_of(data_, DCM_HighBit).value_or(pixels.bits_stored - 1);
   const bool whole_bytes =
       pixels.bits_allocated == 8 || pixels.bits_allocated == 16 || pixels.bits_allocated == 32;
@@ -335,9 +398,11 @@ void FileReader::place_frames() {
 }
 
 void FileReader::check_byte_count() const {
-  const std::uint64_t needed = static_cast<std::uint64_t>(header_.columns) *
-                               static_cast<std::uint64_t>(header_.rows) * header_.frames *
-                               static_cast<std::uint64_t>(stored_pixels().bits_allocated / 8);
+  const std::uint64_t needed =
+      (static_cast<std::uint64_t>(header_.columns) * static_cast<std::uint64_t>(header_.rows) *
+           header_.frames * static_cast<std::uint64_t>(stored_pixels().bits_allocated) +
+       7) /
+      8;
   const std::uint64_t stored = header_.pixel_bytes;
   const std::uint64_t possible =
       header_.is_compressed ? stored * kMaxCompression + kAlwaysAllowed_bytes : stored;
@@ -374,6 +439,7 @@ void FileReader::read_frames() {
   for (std::size_t frame = 0; frame < header_.frames; ++frame) {
     header_.slices.push_back(slice_of(frame));
   }
+  if (header_.is_segmentation) describe_segments();
 }
 
 std::uint64_t bytes_of_pixels(DcmDataset& data, bool is_compressed) {
@@ -413,6 +479,9 @@ void describe(DcmDataset& data, DicomHeader& header) {
   header.columns = short_of(data, DCM_Columns).value_or(0);
   header.rows = short_of(data, DCM_Rows).value_or(0);
   header.listed_files = listed_files(data);
+  const std::string kind = text_of(data, DCM_SOPClassUID);
+  // Of segments, and of label maps, which DCMTK 3.6.7 does not know.
+  header.is_segmentation = kind == UID_SegmentationStorage || kind == "1.2.840.10008.5.1.4.1.1.66.7";
   if (const std::string uid = text_of(data, DCM_ConcatenationUID); !uid.empty()) {
     header.concatenation = {uid, short_of(data, DCM_InConcatenationNumber).value_or(0),
                             short_of(data, DCM_InConcatenationTotalNumber).value_or(0)};

@@ -58,6 +58,8 @@ struct DicomSlice {
   SlicePlane plane;
   StoredPixels pixels;
   SliceMarks marks;
+  /// Of a segmentation, the segment that the frame shows; 0 if its values are the segments' numbers.
+  int segment = 0;
 };
 
 /// The file's place among those over which one Enhanced image was parted.
@@ -98,6 +100,13 @@ struct DicomHeader {
   std::optional<Concatenation> concatenation;
   /// What a user should know of how it was read; empty if nothing.
   std::string warning;
+  /// Its frames show segments, not densities.
+  bool is_segmentation = false;
+  std::vector<LabelName> segments;
+  /// Values from here on belong to the segment.
+  float least_segment_value = 1;
+  /// How far apart its slices are, or how thick; 0 if it does not say.
+  double slice_distance_mm = 0;
   /// A slice for each frame; empty where there is a fault.
   std::vector<DicomSlice> slices;
 

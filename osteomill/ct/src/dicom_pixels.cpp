@@ -48,6 +48,7 @@ void rescale_frame(std::span<const char> values, const StoredPixels& pixels, flo
                                        : rescale<float>(values, pixels, densities);
   }
   switch (pixels.bits_allocated) {
+    case 1:
     case 8:
       return rescale<std::uint8_t>(values, pixels, densities);
     case 16:
@@ -81,6 +82,7 @@ class FrameReader {
   void decode_jpeg(std::span<const unsigned char> stream);
   void read_uncompressed(std::size_t frame);
   void read_floats(std::size_t frame);
+  void read_bits(std::size_t frame);
   void read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCache* cache);
 
   const DicomHeader& header_;
@@ -99,7 +101,7 @@ FrameReader::FrameReader(const DicomHeader& header)
     : header_(header),
       data_(*header.data->getDataset()),
       syntax_(data_.getOriginalXfer()),
-      size_{header.columns, header.rows, header.slices.front().pixels.bits_allocated / 8},
+      size_{header.columns, header.rows, std::max(1, header.slices.front().pixels.bits_allocated / 8)},
       items_(pixel_items_of(data_)),
       values_(size_.bytes() + size_.bytes() % 2) {}
 
@@ -199,10 +201,26 @@ void FrameReader::read_floats(std::size_t frame) {
   }
 }
 
+// Frames follow each other without filling bits between them; the first pixel is the lowest bit.
+void FrameReader::read_bits(std::size_t frame) {
+  const Uint8* bytes = nullptr;
+  unsigned long count = 0;
+  const std::size_t first = frame * size_.values();
+  if (data_.findAndGetUint8Array(DCM_PixelData, bytes, &count).bad() || bytes == nullptr ||
+      8 * count < first + size_.values())
+    throw fault("is cut short, or has bits that are compressed");
+  for (std::size_t n = 0; n < size_.values(); ++n)
+    values_[n] = static_cast<char>(bytes[(first + n) / 8] >> (first + n) % 8 & 1);
+}
+
 std::span<const char> FrameReader::read(std::size_t frame) {
   const std::span<char> values(values_.data(), size_.bytes());
   if (header_.slices[frame].pixels.is_float) {
     read_floats(frame);
+    return values;
+  }
+  if (header_.slices[frame].pixels.bits_allocated == 1) {
+    read_bits(frame);
     return values;
   }
   if (items_.empty()) {

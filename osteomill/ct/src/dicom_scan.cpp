@@ -14,6 +14,7 @@
 
 #include "dicom_data.h"
 #include "dicom_file.h"
+#include "dicom_segmentation.h"
 #include "header_text.h"
 #include "plausible_scan.h"
 #include "slice_stack.h"
@@ -422,6 +423,17 @@ void add_choice(const DicomPart& picked, const std::vector<DicomPart>& all, std:
   }
 }
 
+// Segmentations beside other pictures are left to --labels.
+void drop_segmentations(std::vector<DicomHeader>& images, std::vector<std::string>& warnings) {
+  const auto first = std::stable_partition(images.begin(), images.end(),
+                                           [](const DicomHeader& header) { return !header.is_segmentation; });
+  if (first == images.end() || first == images.begin()) return;
+  warnings.push_back(fmt::format("{} left out, which --labels reads: {}",
+                                 counted(static_cast<std::size_t>(images.end() - first), "segmentation"),
+                                 first->file.filename().string()));
+  images.erase(first, images.end());
+}
+
 // One of what may be several series; of the one to which `file` belongs, if one is named.
 Scan read_images(const std::string& subject, DicomImages images, const ReadOptions& options,
                  const fs::path& file = {}) {
@@ -438,6 +450,14 @@ Scan read_images(const std::string& subject, DicomImages images, const ReadOptio
     throw InputError(subject, pictures == 0 ? "holds no DICOM slices"
                                             : fmt::format("holds no slices of a scan, only {}",
                                                           counted(pictures, "localizer")));
+  }
+  drop_segmentations(images.headers, warnings);
+  if (images.headers.front().is_segmentation) {
+    if (images.headers.size() > 1)
+      throw InputError(subject,
+                       fmt::format("holds {} segmentations; name one of them", images.headers.size()));
+    if (images.headers.front().fault) throw *images.headers.front().fault;
+    return read_segmentation(subject, images.headers.front(), options);
   }
   std::vector<DicomSeries> all = sort_into_series(std::move(images.headers));
   std::vector<DicomPart> parts;
@@ -507,6 +527,7 @@ std::optional<Scan> read_file(const fs::path& file, const ReadOptions& options) 
   if (header->is_directory())
     return read_images(subject, images_of_directory(*header, options.max_memory_bytes), options);
   if (!header->is_image()) throw InputError(subject, "is DICOM, but not an image");
+  if (header->is_segmentation) return read_segmentation(subject, *header, options);
   if (header->is_localizer) throw InputError(subject, "is a localizer, not a slice of a scan");
   return read_images(subject, series_of(std::move(*header), options.max_memory_bytes), options, file);
 }

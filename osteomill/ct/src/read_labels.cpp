@@ -179,6 +179,12 @@ std::string usable_name(std::string name) {
   return trimmed(name.substr(0, kMaxName));
 }
 
+LabelTable table_of(const std::vector<LabelName>& names) {
+  LabelTable table;
+  for (const LabelName& label : names) table[label.value] = {usable_name(label.name), label.colour};
+  return table;
+}
+
 std::optional<Colour> colour_of(const std::vector<double>& channels, double white) {
   Colour colour{};
   if (channels.size() < colour.size()) return std::nullopt;
@@ -266,7 +272,58 @@ LabelTable label_table_of(const std::string& subject, const std::map<std::string
   }
 }
 
+// Labels on a grid of their own.
+struct OwnLabels {
+  const GridGeometry& geometry;
+  std::vector<float> values;
+  LabelTable table;
+};
+
+// Puts labels on the grid of a scan. Errors and warnings name `subject`.
+LabelsRead put_on(const GridGeometry& scan, const std::string& subject, OwnLabels own,
+                  const LabelFiles& files) {
+  if (!files.table.empty()) {
+    LabelTable given = read_label_table(files.table);
+    given.merge(own.table);
+    own.table = std::move(given);
+  }
+  LabelsRead read;
+  const FoundLabels found = find_labels(subject, own.values);
+  std::vector<Label> labels = make_labels(found, own.table, files);
+  if (!files.table.empty()) {
+    if (auto warning = not_in_table(own.table, labels, files)) read.warnings.push_back(*std::move(warning));
+  }
+  const auto map =
+      std::make_shared<const LabelMap>(std::move(labels), scan, own.geometry, places_of(own.values, found));
+  if (map->box().empty()) {
+    throw InputError(subject, fmt::format("labels nothing of the scan: it lies at {}, the scan at {}",
+                                          extent_text(own.geometry), extent_text(scan)));
+  }
+  if (auto warning = cover_warning(found, own.geometry, *map, subject))
+    read.warnings.push_back(*std::move(warning));
+  read.map = map;
+  return read;
+}
+
+// Of a DICOM segmentation.
+LabelsRead read_segmentation_labels(const LabelFiles& files, const GridGeometry& scan,
+                                    std::uint64_t max_memory_bytes) {
+  const std::string subject = files.map.string();
+  const Scan own = read_scan(files.map, {.series = "", .max_memory_bytes = max_memory_bytes});
+  if (own.labels.empty())
+    throw InputError(subject, "is not a label map: neither a DICOM segmentation nor by its name another");
+  LabelsRead read = put_on(
+      scan, subject, {own.grid.geometry(), every_nth_density(own.grid, 1), table_of(own.labels)}, files);
+  for (const std::string& warning : own.warnings) read.warnings.push_back(subject + ": " + warning);
+  return read;
+}
+
 }  // namespace
+
+LabelsRead labels_in(const Scan& scan, const LabelFiles& files) {
+  return put_on(scan.grid.geometry(), scan.name,
+                {scan.grid.geometry(), every_nth_density(scan.grid, 1), table_of(scan.labels)}, files);
+}
 
 bool is_label_file(const fs::path& path) {
   return volume_format_of(path) != nullptr;
@@ -277,35 +334,15 @@ LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan, std::u
   std::error_code error;
   if (!fs::exists(files.map, error)) throw InputError(subject, "no such file");
   const VolumeFormat* const format = volume_format_of(files.map);
-  if (format == nullptr)
-    throw InputError(subject, "is not a label map: neither NRRD, NIfTI nor MetaImage by its name");
   try {
+    if (format == nullptr) return read_segmentation_labels(files, scan, max_memory_bytes);
     VolumeHeader header = format->read_header(files.map);
-    LabelTable table = label_table_of(subject, header.key_values);
-    if (!files.table.empty()) {
-      LabelTable given = read_label_table(files.table);
-      given.merge(table);
-      table = std::move(given);
-    }
-    LabelsRead read;
-    const std::vector<float> values =
+    std::vector<float> values =
         read_voxels(subject, header.voxels, header.geometry.voxel_count(), max_memory_bytes, header.warnings);
+    LabelsRead read =
+        put_on(scan, subject,
+               {header.geometry, std::move(values), label_table_of(subject, header.key_values)}, files);
     for (const std::string& warning : header.warnings) read.warnings.push_back(subject + ": " + warning);
-    const FoundLabels found = find_labels(subject, values);
-    std::vector<Label> labels = make_labels(found, table, files);
-    if (!files.table.empty()) {
-      if (auto warning = not_in_table(table, labels, files)) read.warnings.push_back(*std::move(warning));
-    }
-    const auto map =
-        std::make_shared<const LabelMap>(std::move(labels), scan, header.geometry, places_of(values, found));
-    if (map->box().empty()) {
-      throw InputError(subject, fmt::format("labels nothing of the scan: it lies at {}, the scan at {}",
-                                            extent_text(header.geometry), extent_text(scan)));
-    }
-    if (auto warning = cover_warning(found, header.geometry, *map, subject)) {
-      read.warnings.push_back(*std::move(warning));
-    }
-    read.map = map;
     return read;
   } catch (const std::bad_alloc&) {
     throw InputError(subject, "does not fit into memory");

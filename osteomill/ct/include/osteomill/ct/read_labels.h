@@ -13,7 +13,8 @@ namespace osteomill {
 
 /// Names the files that the labels of a scan come from.
 struct LabelFiles {
-  /// NRRD, NIfTI or MetaImage; a voxel's value is its label, 0 is none.
+  /// NRRD, NIfTI or MetaImage; a voxel's value is its label, 0 is none. Or a DICOM segmentation, in a zip
+  /// archive or folder too.
   std::filesystem::path map;
   /// A colour table of 3D Slicer's (.ctbl or .txt): a line a label, "value name red green blue alpha",
   /// colours from 0 to 255; lines that begin with # and empty ones are passed over. Takes precedence over the
@@ -23,7 +24,7 @@ struct LabelFiles {
   std::vector<std::string> no_go;
 };
 
-/// Returns whether `read_labels` reads files of such a name.
+/// Returns whether files of such a name are label maps on their own, as `read_labels` reads them.
 bool is_label_file(const std::filesystem::path& path);
 
 struct LabelsRead {
@@ -31,6 +32,10 @@ struct LabelsRead {
   /// One sentence each, naming the file.
   std::vector<std::string> warnings;
 };
+
+/// Makes the label map of a scan that is one itself and says what its labels are called (`Scan::labels`),
+/// with the table and the no-go labels of `files`. Throws InputError as `read_labels` does.
+LabelsRead labels_in(const Scan& scan, const LabelFiles& files);
 
 /// Reads a label map and puts it on the scan's grid, whatever its own is, by the nearest voxel. Labels
 /// without a name are called "label 3", those without a colour get one that differs from their neighbours'.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,13 @@
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
+
+/// What a file calls a label, and its colour there.
+struct LabelName {
+  int value = 0;
+  std::string name;
+  std::optional<std::array<std::uint8_t, 3>> colour{};
+};
 
 /// A scan as read.
 struct Scan {
@@ -26,6 +35,8 @@ struct Scan {
   std::vector<std::string> series = {};
   /// True if the file says that its values are labels, by its name (.seg.nrrd) or in its header.
   bool is_labels = false;
+  /// Names of the labels, if the file itself has them (a DICOM segmentation).
+  std::vector<LabelName> labels = {};
 };
 
 /// Chooses what to read, and how much of the machine that may take.
