@@ -177,9 +177,20 @@ double last_decimal_mm(std::span<const SlicePlane> slices, const SliceStack& sta
   return step_mm;
 }
 
+// Whether as many lie at every height, as images of several times do too.
+bool lie_together_alike(const std::vector<double>& heights_mm) {
+  std::vector<std::size_t> counts;
+  for (std::size_t k = 0; k < heights_mm.size(); ++k) {
+    if (k == 0 || heights_mm[k] - heights_mm[k - 1] > kSamePlace_mm) counts.push_back(0);
+    ++counts.back();
+  }
+  return std::all_of(counts.begin(), counts.end(),
+                     [&](std::size_t count) { return count == counts.front(); });
+}
+
 // Puts slices in the order of their numbers if positions that were rounded explain why they are not even.
-bool are_rounded(std::span<const SlicePlane> slices, const Vec3& normal, bool at_one_place,
-                 SliceStack& stack) {
+bool are_rounded(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
+                 bool at_one_place, SliceStack& stack) {
   // Else the distance of the slices is not known.
   constexpr double kLeastHeight = 8;
   const double step_mm = last_decimal_mm(slices, stack, normal, at_one_place);
@@ -188,6 +199,12 @@ bool are_rounded(std::span<const SlicePlane> slices, const Vec3& normal, bool at
   if (numbered.order.size() < 3) return false;
   const std::vector<double> heights_mm = heights_of(slices, normal, numbered);
   if (heights_mm.back() < kLeastHeight * step_mm || !lie_on_a_line(heights_mm, 0.5 * step_mm)) return false;
+  if (at_one_place && lie_together_alike(heights_mm)) {
+    throw InputError(subject,
+                     fmt::format("{} and {} lie at one position: positions are rounded to {:.4g} mm, or "
+                                 "there are several images of each place",
+                                 slices[numbered.order[0]].name, slices[numbered.order[1]].name, step_mm));
+  }
   stack = std::move(numbered);
   stack.warnings.push_back(
       fmt::format("its positions are rounded to {:.4g} mm: slices were put in the order of their numbers, "
@@ -206,7 +223,7 @@ bool settle_places(const std::string& subject, std::span<const SlicePlane> slice
   auto others = drop_copies(slices, normal, is_same_instance, stack);
   const std::vector<double> heights_mm = heights_of(slices, normal, stack);
   if ((others || !are_even(heights_mm, gaps_between(heights_mm))) &&
-      are_rounded(slices, normal, others.has_value(), stack))
+      are_rounded(subject, slices, normal, others.has_value(), stack))
     return true;
   if (others && same_pixels) others = drop_copies(slices, normal, same_pixels, stack);
   if (others) {
