@@ -39,10 +39,9 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
   no_go.range = NumberRange::count(1);
   static const std::vector<Field<S, std::string>> all{
       field<S>(
-          text(
-              "series", "SERIES", app::kOfTheSource,
-              "Which DICOM series, where there are several: its number in what info lists (3, or 3.1 for one "
-              "of several volumes in a series), or the beginning of its UID; else the largest CT"),
+          text("series", "SERIES", app::kOfTheSource,
+               "DICOM series to read if there are several: its number in what info lists (3, or 3.1 for one "
+               "of several volumes in a series), or the beginning of its UID; else the largest CT"),
           [](auto& s) -> auto& { return s.read.series; }),
       {text("as", "scan|labels", app::kOfTheSource,
             "Take the values as densities, or as labels, all of which are bone (default: by header and "

@@ -169,7 +169,7 @@ inline std::unique_ptr<DcmFileFormat> made_up_segmentation(const std::string& se
   return file;
 }
 
-/// False where it cannot be encoded so, or not written.
+/// Returns false if it cannot be encoded so, or not written.
 inline bool save(DcmFileFormat& file, const std::filesystem::path& path, E_TransferSyntax syntax) {
   register_encoders();
   return file.getDataset()->chooseRepresentation(syntax, nullptr).good() &&

@@ -75,7 +75,7 @@ void set_up_dcmtk() {
     DJLSDecoderRegistration::registerCodecs();
     // Writers may say one of the plain syntaxes and use another.
     dcmAutoDetectDatasetXfer.set(OFTrue);
-    // What follows are at best zeros, which it would take for elements.
+    // It would take the zeros that may follow for elements.
     dcmStopParsingAfterElement.set(DCM_PixelData);
     // Elements of an unknown kind (UN) that the dictionary knows.
     dcmEnableUnknownVRConversion.set(OFTrue);
@@ -121,7 +121,7 @@ std::uint64_t count_items(ByteSource& source, std::uint64_t& bytes, std::uint64_
   return items;
 }
 
-// What comes before the data set.
+// Holds what the file says ahead of its data set.
 struct MetaGroup {
   // The UID; empty if the file says none.
   std::string syntax;
@@ -201,7 +201,7 @@ bool load(const fs::path& path, const MetaGroup& meta, DcmFileFormat& file) {
   return read;
 }
 
-// Where the hole begins with which a sparse file ends: nothing but zeros follow.
+// Returns the offset of the hole with which a sparse file ends: nothing but zeros follow.
 std::uint64_t end_of_data(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   off_t end = 0;

@@ -88,7 +88,7 @@ std::array<int, 3> decimals_of(std::string_view text) {
   return decimals;
 }
 
-// The items of a sequence; none where there is no such sequence.
+// Returns the items of a sequence; none if there is no such sequence.
 std::vector<DcmItem*> items_of(DcmItem& data, const DcmTagKey& tag) {
   std::vector<DcmItem*> items;
   DcmSequenceOfItems* sequence = nullptr;
@@ -480,7 +480,7 @@ void describe(DcmDataset& data, DicomHeader& header) {
   header.rows = short_of(data, DCM_Rows).value_or(0);
   header.listed_files = listed_files(data);
   const std::string kind = text_of(data, DCM_SOPClassUID);
-  // Of segments, and of label maps, which DCMTK 3.6.7 does not know.
+  // Segments, and label maps, which DCMTK 3.6.7 does not know.
   header.is_segmentation = kind == UID_SegmentationStorage || kind == "1.2.840.10008.5.1.4.1.1.66.7";
   if (const std::string uid = text_of(data, DCM_ConcatenationUID); !uid.empty()) {
     header.concatenation = {uid, short_of(data, DCM_InConcatenationNumber).value_or(0),

@@ -20,9 +20,9 @@ class DcmPixelItem;
 
 namespace osteomill {
 
-/// Stored values that only fill the picture: where nothing was measured, as outside of a round field of view.
+/// Stored values that only fill the picture, as outside of a round field of view, which was not measured.
 struct Padding {
-  /// Of integers, all bits of the value that fills; many writers use bits beyond the stored ones for it.
+  /// All bits of the integer that fills; many writers use bits beyond the stored ones for it.
   std::optional<std::uint32_t> word{};
   /// A range of values, both ends of it included.
   double least = 0;
@@ -58,7 +58,7 @@ struct DicomSlice {
   SlicePlane plane;
   StoredPixels pixels;
   SliceMarks marks;
-  /// Of a segmentation, the segment that the frame shows; 0 if its values are the segments' numbers.
+  /// The segment that a segmentation's frame shows; 0 if its values are the segments' numbers.
   int segment = 0;
 };
 
@@ -98,7 +98,7 @@ struct DicomHeader {
   /// A picture that is no slice of a scan, in half a sentence: in colour, or without any place.
   std::string no_slice;
   std::optional<Concatenation> concatenation;
-  /// What a user should know of how it was read; empty if nothing.
+  /// A warning on how it was read; empty if there is none.
   std::string warning;
   /// Its frames show segments, not densities.
   bool is_segmentation = false;
@@ -107,7 +107,7 @@ struct DicomHeader {
   float least_segment_value = 1;
   /// How far apart its slices are, or how thick; 0 if it does not say.
   double slice_distance_mm = 0;
-  /// A slice for each frame; empty where there is a fault.
+  /// A slice for each frame; empty if there is a fault.
   std::vector<DicomSlice> slices;
 
   /// The data as read, pixels still in the file; `with_dicom_stack` releases them.
@@ -131,7 +131,7 @@ std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
 /// by row, to `frame_densities(f)`, which must have room for columns * rows (a null pointer: the frame is not
 /// wanted). Padding becomes NaN. Returns whether compressed values are signed, some below zero, though the
 /// header says that they are not: they are taken as they say themselves. Throws InputError naming the file
-/// where they cannot be decoded. Only within `with_dicom_stack`.
+/// if they cannot be decoded. Only within `with_dicom_stack`.
 bool read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities);
 

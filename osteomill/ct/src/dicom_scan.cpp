@@ -166,7 +166,7 @@ std::optional<fs::path> file_named(const fs::path& folder, const fs::path& name)
   return std::nullopt;
 }
 
-// As they would be read.
+// Size and spacing as they would be read.
 std::string size_and_spacing(const DicomPart& part) {
   try {
     const GridGeometry grid = stack_slices("", part.planes(), part.same_pixels()).geometry;
@@ -240,7 +240,7 @@ void set_aside_slices(DicomSeries& series, std::vector<DicomPart>& parts) {
   std::erase_if(parts, is_single);
 }
 
-// What there is to choose from in a series: all of it or, where that is no one volume, its parts.
+// Returns what one can choose from in a series: all of it or, if that is not one volume, its parts.
 std::vector<DicomPart> parts_of(DicomSeries& series, std::size_t number) {
   set_aside_pictures(series);
   const DicomPart whole{&series, fmt::format("{}", number), "", series.slices()};
@@ -260,7 +260,7 @@ std::vector<DicomPart> parts_of(DicomSeries& series, std::size_t number) {
   return parts;
 }
 
-// What a user knows a series by, in a line: number, modality, description, what tells it from other parts,
+// Describes a series in a line: number, modality, description, what tells it from other parts,
 // size, spacing, where it lies, UID.
 std::string describe(const DicomPart& part) {
   const DicomHeader& first = part.series->headers[part.slices.empty() ? 0 : part.slices.front().header];
@@ -281,7 +281,7 @@ const DicomPart& largest_of(const std::vector<DicomPart>& all) {
 }
 
 // Which of `all` is `wanted`: a number in their list, a UID or the beginning of one. Empty: the one of
-// `file`, or the largest. Throws InputError naming `subject` where none, or more than one series, is.
+// `file`, or the largest. Throws InputError naming `subject` if none, or more than one series, is.
 const DicomPart& pick_part(const std::string& subject, const std::vector<DicomPart>& all,
                            const std::string& wanted, const fs::path& file) {
   std::vector<DicomPart> found;
@@ -313,7 +313,7 @@ const DicomPart& pick_part(const std::string& subject, const std::vector<DicomPa
       subject, fmt::format("{} series {}, of: {}", found.empty() ? "has no" : "has several", wanted, list));
 }
 
-// Scout views are no part of a series, even where they carry its number.
+// Scout views are no part of a series, even if they carry its number.
 void drop_localizers(std::vector<DicomHeader>& images, std::vector<std::string>& warnings) {
   const auto first = std::stable_partition(images.begin(), images.end(),
                                            [](const DicomHeader& header) { return !header.is_localizer; });
@@ -403,7 +403,7 @@ Scan build_scan(const std::string& subject, const DicomPart& part, std::vector<D
           in_hounsfield_units};
 }
 
-// What was chosen for the user, and what else there is.
+// Warns of what was chosen for the user, and what else there is.
 void add_choice(const DicomPart& picked, const std::vector<DicomPart>& all, std::size_t series_count,
                 const std::string& wanted, std::vector<std::string>& warnings) {
   if (series_count > 1 && wanted.empty()) {

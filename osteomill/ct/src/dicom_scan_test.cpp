@@ -266,7 +266,7 @@ TEST_F(DicomSeries, AnOddPictureIsLeftOutByNameAndAWarning) {
   EXPECT_TRUE(contains(refusal(folder_), "a slice is missing"));
 }
 
-// As on a disc: names in capitals, each record with what lies under it.
+// A disc's folder: names in capitals, each record with what lies under it.
 TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
   fs::create_directories(folder_ / "IMAGES" / "S1");
   fs::create_directories(folder_ / "images2");

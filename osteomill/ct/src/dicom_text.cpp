@@ -37,7 +37,7 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-// Of UTF-8: C0, DEL and C1.
+// Leaves out C0, DEL and C1 of UTF-8.
 std::string without_controls(std::string_view text) {
   std::string shown;
   while (!text.empty()) {

@@ -145,8 +145,8 @@ bool decode_jpeg2000(Bytes bytes, const FrameSize& size, std::span<char> values)
 }
 
 bool is_signed_jpeg2000(Bytes bytes) {
-  // The code stream begins with SOC and SIZ; the first component's precision, and its sign in the highest
-  // bit, come behind the sizes and the number of components.
+  // The code stream begins with two markers, start and sizes; the first component's precision, and its sign
+  // in the highest bit, come behind the sizes and the number of components.
   constexpr std::array<unsigned char, 4> kStart{0xFF, 0x4F, 0xFF, 0x51};
   constexpr std::ptrdiff_t kPrecision = 42;
   const auto start = std::search(bytes.begin(), bytes.end(), kStart.begin(), kStart.end());

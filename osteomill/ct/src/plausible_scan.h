@@ -44,7 +44,7 @@ inline void check_memory(const std::string& subject, std::uint64_t voxels, std::
   }
 }
 
-/// Returns how many voxels have no density (NaN). Throws InputError naming `subject` where that is all of
+/// Returns how many voxels have no density (NaN). Throws InputError naming `subject` if that is all of
 /// them, or a density is infinite or beyond what any scanner writes: nothing sensible can be milled there,
 /// and gradients would overflow.
 inline std::size_t check_densities(const std::string& subject, const std::vector<float>& densities) {

@@ -18,7 +18,7 @@ using testing_support::shared_data;
 
 struct Found {
   const char* file;
-  /// Of the phantom; x and y are 0.4 mm unless they equal z's digits.
+  /// The phantom's; x and y are 0.4 mm unless they equal z's digits.
   double slice_distance_mm = 0.5;
   /// In one of the warnings; empty if there is none.
   const char* warning = "";

@@ -305,7 +305,7 @@ LabelsRead put_on(const GridGeometry& scan, const std::string& subject, OwnLabel
   return read;
 }
 
-// Of a DICOM segmentation.
+// Reads the labels of a DICOM segmentation.
 LabelsRead read_segmentation_labels(const LabelFiles& files, const GridGeometry& scan,
                                     std::uint64_t max_memory_bytes) {
   const std::string subject = files.map.string();

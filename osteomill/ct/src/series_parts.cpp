@@ -161,7 +161,7 @@ std::vector<Group> Parting::by_mark(const Numbers& slices, std::size_t mark) con
     return share_a_place(a, b) || (!kind.is_of_slices && overlap(a, b));
   };
   if (!at_one_place && (kind.is_of_slices || !any_collide(values, overlap))) return {};
-  // What lies at one place are copies, or slices whose positions are rounded.
+  // Slices at one place are copies, or their positions are rounded.
   if (at_one_place && is_volume(slices, kind.is_of_slices)) return {};
   const std::vector<Group> groups = kind.is_ordered ? joined(values, collide) : values;
   if (groups.size() < 2 || 2 * groups.size() > slices.size()) return {};

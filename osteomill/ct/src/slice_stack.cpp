@@ -233,7 +233,7 @@ bool settle_places(const std::string& subject, std::span<const SlicePlane> slice
   return false;
 }
 
-// Where a table's feed was changed the distances that follow are alike; beside a lost slice they are not.
+// After a change of the table's feed the distances are alike again; beside a lost slice they are not.
 bool slice_is_missing(std::span<const double> gaps_mm, std::size_t k) {
   double beside_mm = 0;
   if (k > 0) beside_mm = gaps_mm[k - 1];

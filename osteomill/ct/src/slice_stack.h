@@ -61,11 +61,11 @@ struct SliceStack {
 };
 
 /// Puts the slices in order of their position along the normal, lowest first, whatever order they come in.
-/// Where their distances differ, as where a table's feed was changed, the grid is as fine as nine tenths of
+/// If their distances differ, as after a change of a table's feed, the grid is as fine as nine tenths of
 /// them ask for, and a warning names the largest. If every position lies within half of its last decimal of
 /// an even grid in the order of consecutive numbers of the slices, the writer has rounded it: that grid is
 /// taken, with a warning. Of slices at one position those that are copies, by their instance or by
-/// `same_pixels`, are left out. Throws InputError naming `subject` where no grid holds them all: fewer than
+/// `same_pixels`, are left out. Throws InputError naming `subject` if no grid holds them all: fewer than
 /// two, not all of one size, spacing and orientation, two at one position, or a gap that is over 1.5 times
 /// those beside it (a slice is missing) or over 10 mm while others are less.
 SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices,

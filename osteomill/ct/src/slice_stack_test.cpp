@@ -71,7 +71,7 @@ TEST(SliceStack, RoundedPositionsAreNoGap) {
   EXPECT_NEAR(stack_slices("folder", slices).geometry.spacing_mm.z(), 0.625, 1e-3);
 }
 
-// As writers round them that give too few decimals.
+// Positions as writers round them that give too few decimals.
 std::vector<SlicePlane> rounded_series(double distance_mm, int decimals) {
   std::vector<SlicePlane> slices = series(24, distance_mm);
   const double unit = std::pow(10.0, decimals);
@@ -102,7 +102,7 @@ TEST(SliceStack, RoundingIsNoExcuseForASliceThatIsMissingOrRepeated) {
   std::vector<SlicePlane> missing = rounded_series(0.25, 1);
   missing.erase(missing.begin() + 9);
   EXPECT_TRUE(contains(refusal(missing), "a slice is missing"));
-  // Nor if the rest is numbered anew.
+  // Nor if the rest is numbered from 0 again.
   for (std::size_t k = 0; k < missing.size(); ++k) missing[k].number = static_cast<int>(k);
   EXPECT_TRUE(contains(refusal(missing), "a slice is missing"));
   // Every slice twice may be two times as well.

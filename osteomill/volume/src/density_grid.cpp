@@ -32,7 +32,7 @@ std::shared_ptr<const std::vector<bool>> without_density(const std::vector<float
   return without;
 }
 
-// What the grid is made of, and there is something; the least density in the place of none.
+// Returns the grid's densities, the least one in the place of none. Throws if there are none at all.
 std::vector<float> filled(const GridGeometry& geometry, std::vector<float> densities) {
   const auto is_less = [](float a, float b) { return a < b || (std::isnan(b) && !std::isnan(a)); };
   const auto least = std::min_element(densities.begin(), densities.end(), is_less);

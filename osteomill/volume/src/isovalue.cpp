@@ -30,7 +30,7 @@ bool is_less_dense(const Sample& a, const Sample& b) {
   return a.density < b.density;
 }
 
-// Of every so many voxels along each axis, if the scan has a density there.
+// Samples every `step`th voxel along each axis that has a density.
 std::vector<Sample> samples_of(const DensityGrid& grid, int step) {
   const GridGeometry& geometry = grid.geometry();
   const auto& dims = geometry.dims;

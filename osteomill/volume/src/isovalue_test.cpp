@@ -76,7 +76,7 @@ TEST(SuggestIsovalue, WhatHasNoDensityChangesNothing) {
     EXPECT_EQ(suggested.value, expected.value);
     EXPECT_EQ(suggested.how, expected.how);
     EXPECT_EQ(every_nth_density(grid, 1), every_nth_density(measured, 1));
-    // Of every seventh voxel.
+    // Every seventh voxel counts.
     double counted = 0;
     for (const float log_count : histogram_of(grid).log_counts) counted += std::expm1(log_count);
     EXPECT_LT(counted, static_cast<double>(measured.geometry().voxel_count()) / 7 + 1);

@@ -12,7 +12,7 @@
 
 namespace osteomill {
 
-/// What a file calls a label, and its colour there.
+/// Holds the name and the colour that a file gives a label.
 struct LabelName {
   int value = 0;
   std::string name;
