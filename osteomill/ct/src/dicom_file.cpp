@@ -518,8 +518,10 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t
     header.undecodable = std::move(loaded->undecodable);
     DcmDataset& data = *header.data->getDataset();
     describe(data, header);
-    header.lost = loaded->damaged && header.pixel_bytes == 0;
-    if (loaded->damaged) throw InputError(path.string(), "is cut short or damaged");
+    // What is encoded in a way that is not known may look damaged.
+    const bool is_known = header.undecodable.empty() || !header.is_image();
+    header.lost = loaded->damaged && header.pixel_bytes == 0 && is_known;
+    if (loaded->damaged && is_known) throw InputError(path.string(), "is cut short or damaged");
     if (!header.is_directory()) FileReader(data, header).read_frames();
   } catch (const InputError& fault) {
     header.fault = fault;

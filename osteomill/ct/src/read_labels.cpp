@@ -17,6 +17,7 @@
 #include "osteomill/base/work_progress.h"
 
 #include "byte_source.h"
+#include "dicom_file.h"
 #include "header_text.h"
 #include "volume_file.h"
 
@@ -309,9 +310,13 @@ LabelsRead put_on(const GridGeometry& scan, const std::string& subject, OwnLabel
 LabelsRead read_segmentation_labels(const LabelFiles& files, const GridGeometry& scan,
                                     std::uint64_t max_memory_bytes) {
   const std::string subject = files.map.string();
-  const Scan own = read_scan(files.map, {.series = "", .max_memory_bytes = max_memory_bytes});
-  if (own.labels.empty())
+  const ReadOptions options{.series = "", .max_memory_bytes = max_memory_bytes};
+  const bool is_one_file = fs::is_regular_file(files.map) && lower(files.map.extension().string()) != ".zip";
+  const std::optional<Scan> found =
+      is_one_file ? read_dicom(files.map, options) : std::optional(read_scan(files.map, options));
+  if (!found || found->labels.empty())
     throw InputError(subject, "is not a label map: neither a DICOM segmentation nor by its name another");
+  const Scan& own = *found;
   LabelsRead read = put_on(
       scan, subject, {own.grid.geometry(), every_nth_density(own.grid, 1), table_of(own.labels)}, files);
   for (const std::string& warning : own.warnings) read.warnings.push_back(subject + ": " + warning);
