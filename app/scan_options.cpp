@@ -106,13 +106,16 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
 
 namespace {
 
-bool holds_labels(const ScanOptions& options, const Scan& scan) {
-  if (options.as_labels) return *options.as_labels;
+// Where nobody says it, its values are looked at.
+LabelGuess held_by(const ScanOptions& options, const Scan& scan) {
+  const auto of = [](bool labels) { return labels ? LabelGuess::labels : LabelGuess::densities; };
+  if (options.as_labels) return of(*options.as_labels);
   if (options.made_into != 0 && options.isovalue) {
-    return fingerprint_of(scan.grid) != options.made_into &&
-           fingerprint_of(bone_of_labels(scan.grid, *options.isovalue)) == options.made_into;
+    return of(fingerprint_of(scan.grid) != options.made_into &&
+              fingerprint_of(bone_of_labels(scan.grid, *options.isovalue)) == options.made_into);
   }
-  return !options.isovalue && (scan.is_labels || looks_like_labels(scan.grid));
+  if (options.isovalue) return LabelGuess::densities;
+  return scan.is_labels ? LabelGuess::labels : guess_labels(scan.grid);
 }
 
 }  // namespace
@@ -121,12 +124,20 @@ Scan open_scan(const ScanOptions& options) {
   if (options.scan.empty()) return {builtin_tooth(options.refinement), kBuiltinTooth, "made up", {}};
   Scan scan = read_scan(options.scan, options.read);
   const bool said = scan.is_labels || options.as_labels || options.made_into != 0;
-  scan.is_labels = holds_labels(options, scan);
+  const LabelGuess held = held_by(options, scan);
+  scan.is_labels = held == LabelGuess::labels;
+  const auto warn_first = [&](std::string warning) {
+    scan.warnings.insert(scan.warnings.begin(), std::move(warning));
+  };
   if (scan.is_labels) {
-    scan.warnings.insert(
-        scan.warnings.begin(),
-        fmt::format("{} a label map: what it labels is taken for bone of one density{}",
-                    said ? "is" : "looks like", said ? "" : "; --as scan takes its values for densities"));
+    warn_first(fmt::format("{} a label map: what it labels is taken for bone of one density{}",
+                           said ? "is" : "looks like",
+                           said ? "" : "; --as scan takes its values for densities"));
+  } else if (held == LabelGuess::unclear && !scan.in_hounsfield_units) {
+    warn_first(
+        "may be a label map: its values are few whole numbers, which are taken for densities; --as labels "
+        "takes "
+        "them for labels");
   }
   return scan;
 }

@@ -192,7 +192,7 @@ TEST_P(RealScanIsovalue, SuggestedIsBone) {
   const SuggestedIsovalue suggested = suggest_isovalue(scan.grid, scan.in_hounsfield_units);
   EXPECT_NEAR(suggested.value, known, 0.15 * known) << suggested.how;
   EXPECT_TRUE(is_on_boundary(scan.grid, known));
-  EXPECT_FALSE(looks_like_labels(scan.grid));
+  EXPECT_EQ(LabelGuess::densities, guess_labels(scan.grid));
 }
 
 // Densities in eight bits as programs save pictures: the whole range, or the part that a window shows.
@@ -218,16 +218,17 @@ TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
       shades.push_back(static_cast<float>(std::round(shade(static_cast<double>(density)))));
     const DensityGrid eight_bits(scan.grid.geometry(), std::move(shades));
     EXPECT_TRUE(is_on_boundary(eight_bits, shade(known))) << path;
-    EXPECT_FALSE(looks_like_labels(eight_bits)) << path;
+    EXPECT_EQ(LabelGuess::densities, guess_labels(eight_bits)) << path;
   }
 }
 
 TEST(ReadRealScan, LabelMapsLookLikeLabels) {
   for (const char* path : {"jaw_labels/jaw_360x360x330_labels.nrrd", "temporal_bone/ear3_256_labels.nrrd",
-                           "temporal_bone/RT138_256_labels.nrrd"}) {
+                           "temporal_bone/RT138_256_labels.nrrd", "found4/labels/two-labels.nrrd",
+                           "found4/labels/three-labels.nrrd"}) {
     OSTEOMILL_NEEDS_SHARED(path);
     const DensityGrid labels = read_scan(shared_data() / path).grid;
-    EXPECT_TRUE(looks_like_labels(labels)) << path;
+    EXPECT_EQ(LabelGuess::labels, guess_labels(labels)) << path;
     EXPECT_EQ(isovalue_of_labels(labels), 0.5) << path;
   }
 }

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,16 +21,20 @@ namespace {
 
 constexpr int kGreatestLabel = std::numeric_limits<std::int16_t>::max();
 
-// Returns by label its rank among those that occur; nothing unless the values are few whole numbers and 0 is
-// the commonest.
-std::vector<int> ranks_of(const DensityGrid& grid) {
-  std::vector<std::size_t> counts(kGreatestLabel + 1);
+// The different values of a grid, which are few whole numbers from 0 up.
+struct Values {
+  // By value, how many voxels have it; empty if the values are others.
+  std::vector<std::size_t> counts;
   std::size_t different = 0;
+};
+
+Values values_of(const DensityGrid& grid) {
+  Values values{std::vector<std::size_t>(kGreatestLabel + 1)};
   const auto count_row = [&](std::span<const float> row) {
     for (const float value : row) {
       if (!(value >= 0 && value <= kGreatestLabel && value == std::floor(value))) return false;
-      different += counts[static_cast<std::size_t>(value)]++ == 0 ? 1 : 0;
-      if (different > LabelMap::kMaxLabels + 1) return false;
+      values.different += values.counts[static_cast<std::size_t>(value)]++ == 0 ? 1 : 0;
+      if (values.different > LabelMap::kMaxLabels + 1) return false;
     }
     return true;
   };
@@ -38,57 +44,97 @@ std::vector<int> ranks_of(const DensityGrid& grid) {
       if (!count_row(grid.row(j, k))) return {};
     }
   }
-  if (different < 2 || counts[0] < *std::max_element(counts.begin(), counts.end())) return {};
-  std::vector<int> ranks(counts.size());
+  return values;
+}
+
+// No rank: a few stray voxels say nothing of the rest.
+constexpr int kRare = -1;
+
+// By value its rank among those that occur. The rarest values, all of which hold less than a two-hundredth of
+// what is not 0, are kRare.
+std::vector<int> ranks_of(const Values& values) {
+  constexpr double kRareShare = 0.005;
+  const std::size_t labelled =
+      std::accumulate(std::next(values.counts.begin()), values.counts.end(), std::size_t{0});
+  std::vector<std::size_t> found;
+  for (std::size_t value = 1; value < values.counts.size(); ++value)
+    if (values.counts[value] > 0) found.push_back(value);
+  std::vector<std::size_t> rarest_first = found;
+  std::stable_sort(rarest_first.begin(), rarest_first.end(),
+                   [&](std::size_t a, std::size_t b) { return values.counts[a] < values.counts[b]; });
+  std::vector<int> ranks(values.counts.size());
+  std::size_t sum = 0;
+  for (const std::size_t value : rarest_first) {
+    sum += values.counts[value];
+    if (static_cast<double>(sum) > kRareShare * static_cast<double>(labelled)) break;
+    ranks[value] = kRare;
+  }
   int rank = 0;
-  for (std::size_t label = 0; label < counts.size(); ++label) ranks[label] = counts[label] > 0 ? rank++ : 0;
+  for (const std::size_t value : found)
+    if (ranks[value] != kRare) ranks[value] = ++rank;
   return ranks;
 }
 
-}  // namespace
+// How the values of neighbours differ, as shares.
+struct Edges {
+  // Of the edges between two values, those that leave out a value between them.
+  double far = 0;
+  // Of the voxels at an edge, those that lie between a lower and a higher one.
+  double between = 0;
+};
 
-bool looks_like_labels(const DensityGrid& grid) {
-  // Real label maps have at most 0.03 and at least 0.22; CTs of 3 to 16 levels have at least 0.29 for the
-  // first or at most 0.014 for the second.
-  constexpr double kOftenBetween = 0.2, kSeldomFar = 0.05;
-  const std::vector<int> ranks = ranks_of(grid);
-  if (ranks.empty()) return false;
+Edges edges_of(const DensityGrid& grid, const std::vector<int>& ranks) {
   const auto& dims = grid.geometry().dims;
   const std::array<std::ptrdiff_t, 3> paces{1, grid.row_stride(), grid.slice_stride()};
-  struct Count {
-    std::size_t voxels = 0;
-    std::size_t between = 0;
-  };
-  std::vector<Count> counts(static_cast<std::size_t>(*std::max_element(ranks.begin(), ranks.end())) + 1);
-  std::size_t edges = 0, far = 0;
-  const auto rank_at = [&](const float* at) { return ranks[static_cast<std::size_t>(*at)]; };
+  std::size_t edges = 0, far = 0, at_edge = 0, between = 0;
   for_each_with_progress(grid.geometry().all_voxels(), [&](const VoxelIndex& voxel) {
     const float* const here = grid.address_of(voxel);
-    const int rank = rank_at(here);
-    if (rank == 0) return;
+    const int rank = ranks[static_cast<std::size_t>(*here)];
+    if (rank <= 0) return;
+    const auto rank_at = [&](std::ptrdiff_t pace) {
+      const int other = ranks[static_cast<std::size_t>(here[pace])];
+      return other == kRare ? rank : other;
+    };
     const std::array<int, 3> v{voxel.i, voxel.j, voxel.k};
-    bool between = false;
+    bool is_between = false, is_at_edge = false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const int below = v[axis] > 0 ? rank_at(here - paces[axis]) : rank;
-      const int above = v[axis] + 1 < dims[axis] ? rank_at(here + paces[axis]) : rank;
-      between = between || (below < rank && rank < above) || (above < rank && rank < below);
+      const int below = v[axis] > 0 ? rank_at(-paces[axis]) : rank;
+      const int above = v[axis] + 1 < dims[axis] ? rank_at(paces[axis]) : rank;
+      is_between = is_between || (below < rank && rank < above) || (above < rank && rank < below);
       for (const int other : {below, above}) {
+        is_at_edge = is_at_edge || other != rank;
         edges += other != rank ? 1 : 0;
         far += std::abs(other - rank) > 1 ? 1 : 0;
       }
     }
-    Count& count = counts[static_cast<std::size_t>(rank)];
-    ++count.voxels;
-    count.between += between ? 1 : 0;
+    at_edge += is_at_edge ? 1 : 0;
+    between += is_between ? 1 : 0;
   });
-  const auto often = [](double share, std::size_t count, std::size_t of) {
-    return static_cast<double>(count) >= share * static_cast<double>(of);
+  const auto share = [](std::size_t count, std::size_t of) {
+    return of == 0 ? 0 : static_cast<double>(count) / static_cast<double>(of);
   };
-  // With two values none can lie between others.
-  return counts.size() == 2 || (often(kSeldomFar, far, edges) &&
-                                std::none_of(std::next(counts.begin()), counts.end(), [&](const Count& of) {
-                                  return often(kOftenBetween, of.between, of.voxels);
-                                }));
+  return {share(far, edges), share(between, at_edge)};
+}
+
+}  // namespace
+
+LabelGuess guess_labels(const DensityGrid& grid) {
+  // Of real label maps the first is at least 0.23 and the second at most 0.02. Of CTs in 3 to 256 levels the
+  // first is at most 0.05 or the second at least 0.12.
+  constexpr double kSeldomFar = 0.05, kSeldomBetween = 0.06, kOftenBetween = 0.12;
+  constexpr std::size_t kFewLevels = 32;
+  const Values values = values_of(grid);
+  if (values.different < 2) return LabelGuess::densities;
+  const bool mostly_0 = values.counts[0] == *std::max_element(values.counts.begin(), values.counts.end());
+  // Of two values none can lie between others, and the bone of a mask is what it would be as a scan.
+  if (values.different == 2) return mostly_0 ? LabelGuess::labels : LabelGuess::densities;
+  const Edges edges = edges_of(grid, ranks_of(values));
+  const bool touch_any = edges.far >= kSeldomFar;
+  if (mostly_0 && touch_any && edges.between <= kSeldomBetween) return LabelGuess::labels;
+  if ((mostly_0 && values.different <= kFewLevels) ||
+      (values.counts[0] > 0 && touch_any && edges.between < kOftenBetween))
+    return LabelGuess::unclear;
+  return LabelGuess::densities;
 }
 
 double isovalue_of_labels(const DensityGrid& grid) {

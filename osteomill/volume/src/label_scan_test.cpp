@@ -42,12 +42,56 @@ double brain(const Vec3& p) {
 }
 
 TEST(LabelScan, SegmentationsAndMasksLookLikeLabels) {
-  EXPECT_TRUE(looks_like_labels(filled(brain)));
+  EXPECT_EQ(LabelGuess::labels, guess_labels(filled(brain)));
   for (const double inside : {1.0, 255.0})
-    EXPECT_TRUE(looks_like_labels(filled([&](const Vec3& p) { return p.norm() < 4 ? inside : 0; })));
-  EXPECT_TRUE(looks_like_labels(filled([](const Vec3& p) {
-    return p.norm() > 5 ? 0 : p.z() > 1 ? 3 : p.z() < -1 ? 2 : 1;
-  })));
+    EXPECT_EQ(LabelGuess::labels,
+              guess_labels(filled([&](const Vec3& p) { return p.norm() < 4 ? inside : 0; })));
+  EXPECT_EQ(LabelGuess::labels, guess_labels(filled([](const Vec3& p) {
+              return p.norm() > 5 ? 0 : p.z() > 1 ? 3 : p.z() < -1 ? 2 : 1;
+            })));
+}
+
+// The brain, with so many voxels of another label strewn over it.
+DensityGrid strewn(std::size_t strays, double label) {
+  std::vector<float> values = every_nth_density(filled(brain), 1);
+  std::size_t left = strays;
+  for (std::size_t n = 5; left > 0 && n < values.size(); n += 7) {
+    if (values[n] == 0) continue;
+    values[n] = static_cast<float>(label);
+    --left;
+  }
+  EXPECT_EQ(left, 0u);
+  return DensityGrid(kGrid, std::move(values));
+}
+
+TEST(LabelScan, AFewStrayVoxelsOfALabelDecideNothing) {
+  for (const double label : {1.0, 12.0, 300.0, 3000.0}) {
+    for (const std::size_t strays : {1u, 3u, 12u})
+      EXPECT_EQ(LabelGuess::labels, guess_labels(strewn(strays, label))) << strays << " of " << label;
+  }
+}
+
+// As a phantom's edges hold a few voxels of other levels, which make no two materials lie beside each other.
+TEST(LabelScan, AFewStrayVoxelsOfALevelDecideNothing) {
+  int number = 0;
+  const DensityGrid phantom = filled([&](const Vec3& p) {
+    const double level = p.norm() < 2 ? 2000 : p.norm() < 5 ? 1000 : 0;
+    return level == 1000 && ++number % 900 == 0 ? 1 + number : level;
+  });
+  EXPECT_EQ(LabelGuess::unclear, guess_labels(phantom));
+}
+
+TEST(LabelScan, WhatMayBeLevelsOrLabelsIsUnclear) {
+  const auto onion = [](const Vec3& p) { return p.norm() < 3 ? 2 : p.norm() < 5 ? 1 : 0; };
+  EXPECT_EQ(LabelGuess::unclear, guess_labels(filled(onion)));
+  // A thin shell between two structures.
+  EXPECT_EQ(LabelGuess::unclear, guess_labels(filled([](const Vec3& p) {
+              return p.norm() < 3 ? 3 : p.norm() < 3.6 ? 2 : p.norm() < 5 ? 1 : 0;
+            })));
+  // Labels that fill more than half of the grid.
+  EXPECT_EQ(LabelGuess::unclear, guess_labels(filled([](const Vec3& p) {
+              return p.x() > 3 ? 0 : p.y() > 0 ? 3 : p.z() < 0 ? 2 : 1;
+            })));
 }
 
 // Air, a head of soft tissue and a skull in it, blurred over a voxel, in a few levels.
@@ -58,15 +102,15 @@ TEST(LabelScan, ACtOfFewLevelsIsNone) {
       const double skull = step(std::abs(p.norm() - 3) - 0.8);
       return std::floor(0.999 * levels * (0.45 * step(p.norm() - 5) + 0.55 * skull));
     });
-    EXPECT_FALSE(looks_like_labels(ct)) << levels;
+    EXPECT_NE(LabelGuess::labels, guess_labels(ct)) << levels;
   }
 }
 
 TEST(LabelScan, DensitiesAreNone) {
   const auto phantom = [](const Vec3& p) { return p.norm() < 2 ? 1200 : p.norm() < 4 ? 40 : -1000; };
-  EXPECT_FALSE(looks_like_labels(filled(phantom)));
-  EXPECT_FALSE(looks_like_labels(filled([&](const Vec3& p) { return phantom(p) + 1000.5; })));
-  EXPECT_FALSE(looks_like_labels(filled([](const Vec3&) { return 3; })));
+  EXPECT_EQ(LabelGuess::densities, guess_labels(filled(phantom)));
+  EXPECT_NE(LabelGuess::labels, guess_labels(filled([&](const Vec3& p) { return phantom(p) + 1000.5; })));
+  EXPECT_EQ(LabelGuess::densities, guess_labels(filled([](const Vec3&) { return 3; })));
   // A shape whose edge has one shade, wherever it lies between voxels and whichever way it runs.
   for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 1, 1), Vec3(1, 2, 3), Vec3(1, 1, 1)}) {
     const Vec3 way = normal.normalized();
@@ -78,7 +122,7 @@ TEST(LabelScan, DensitiesAreNone) {
         const Volume soft = shape_volume(kGrid, shape);
         const DensityGrid shades =
             filled([&](const Vec3& p) { return 1000 * std::round(2e-3 * density_at(soft.grid(), p)); });
-        EXPECT_FALSE(looks_like_labels(shades)) << normal.transpose() << " " << offset_mm;
+        EXPECT_NE(LabelGuess::labels, guess_labels(shades)) << normal.transpose() << " " << offset_mm;
       }
     }
   }

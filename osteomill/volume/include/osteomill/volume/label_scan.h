@@ -5,11 +5,15 @@
 /// Scans that hold labels in the place of densities. Passes over the voxels; not for the tick.
 namespace osteomill {
 
-/// Returns whether a grid looks as if it held labels: few small whole numbers from 0 up, 0 the commonest,
-/// that are no levels of one quantity. Levels lie between their neighbours wherever there is an edge, and
-/// hardly ever touch any but the next level, whereas structures touch any that they lie beside. A guess:
-/// structures that lie in each other like the skins of an onion look like levels.
-bool looks_like_labels(const DensityGrid& grid);
+/// What the values of a grid look like: densities, labels, or either.
+enum class LabelGuess { densities, unclear, labels };
+
+/// Guesses whether a grid holds labels: few small whole numbers from 0 up, 0 the commonest, that are no
+/// levels of one quantity. Levels lie between their neighbours wherever there is an edge, and hardly ever
+/// touch any but the next level, whereas structures touch any that they lie beside. Values count by how many
+/// voxels have them, so that a few stray voxels of one decide nothing. Structures that lie in each other like
+/// the skins of an onion look like levels, so fewer than 33 values that are not taken for labels are unclear.
+LabelGuess guess_labels(const DensityGrid& grid);
 
 /// Returns an isovalue between the two lowest labels (if there are two), so that every labelled voxel is
 /// bone.
