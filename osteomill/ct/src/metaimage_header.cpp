@@ -1,4 +1,6 @@
 // MetaImage, https://itk.org/Wiki/ITK/MetaIO/Documentation
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <map>
 
@@ -30,20 +32,48 @@ std::string first_of(const HeaderFields& fields, std::initializer_list<const cha
   return {};
 }
 
-// The header ends with the line that names the data.
+// Names as ITK writes them; in files of other programs the case may be another.
+constexpr std::array kNames{"NDims",
+                            "DimSize",
+                            "ElementSpacing",
+                            "ElementSize",
+                            "TransformMatrix",
+                            "Rotation",
+                            "Orientation",
+                            "Offset",
+                            "Position",
+                            "Origin",
+                            "DistanceUnits",
+                            "ElementType",
+                            "BinaryData",
+                            "CompressedData",
+                            "CompressedDataSize",
+                            "ElementNumberOfChannels",
+                            "HeaderSize",
+                            "ElementByteOrderMSB",
+                            "BinaryDataByteOrderMSB",
+                            "ElementDataFile"};
+
+// The header ends with the line that names the data; before it, fields may come in any order. What ITK passes
+// over is passed over here: empty lines, lines that are no field, and fields that nobody knows.
 HeaderFields read_fields(const std::string& subject, std::istream& in) {
   HeaderFields fields{subject};
   std::string line;
   std::size_t length = 0;
   while (!fields.has("ElementDataFile") && std::getline(in, line)) {
-    length += line.size();
-    const std::size_t equals = line.find('=');
-    if (equals == std::string::npos || length > kMaxHeader || line.find('\0') != std::string::npos) {
+    length += line.size() + 1;
+    if (length > kMaxHeader || line.find('\0') != std::string::npos) {
       throw InputError(subject, "is not MetaImage: its header is not made of \"name = value\"");
     }
-    fields.values[trimmed(std::string_view(line).substr(0, equals))] =
-        trimmed(std::string_view(line).substr(equals + 1));
+    const std::size_t separator = line.find_first_of("=:");
+    if (separator == std::string::npos) continue;
+    const std::string name = lower(trimmed(std::string_view(line).substr(0, separator)));
+    const auto known =
+        std::find_if(kNames.begin(), kNames.end(), [&](const char* one) { return lower(one) == name; });
+    if (known != kNames.end()) fields.values[*known] = trimmed(std::string_view(line).substr(separator + 1));
   }
+  if (fields.values.empty())
+    throw InputError(subject, "is not MetaImage: its header is not made of \"name = value\"");
   if (!fields.has("ElementDataFile"))
     throw InputError(subject, "does not say where its data are (ElementDataFile)");
   return fields;
@@ -53,36 +83,60 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
   using enum VoxelType;
   // MET_LONG is 4 bytes in a file, whatever it is on the machine.
   static const std::map<std::string, VoxelType> kTypes{
-      {"MET_CHAR", int8},       {"MET_UCHAR", uint8},       {"MET_SHORT", int16},   {"MET_USHORT", uint16},
-      {"MET_INT", int32},       {"MET_UINT", uint32},       {"MET_LONG", int32},    {"MET_ULONG", uint32},
-      {"MET_LONG_LONG", int64}, {"MET_ULONG_LONG", uint64}, {"MET_FLOAT", float32}, {"MET_DOUBLE", float64}};
-  const auto found = kTypes.find(type);
+      {"met_char", int8},       {"met_uchar", uint8},       {"met_short", int16},   {"met_ushort", uint16},
+      {"met_int", int32},       {"met_uint", uint32},       {"met_long", int32},    {"met_ulong", uint32},
+      {"met_long_long", int64}, {"met_ulong_long", uint64}, {"met_float", float32}, {"met_double", float64}};
+  const auto found = kTypes.find(lower(type));
   if (found == kTypes.end()) {
     throw InputError(subject, fmt::format("has voxels of type \"{}\", which is not supported", type));
   }
   return found->second;
 }
 
+// The first three of so many numbers.
+std::vector<double> first_three(const HeaderFields& fields, const std::string& name, std::size_t count) {
+  std::vector<double> numbers = fields.numbers(name);
+  if (numbers.size() != count)
+    throw InputError(fields.subject,
+                     fmt::format("has a {} of {} numbers, not {}", name, numbers.size(), count));
+  numbers.resize(3);
+  return numbers;
+}
+
+// The columns of a matrix of so many dimensions, of which the first three are those of space.
+Mat3 axes_of(const HeaderFields& fields, const std::string& name, std::size_t dimensions) {
+  const std::vector<double> values = fields.numbers(name);
+  if (values.size() != dimensions * dimensions) {
+    throw InputError(fields.subject,
+                     fmt::format("has a {} that is not {} numbers", name, dimensions * dimensions));
+  }
+  Mat3 axes;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    axes.col(static_cast<Eigen::Index>(axis)) = Vec3(values.data() + axis * dimensions);
+  if (((axes.colwise().norm().array() - 1).abs() < 0.01).count() != 3)
+    throw InputError(fields.subject, fmt::format("has a {} whose columns are not of length 1", name));
+  return axes;
+}
+
 GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& warnings) {
   const std::string& subject = fields.subject;
-  if (fields.numbers("NDims").front() != 3) throw InputError(subject, "is not a volume: NDims is not 3");
+  const double dimensions = fields.numbers("NDims").front();
+  if (dimensions != 3 && dimensions != 4)
+    throw InputError(subject, fmt::format("is not a volume: NDims is {}, not 3", dimensions));
+  const auto count = static_cast<std::size_t>(dimensions);
+  const std::vector<double> all_sizes = fields.numbers("DimSize"),
+                            sizes = first_three(fields, "DimSize", count);
+  if (all_sizes.back() != 1 && count == 4)
+    throw InputError(subject, fmt::format("holds {} volumes or values a voxel, not one", all_sizes.back()));
   const std::string spacing = first_of(fields, {"ElementSpacing", "ElementSize"});
   if (spacing.empty()) warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
-  Mat3 axes = Mat3::Identity();
   const std::string matrix = first_of(fields, {"TransformMatrix", "Rotation", "Orientation"});
-  if (!matrix.empty()) {
-    const std::vector<double> values = fields.numbers(matrix);
-    if (values.size() != 9)
-      throw InputError(subject, fmt::format("has a {} that is not nine numbers", matrix));
-    axes = Eigen::Map<const Mat3>(values.data());
-    if (((axes.colwise().norm().array() - 1).abs() < 0.01).count() != 3)
-      throw InputError(subject, fmt::format("has a {} whose columns are not of length 1", matrix));
-  }
   const std::string origin = first_of(fields, {"Offset", "Position", "Origin"});
   return checked_geometry(
-      subject, fields.numbers("DimSize"),
-      spacing.empty() ? std::vector<double>{1, 1, 1} : fields.numbers(spacing), axes,
-      origin.empty() ? Vec3::Zero() : checked_point(subject, origin, fields.numbers(origin)),
+      subject, sizes, spacing.empty() ? std::vector<double>{1, 1, 1} : first_three(fields, spacing, count),
+      matrix.empty() ? Mat3(Mat3::Identity()) : axes_of(fields, matrix, count),
+      origin.empty() ? Vec3(Vec3::Zero())
+                     : checked_point(subject, origin, first_three(fields, origin, count)),
       millimetres_in(subject, lower(fields["DistanceUnits"])));
 }
 
@@ -90,29 +144,34 @@ void check_grey(const HeaderFields& fields) {
   if (fields.has("ElementNumberOfChannels") && fields.numbers("ElementNumberOfChannels").front() != 1) {
     throw InputError(fields.subject, "is not a grey volume: it holds several values a voxel");
   }
-  if (fields.has("BinaryData") && !is_true(fields, "BinaryData")) {
-    throw InputError(fields.subject, "holds its voxels as text, which is not supported");
-  }
 }
 
 StoredVoxels voxels_of(const fs::path& path, const HeaderFields& fields, std::ifstream header,
                        std::uint64_t count) {
   const VoxelType type = type_of(fields.subject, fields["ElementType"]);
   const std::string name = fields["ElementDataFile"];
-  const bool local = lower(name) == "local";
-  const bool packed = is_true(fields, "CompressedData");
-  std::ifstream data = open_data(fields.subject, path, local ? "" : name, std::move(header));
+  const bool is_text = fields.has("BinaryData") && !is_true(fields, "BinaryData");
+  const Packing packing = is_true(fields, "CompressedData") ? Packing::gzip_or_zlib : Packing::none;
   const double header_size = fields.count("HeaderSize", -1);
+  BeforeVoxels before;
   // It counts from the beginning of the file that holds the data.
-  if (header_size > 0) data.seekg(static_cast<std::streamoff>(header_size));
-  StoredVoxels voxels{.source = ByteSource(std::move(data), packed ? Packing::gzip_or_zlib : Packing::none),
-                      .type = type};
-  voxels.big_endian = is_true(fields, "BinaryDataByteOrderMSB") || is_true(fields, "ElementByteOrderMSB");
-  if (packed) {
-    voxels.compressed_bytes = static_cast<std::uint64_t>(fields.count("CompressedDataSize", 1));
-  } else if (header_size < 0) {
-    skip_to_last(voxels, count);
+  if (header_size > 0) before.file_bytes = static_cast<std::uint64_t>(header_size);
+  before.are_last = header_size < 0 && packing == Packing::none && !is_text;
+  std::vector<fs::path> files;
+  if (lower(name) != "local") {
+    files = data_files(fields.subject, path, name, header);
+    header = open_regular_file(fields.subject, files.front());
+    files.erase(files.begin());
   }
+  StoredVoxels voxels{.source = source_behind(std::move(header), before, packing),
+                      .type = type,
+                      .is_text = is_text,
+                      .more = std::move(files),
+                      .before = before};
+  voxels.big_endian = is_true(fields, "BinaryDataByteOrderMSB") || is_true(fields, "ElementByteOrderMSB");
+  if (packing != Packing::none && voxels.more.empty())
+    voxels.compressed_bytes = static_cast<std::uint64_t>(fields.count("CompressedDataSize", 1));
+  set_skip(voxels, count / (1 + voxels.more.size()));
   return voxels;
 }
 

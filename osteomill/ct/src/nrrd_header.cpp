@@ -1,8 +1,10 @@
 // Nearly Raw Raster Data, http://teem.sourceforge.net/nrrd/format.html
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
-#include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -74,7 +76,9 @@ Header read_header(const std::string& subject, std::istream& in) {
       throw InputError(subject, "has a header line that is not \"field: value\"");
     const std::string name = field_name(std::string_view(line).substr(0, colon));
     check_name(subject, name);
-    header.fields.values[name] = trimmed(std::string_view(line).substr(colon + 1));
+    const std::string value = header.fields.values[name] = trimmed(std::string_view(line).substr(colon + 1));
+    // The names of the data files follow, to the file's end.
+    if (name.starts_with("data") && (value == "LIST" || value.starts_with("LIST "))) break;
   }
   return header;
 }
@@ -99,40 +103,68 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
   throw InputError(subject, fmt::format("has voxels of type \"{:.40}\", which is not known", type));
 }
 
-double unit_of(const HeaderFields& fields, const std::string& name) {
-  const std::string text = fields[name];
-  const std::size_t open = text.find('"');
-  if (open == std::string::npos) return 1;
-  return millimetres_in(fields.subject, lower(text.substr(open + 1, text.find('"', open + 1) - open - 1)));
+// The texts of a field: in quotes, or the words where it has no quotes.
+std::vector<std::string> texts_of(const std::string& field) {
+  std::vector<std::string> texts;
+  if (field.find('"') == std::string::npos) {
+    std::istringstream words(field);
+    for (std::string word; words >> word;) texts.push_back(word);
+    return texts;
+  }
+  for (std::size_t open = field.find('"'); open != std::string::npos;) {
+    const std::size_t close = field.find('"', open + 1);
+    texts.push_back(field.substr(open + 1, close - open - 1));
+    open = close == std::string::npos ? close : field.find('"', close + 1);
+  }
+  return texts;
 }
 
-Mat3 space_directions(const std::string& subject, const std::string& text) {
-  std::vector<double> values;
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    const std::size_t open = rest.find('(');
-    if (open == std::string_view::npos) break;
-    if (rest.substr(0, open).find_first_not_of(" \t") != std::string_view::npos) break;
+// The units of so many axes, each its own; a single one is that of all.
+std::vector<std::string> units_of(const HeaderFields& fields, const std::string& name, std::size_t axes) {
+  std::vector<std::string> units = texts_of(fields[name]);
+  if (units.empty()) units.emplace_back();
+  if (units.size() == 1) units.resize(axes, units.front());
+  if (units.size() != axes)
+    throw InputError(fields.subject, fmt::format("has {} units for its {} axes", units.size(), axes));
+  return units;
+}
+
+double millimetres(const HeaderFields& fields, const std::string& unit) {
+  return millimetres_in(fields.subject, lower(unit));
+}
+
+// A step along each axis, in the directions of the space; nothing where an axis leads nowhere in it ("none").
+std::vector<std::optional<std::vector<double>>> space_directions(const std::string& subject,
+                                                                 std::string_view rest) {
+  constexpr std::size_t kMostAxes = 16;
+  std::vector<std::optional<std::vector<double>>> directions;
+  const auto refused = [&] {
+    return InputError(subject, "has space directions that are not a vector of three numbers for each axis");
+  };
+  while (directions.size() <= kMostAxes) {
+    const std::size_t start = rest.find_first_not_of(" \t");
+    if (start == std::string_view::npos) return directions;
+    rest.remove_prefix(start);
+    if (rest.starts_with("none")) {
+      directions.emplace_back();
+      rest.remove_prefix(4);
+      continue;
+    }
     const std::size_t close = rest.find(')');
-    if (close == std::string_view::npos || close < open) break;
-    const auto vector = parse_numbers(rest.substr(open + 1, close - open - 1), " ,\t");
-    if (!vector || vector->size() != 3) break;
-    values.insert(values.end(), vector->begin(), vector->end());
+    if (rest.front() != '(' || close == std::string_view::npos) throw refused();
+    auto vector = parse_numbers(rest.substr(1, close - 1), " ,\t");
+    if (!vector || vector->size() < 3 || vector->size() > 4) throw refused();
+    directions.emplace_back(*std::move(vector));
     rest.remove_prefix(close + 1);
   }
-  if (values.size() != 9 || rest.find_first_not_of(" \t") != std::string_view::npos) {
-    throw InputError(subject, "has space directions that are not three vectors of three numbers");
-  }
-  Mat3 axes;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int row = 0; row < 3; ++row) axes(row, axis) = values[static_cast<std::size_t>(3 * axis + row)];
-  }
-  return axes;
+  throw refused();
 }
 
 // The signs that turn the axes of a space into LPS.
-Vec3 lps_from_space(const std::string& subject, const std::string& space,
-                    std::vector<std::string>& warnings) {
+Vec3 lps_from_space(const std::string& subject, std::string space, std::vector<std::string>& warnings) {
+  // Time is one more axis of the space.
+  if (space.ends_with("-time")) space.resize(space.size() - 5);
+  if (space == "lpst" || space == "rast" || space == "last") space.pop_back();
   if (space.empty() || space == "left-posterior-superior" || space == "lps") return Vec3(1, 1, 1);
   if (space == "right-anterior-superior" || space == "ras") return Vec3(-1, -1, 1);
   if (space == "left-anterior-superior" || space == "las") return Vec3(1, -1, 1);
@@ -143,63 +175,130 @@ Vec3 lps_from_space(const std::string& subject, const std::string& space,
   return Vec3::Ones();
 }
 
-// Along an axis of another kind lie several values of one voxel.
-void check_kinds(const std::string& subject, const std::string& kinds) {
-  std::istringstream words(lower(kinds));
-  for (std::string kind; words >> kind;) {
-    if (kind == "list") {
-      throw InputError(subject,
-                       "has several layers, as a segmentation whose segments overlap; save it with one");
-    }
-    if (kind != "domain" && kind != "space" && kind != "time" && kind != "???" && kind != "none") {
-      throw InputError(subject, fmt::format("is not a grey volume: it has an axis of kind \"{}\"", kind));
-    }
-  }
+bool is_spatial(const std::string& kind) {
+  return kind == "domain" || kind == "space" || kind == "???" || kind == "none";
 }
 
-GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& warnings) {
-  const std::string& subject = fields.subject;
-  const std::vector<double> dimension = fields.numbers("dimension");
-  if (dimension.front() != 3) {
+// Along an axis of another kind lie several values of one voxel.
+void check_kind(const std::string& subject, const std::string& kind) {
+  if (kind == "list") {
     throw InputError(subject,
-                     fmt::format("is not a grey volume: it has {} dimensions, not 3", dimension.front()));
+                     "has several layers, as a segmentation whose segments overlap; save it with one");
   }
-  check_kinds(subject, fields["kinds"]);
-  Mat3 axes = Mat3::Identity();
-  std::vector<double> spacing{1, 1, 1};
-  double unit_mm = 1;
+  if (!is_spatial(kind) && kind != "time")
+    throw InputError(subject, fmt::format("is not a grey volume: it has an axis of kind \"{:.40}\"", kind));
+}
+
+// How the file's array is made of axes, the one that runs fastest first.
+struct Axes {
+  std::vector<double> sizes;
+  std::vector<std::string> kinds;
+  std::vector<std::optional<std::vector<double>>> directions;
+  // The places of the three axes of the grid.
+  std::vector<std::size_t> of_grid;
+};
+
+// Those that have a direction, or are said to be of space; then, if there are too many, those along which
+// there is more than one voxel.
+std::vector<std::size_t> axes_of_grid(const Axes& axes) {
+  std::vector<std::size_t> found;
+  for (std::size_t axis = 0; axis < axes.sizes.size(); ++axis) {
+    const bool in_space = axes.directions.empty() ? is_spatial(axes.kinds[axis]) || axes.sizes.size() == 3
+                                                  : axes.directions[axis].has_value();
+    if (in_space) found.push_back(axis);
+  }
+  // Behind the others as a rule.
+  for (std::size_t n = found.size(); n-- > 0 && found.size() > 3;)
+    if (axes.sizes[found[n]] == 1) found.erase(found.begin() + static_cast<std::ptrdiff_t>(n));
+  return found;
+}
+
+Axes axes_of(const HeaderFields& fields) {
+  const std::string& subject = fields.subject;
+  const double dimension = fields.numbers("dimension").front();
+  Axes axes{fields.numbers("sizes"), texts_of(lower(fields["kinds"])), {}, {}};
+  if (!(dimension >= 3 && dimension <= 16)) {
+    throw InputError(subject, fmt::format("is not a grey volume: it has {} dimensions, not 3", dimension));
+  }
+  if (static_cast<double>(axes.sizes.size()) != dimension)
+    throw InputError(subject, fmt::format("has {} sizes and {} dimensions", axes.sizes.size(), dimension));
+  axes.kinds.resize(axes.sizes.size(), "???");
   if (fields.has("spacedirections")) {
-    axes = space_directions(subject, fields["spacedirections"]);
-    for (int axis = 0; axis < 3; ++axis) spacing[static_cast<std::size_t>(axis)] = axes.col(axis).norm();
-    unit_mm = unit_of(fields, "spaceunits");
+    axes.directions = space_directions(subject, fields["spacedirections"]);
+    if (axes.directions.size() != axes.sizes.size()) {
+      throw InputError(subject, fmt::format("has {} space directions and {} dimensions",
+                                            axes.directions.size(), dimension));
+    }
+  }
+  axes.of_grid = axes_of_grid(axes);
+  if (axes.of_grid.size() != 3) {
+    throw InputError(subject, fmt::format("is not a grey volume: {} of its {} axes lie in space, not 3",
+                                          axes.of_grid.size(), dimension));
+  }
+  return axes;
+}
+
+// What lies along the axes that are not the grid's: as a rule one value. Segments that may overlap lie along
+// one axis, first or last.
+VoxelLayers layers_of(const Header& header, const Axes& axes) {
+  VoxelLayers layers;
+  for (std::size_t axis = 0; axis < axes.sizes.size(); ++axis) {
+    const bool of_grid = std::find(axes.of_grid.begin(), axes.of_grid.end(), axis) != axes.of_grid.end();
+    if (of_grid || axes.sizes[axis] == 1) continue;
+    const bool run_fastest = axis < axes.of_grid.front();
+    const bool are_segments =
+        header.key_values.contains("Segment0_ID") || header.fields.subject.find(".seg.") != std::string::npos;
+    const double count = axes.sizes[axis];
+    if (!are_segments || layers.count > 1 || !(count >= 1 && count <= 1e6) || count != std::floor(count) ||
+        !(run_fastest || axis > axes.of_grid.back())) {
+      throw InputError(header.fields.subject,
+                       fmt::format("holds {} volumes or values a voxel, not one", count));
+    }
+    layers = {static_cast<std::uint64_t>(count), run_fastest};
+  }
+  return layers;
+}
+
+GridGeometry geometry_of(const HeaderFields& fields, const Axes& axes, std::vector<std::string>& warnings) {
+  const std::string& subject = fields.subject;
+  std::vector<double> sizes, spacing{1, 1, 1};
+  for (const std::size_t axis : axes.of_grid) {
+    sizes.push_back(axes.sizes[axis]);
+    if (axes.sizes.size() == 3) check_kind(subject, axes.kinds[axis]);
+  }
+  const bool has_time = lower(fields["space"]).ends_with("time") || fields["space"].size() == 4;
+  const std::vector<std::string> space_units = units_of(fields, "spaceunits", has_time ? 4 : 3);
+  const Vec3 space_unit_mm(millimetres(fields, space_units[0]), millimetres(fields, space_units[1]),
+                           millimetres(fields, space_units[2]));
+  Mat3 steps = Mat3::Identity();
+  if (!axes.directions.empty()) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      const auto column = static_cast<Eigen::Index>(n);
+      steps.col(column) = space_unit_mm.cwiseProduct(Vec3(axes.directions[axes.of_grid[n]]->data()));
+      spacing[n] = steps.col(column).norm();
+    }
   } else if (fields.has("spacings")) {
-    spacing = fields.numbers("spacings");
-    unit_mm = unit_of(fields, "units");
+    const std::vector<double> all = fields.numbers("spacings");
+    if (all.size() != axes.sizes.size())
+      throw InputError(subject, fmt::format("has {} spacings for {} axes", all.size(), axes.sizes.size()));
+    const std::vector<std::string> units = units_of(fields, "units", axes.sizes.size());
+    for (std::size_t n = 0; n < 3; ++n)
+      spacing[n] = all[axes.of_grid[n]] * millimetres(fields, units[axes.of_grid[n]]);
   } else {
     warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
   }
   Vec3 origin = Vec3::Zero();
   if (fields.has("spaceorigin")) {
-    const auto values = parse_numbers(fields["spaceorigin"], "(), \t");
-    origin = checked_point(subject, "space origin", values.value_or(std::vector<double>{}));
+    auto values = parse_numbers(fields["spaceorigin"], "(), \t").value_or(std::vector<double>{});
+    if (has_time && values.size() == 4) values.pop_back();
+    origin = space_unit_mm.cwiseProduct(checked_point(subject, "space origin", values));
   }
-  return checked_geometry(subject, fields.numbers("sizes"), spacing, axes, origin, unit_mm,
+  return checked_geometry(subject, sizes, spacing, steps, origin, 1,
                           lps_from_space(subject, lower(fields["space"]), warnings));
 }
 
-// The stream in which the voxels begin, behind the lines that are to be skipped.
-std::ifstream open_behind_lines(const fs::path& path, const Header& header, std::ifstream attached) {
+StoredVoxels voxels_of(const fs::path& path, const Header& header, std::ifstream in, std::uint64_t count) {
   const HeaderFields& fields = header.fields;
-  const std::string name = fields[fields.has("datafile") ? "datafile" : "data"];
-  if (name.empty() && !header.has_end)
-    throw InputError(fields.subject, "has a header without an end, and no data");
-  std::ifstream in = open_data(fields.subject, path, name, std::move(attached));
-  const double lines = fields.count("lineskip", 0);
-  for (double n = 0; n < lines && in; ++n) in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  return in;
-}
-
-StoredVoxels voxels_of(const HeaderFields& fields, std::ifstream data, std::uint64_t count) {
   const std::string& subject = fields.subject;
   const VoxelType type = type_of(subject, lower(fields["type"]));
   const std::string encoding = lower(fields["encoding"]);
@@ -210,21 +309,30 @@ StoredVoxels voxels_of(const HeaderFields& fields, std::ifstream data, std::uint
                                   ? "does not say how its data are encoded"
                                   : fmt::format("is encoded as \"{}\", which is not supported", encoding));
   }
+  const std::string name = fields[fields.has("datafile") ? "datafile" : "data"];
+  if (name.empty() && !header.has_end) throw InputError(subject, "has a header without an end, and no data");
+  std::vector<fs::path> files;
+  if (!name.empty()) {
+    files = data_files(subject, path, name, in);
+    in = open_regular_file(subject, files.front());
+    files.erase(files.begin());
+  }
+  const double byte_skip = fields.count("byteskip", is_text ? 0 : -1);
+  const BeforeVoxels before{.lines = fields.count("lineskip", 0),
+                            .bytes = static_cast<std::uint64_t>(std::max(0.0, byte_skip)),
+                            .are_last = byte_skip < 0};
   StoredVoxels voxels{
-      .source = ByteSource(std::move(data), is_packed ? Packing::gzip_or_zlib : Packing::none),
+      .source = source_behind(std::move(in), before, is_packed ? Packing::gzip_or_zlib : Packing::none),
       .type = type,
-      .is_text = is_text};
+      .is_text = is_text,
+      .more = std::move(files),
+      .before = before};
   const std::string endian = lower(fields["endian"]);
   if (!is_text && bytes_of(type) > 1 && endian != "little" && endian != "big") {
     throw InputError(subject, "does not say whether its voxels are little or big endian");
   }
   voxels.big_endian = endian == "big";
-  const double byte_skip = fields.count("byteskip", is_text ? 0 : -1);
-  if (byte_skip < 0) {
-    skip_to_last(voxels, count);
-  } else {
-    voxels.skip = static_cast<std::uint64_t>(byte_skip);
-  }
+  set_skip(voxels, count / (1 + voxels.more.size()));
   return voxels;
 }
 
@@ -234,10 +342,15 @@ VolumeHeader read_nrrd_header(const fs::path& path) {
   std::ifstream in = open_regular_file(path.string(), path);
   const Header header = read_header(path.string(), in);
   std::vector<std::string> warnings;
-  const GridGeometry geometry = geometry_of(header.fields, warnings);
-  std::ifstream data = open_behind_lines(path, header, std::move(in));
-  return {geometry, voxels_of(header.fields, std::move(data), geometry.voxel_count()), std::move(warnings),
-          header.key_values, header.key_values.contains("Segment0_ID")};
+  const Axes axes = axes_of(header.fields);
+  const VoxelLayers layers = layers_of(header, axes);
+  const GridGeometry geometry = geometry_of(header.fields, axes, warnings);
+  return {geometry,
+          voxels_of(path, header, std::move(in), geometry.voxel_count() * layers.count),
+          std::move(warnings),
+          header.key_values,
+          header.key_values.contains("Segment0_ID"),
+          layers};
 }
 
 }  // namespace osteomill

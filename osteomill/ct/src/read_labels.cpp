@@ -342,11 +342,14 @@ LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan, std::u
   try {
     if (format == nullptr) return read_segmentation_labels(files, scan, max_memory_bytes);
     VolumeHeader header = format->read_header(files.map);
-    std::vector<float> values =
-        read_voxels(subject, header.voxels, header.geometry.voxel_count(), max_memory_bytes, header.warnings);
-    LabelsRead read =
-        put_on(scan, subject,
-               {header.geometry, std::move(values), label_table_of(subject, header.key_values)}, files);
+    const std::vector<float> values = read_volume(subject, header, max_memory_bytes);
+    LabelTable table = label_table_of(subject, header.key_values);
+    if (!files.table.empty()) {
+      LabelTable given = read_label_table(files.table);
+      given.merge(table);
+      table = std::move(given);
+    }
+    LabelsRead read;
     for (const std::string& warning : header.warnings) read.warnings.push_back(subject + ": " + warning);
     return read;
   } catch (const std::bad_alloc&) {

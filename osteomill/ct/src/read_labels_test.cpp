@@ -50,6 +50,44 @@ TEST_F(ReadLabels, TakesNamesAndColoursOfSlicersSegmentations) {
   EXPECT_TRUE(read.warnings.empty());
 }
 
+// Two layers of 2 x 2 x 2 voxels, as 3D Slicer writes them: the values of a voxel beside each other.
+TEST_F(ReadLabels, PutsLayersThatDoNotOverlapIntoOne) {
+  const auto layered = [&](const std::string& values, const std::string& fields, const std::string& first,
+                           const std::string& second) {
+    return write(
+        "a.seg.nrrd",
+        "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 2 2\nencoding: ascii\nspace: LPS\n" + fields +
+            "space origin: (0,0,0)\nSegment0_ID:=s\nSegment0_Name:=Jaw\nSegment0_LabelValue:=" + first +
+            "\nSegment0_Layer:=0\nSegment1_Name:=Nerve\nSegment1_LabelValue:=" + second +
+            "\nSegment1_Layer:=1\n\n" + values);
+  };
+  const std::string axes = "(1,0,0) (0,1,0) (0,0,1)";
+  const std::string fastest = "kinds: list domain domain domain\nspace directions: none " + axes + "\n";
+  const std::string slowest = "kinds: domain domain domain list\nspace directions: " + axes + " none\n";
+  const auto expect_labels = [&](const std::filesystem::path& file, int jaw, int nerve,
+                                 std::size_t warnings) {
+    const LabelsRead read = read_labels({file, {}, {}}, scan());
+    ASSERT_EQ(read.map->labels().size(), 2u);
+    EXPECT_EQ(read.map->labels()[0].value, jaw);
+    EXPECT_EQ(read.map->labels()[0].name, "Jaw");
+    EXPECT_EQ(read.map->labels()[1].value, nerve);
+    EXPECT_EQ(read.map->labels()[1].name, "Nerve");
+    EXPECT_EQ(read.map->at({1, 0, 0}), 1);
+    EXPECT_EQ(read.map->at({0, 1, 1}), 2);
+    EXPECT_EQ(read.map->voxel_counts(), (std::vector<std::size_t>{0, 1, 1}));
+    EXPECT_EQ(read.warnings.size(), warnings);
+    const Scan labels = read_scan(file);
+    EXPECT_TRUE(labels.is_labels);
+    const VoxelIndex of_nerve{0, 1, 1};
+    EXPECT_EQ(labels.grid[of_nerve], static_cast<float>(nerve));
+  };
+  expect_labels(layered("0 0 3 0 0 0 0 0  0 0 0 0 0 5 0 0", fastest, "3", "5"), 3, 5, 0);
+  expect_labels(layered("0 3 0 0 0 0 0 0  0 0 0 0 0 0 5 0", slowest, "3", "5"), 3, 5, 0);
+  expect_labels(layered("0 0 1 0 0 0 0 0  0 0 0 0 0 1 0 0", fastest, "1", "1"), 1, 2, 1);
+  EXPECT_TRUE(contains(refusal_of({layered("0 0 1 1 0 0 0 0  0 0 0 0 0 1 0 1", fastest, "1", "1"), {}, {}}),
+                       "overlap, in 2 layers; save it as a label map of one layer"));
+}
+
 TEST_F(ReadLabels, TakesNamesAndColoursOfATableBeforeTheFilesOwn) {
   const auto file = write("a.seg.nrrd", map_of("0 1 2 3 0 0 0 0",
                                                "Segment0_Name:=Old\nSegment0_LabelValue:=1\n"

@@ -22,6 +22,7 @@ constexpr std::size_t kBlock = 1 << 18;
 constexpr std::uint64_t kMaxLetters = 64;
 // So much beyond the voxels is read on to come to the checksum.
 constexpr std::uint64_t kMaxRest = 1 << 20;
+constexpr const char* kHoldsMore = "holds more data than its sizes need; the rest was left out";
 
 // Calls `use` with a value of the type in which a voxel is stored.
 template <typename Use>
@@ -93,21 +94,21 @@ void check_rest(const std::string& subject, StoredVoxels& stored, std::uint64_t 
                                             source.bytes_used()));
     }
   }
-  if (rest > 0) warnings.push_back("holds more data than its sizes need; the rest was left out");
+  if (rest > 0) warnings.push_back(kHoldsMore);
 }
 
-std::vector<float> read_binary(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
-                               std::uint64_t max_bytes, std::vector<std::string>& warnings) {
+// Puts `count` densities behind those that are there; `all` are to come in all.
+void read_binary(const std::string& subject, StoredVoxels& stored, std::uint64_t count, std::uint64_t all,
+                 std::uint64_t max_bytes, std::vector<float>& densities, std::vector<std::string>& warnings) {
   ByteSource& source = stored.source;
-  const std::uint64_t needed = count * bytes_of(stored.type);
+  const std::uint64_t size = bytes_of(stored.type), needed = count * size;
   const std::uint64_t possible = source.max_bytes();
   if (possible < stored.skip + needed) {
     throw cut_short(subject, needed, possible - std::min(possible, stored.skip));
   }
-  check_memory(subject, count, max_bytes);
+  check_memory(subject, all, max_bytes);
   if (!source.skip(stored.skip)) throw InputError(subject, "its compressed data cannot be decompressed");
-  std::vector<float> densities;
-  densities.reserve(count);
+  densities.reserve(all);
   std::vector<char> block(kBlock);
   for (std::uint64_t found = 0; found < needed;) {
     const std::span<char> wanted(block.data(), std::min<std::uint64_t>(kBlock, needed - found));
@@ -116,20 +117,19 @@ std::vector<float> read_binary(const std::string& subject, StoredVoxels& stored,
     if (found == 0) throw InputError(subject, "its compressed data cannot be decompressed");
     if (here < wanted.size()) throw cut_short(subject, needed, found);
     append(wanted, stored, densities);
-    WorkProgress::done(found, needed);
+    WorkProgress::done(densities.size() * size, all * size);
   }
   check_rest(subject, stored, needed, warnings);
-  return densities;
 }
 
-std::vector<float> read_text(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
-                             std::uint64_t max_bytes, std::vector<std::string>& warnings) {
+void read_text(const std::string& subject, StoredVoxels& stored, std::uint64_t count, std::uint64_t all,
+               std::uint64_t max_bytes, std::vector<float>& densities, std::vector<std::string>& warnings) {
   stored.source.skip(stored.skip);
   // One digit and one space each, at the least.
   const std::uint64_t needed = 2 * count - 1;
   const std::uint64_t possible = stored.source.max_bytes();
   if (possible < needed) throw cut_short(subject, needed, possible);
-  check_memory(subject, count, max_bytes);
+  check_memory(subject, all, max_bytes);
   std::string text;
   std::vector<char> block(kBlock);
   for (std::size_t here = kBlock; here == kBlock && text.size() < kMaxLetters * count + kBlock;) {
@@ -142,14 +142,12 @@ std::vector<float> read_text(const std::string& subject, StoredVoxels& stored, s
     throw InputError(
         subject, fmt::format("is cut short: it has {} voxels, there are {} numbers", count, numbers->size()));
   }
-  if (numbers->size() > count) {
-    warnings.push_back("holds more data than its sizes need; the rest was left out");
-  }
+  if (numbers->size() > count) warnings.push_back(kHoldsMore);
   for (const double number : *numbers) {
     if (!fits(number, stored.type))
       throw InputError(subject, fmt::format("holds {}, which is no value of its type", number));
   }
-  return {numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count)};
+  densities.insert(densities.end(), numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace
@@ -158,15 +156,43 @@ std::uint64_t bytes_of(VoxelType type) {
   return with_type(type, [](auto value) { return std::uint64_t{sizeof(value)}; });
 }
 
-void skip_to_last(StoredVoxels& stored, std::uint64_t count) {
+ByteSource source_behind(std::ifstream in, const BeforeVoxels& before, Packing packing) {
+  for (double n = 0; n < before.lines && in; ++n)
+    in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  if (before.file_bytes > 0) in.seekg(static_cast<std::streamoff>(before.file_bytes));
+  return {std::move(in), packing};
+}
+
+void set_skip(StoredVoxels& stored, std::uint64_t count) {
+  stored.skip = stored.before.bytes;
+  if (!stored.before.are_last) return;
   const std::uint64_t there = stored.source.bytes_to_come();
   stored.skip = there - std::min(there, count * bytes_of(stored.type));
 }
 
 std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
                                std::uint64_t max_bytes, std::vector<std::string>& warnings) {
-  return stored.is_text ? read_text(subject, stored, count, max_bytes, warnings)
-                        : read_binary(subject, stored, count, max_bytes, warnings);
+  const std::size_t files = 1 + stored.more.size();
+  if (count % files != 0) {
+    throw InputError(subject,
+                     fmt::format("has {} voxels in {} files, and each has to hold as many", count, files));
+  }
+  std::vector<float> densities;
+  std::vector<std::string> found;
+  const auto read = [&] {
+    (stored.is_text ? read_text : read_binary)(subject, stored, count / files, count, max_bytes, densities,
+                                               found);
+  };
+  read();
+  const Packing packing = stored.source.is_packed() ? Packing::gzip_or_zlib : Packing::none;
+  for (const std::filesystem::path& path : stored.more) {
+    stored.source = source_behind(open_regular_file(subject, path), stored.before, packing);
+    set_skip(stored, count / files);
+    read();
+  }
+  // Told once, however many files it is true of.
+  if (!found.empty()) warnings.push_back(found.front());
+  return densities;
 }
 
 }  // namespace osteomill

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
+#include <optional>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -67,11 +71,72 @@ double HeaderFields::count(const std::string& name, double min) const {
   return found[0];
 }
 
-std::ifstream open_data(const std::string& subject, const fs::path& path, const std::string& name,
-                        std::ifstream attached) {
-  if (name.starts_with("LIST") || name.find('%') != std::string::npos)
-    throw InputError(subject, "keeps its data in several files, which is not supported");
-  return name.empty() ? std::move(attached) : open_regular_file(subject, path.parent_path() / name);
+namespace {
+
+constexpr std::size_t kMostFiles = 1 << 20;
+
+// "%03d", of which the 0 and the width may be missing, with a number in its place.
+std::optional<std::string> filled_in(const std::string& pattern, long number) {
+  const std::size_t percent = pattern.find('%');
+  std::size_t at = percent + 1;
+  if (percent == std::string::npos || pattern.find('%', at) != std::string::npos) return std::nullopt;
+  const bool zeros = at < pattern.size() && pattern[at] == '0';
+  std::size_t width = 0;
+  for (; at < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[at])) != 0 && width < 100;
+       ++at)
+    width = 10 * width + static_cast<std::size_t>(pattern[at] - '0');
+  if (at == pattern.size() || (pattern[at] != 'd' && pattern[at] != 'i' && pattern[at] != 'u'))
+    return std::nullopt;
+  const std::string digits = fmt::format("{}", std::abs(number)), sign = number < 0 ? "-" : "";
+  const std::size_t have = digits.size() + sign.size();
+  const std::string padding(width - std::min(width, have), zeros ? '0' : ' ');
+  return pattern.substr(0, percent) + (zeros ? sign + padding : padding + sign) + digits +
+         pattern.substr(at + 1);
+}
+
+// Nothing where it is no pattern with its numbers: then it is a name.
+std::optional<std::vector<std::string>> names_of_pattern(const std::string& subject,
+                                                         const std::string& said) {
+  std::istringstream in(said);
+  std::string pattern;
+  long first = 0, last = 0, step = 0;
+  if (!(in >> pattern >> first >> last >> step) || !filled_in(pattern, first)) return std::nullopt;
+  if (step == 0 || (last - first) / step < 0 ||
+      static_cast<std::size_t>((last - first) / step) >= kMostFiles) {
+    throw InputError(subject, fmt::format("names its data files by numbers that lead nowhere: {:.80}", said));
+  }
+  std::vector<std::string> names;
+  for (long n = 0; n <= (last - first) / step; ++n) names.push_back(*filled_in(pattern, first + n * step));
+  return names;
+}
+
+std::vector<std::string> names_in_lines(const std::string& subject, std::istream& header) {
+  constexpr std::size_t kMostLetters = 1 << 24;
+  std::vector<std::string> names;
+  std::size_t letters = 0;
+  for (std::string line; std::getline(header, line);) {
+    letters += line.size();
+    if (letters > kMostLetters || names.size() == kMostFiles || line.find('\0') != std::string::npos)
+      throw InputError(subject, "has a list of data files that is none");
+    if (line = trimmed(line); !line.empty()) names.push_back(line);
+  }
+  if (names.empty()) throw InputError(subject, "has a list of data files with nothing in it");
+  return names;
+}
+
+}  // namespace
+
+std::vector<fs::path> data_files(const std::string& subject, const fs::path& path, const std::string& said,
+                                 std::istream& header) {
+  std::vector<std::string> names{said};
+  if (said == "LIST" || said.starts_with("LIST ")) {
+    names = names_in_lines(subject, header);
+  } else if (auto of_pattern = names_of_pattern(subject, said)) {
+    names = *std::move(of_pattern);
+  }
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(path.parent_path() / name);
+  return files;
 }
 
 GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
@@ -124,6 +189,13 @@ const VolumeFormat* volume_format_of(const fs::path& path) {
   return nullptr;
 }
 
+std::vector<float> read_volume(const std::string& subject, VolumeHeader& header, std::uint64_t max_bytes) {
+  const std::uint64_t layers = header.layers.count;
+  std::vector<float> values =
+      read_voxels(subject, header.voxels, header.geometry.voxel_count() * layers, max_bytes, header.warnings);
+  return layers == 1 ? values : merge_layers(subject, std::move(values), header);
+}
+
 Scan read_volume_file(const fs::path& path, const VolumeFormat& format, const ReadOptions& options) {
   const std::string subject = path.string();
   VolumeHeader header = format.read_header(path);
@@ -133,8 +205,7 @@ Scan read_volume_file(const fs::path& path, const VolumeFormat& format, const Re
   std::vector<float> densities;
   {
     const WorkProgress::Part reading(0.85);
-    densities = read_voxels(subject, header.voxels, header.geometry.voxel_count(), options.max_memory_bytes,
-                            header.warnings);
+    densities = read_volume(subject, header, options.max_memory_bytes);
   }
   const WorkProgress::Part checking(1);
   if (const std::size_t none = check_densities(subject, densities); none > 0) {

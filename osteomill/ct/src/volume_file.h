@@ -21,6 +21,16 @@ enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64,
 /// Returns how many bytes one voxel takes.
 std::uint64_t bytes_of(VoxelType type);
 
+/// What a file of voxels holds before them.
+struct BeforeVoxels {
+  /// Lines of text, then bytes of the file as it is, then unpacked bytes.
+  double lines = 0;
+  std::uint64_t file_bytes = 0;
+  std::uint64_t bytes = 0;
+  /// True if the voxels are the last that the file holds, whatever comes before them.
+  bool are_last = false;
+};
+
 /// The voxels of a file, and what its header says of how they are stored.
 struct StoredVoxels {
   ByteSource source;
@@ -35,16 +45,29 @@ struct StoredVoxels {
   /// Density = slope * stored value + intercept.
   double slope = 1;
   double intercept = 0;
+  /// Files in which the voxels go on behind those of `source`, each laid out as that is and with as many.
+  std::vector<std::filesystem::path> more{};
+  BeforeVoxels before{};
 };
 
-/// Sets `skip` so that the voxels are the last `count` that the source holds.
-void skip_to_last(StoredVoxels& stored, std::uint64_t count);
+/// Returns a source that begins behind the lines and bytes of the file that come before its voxels.
+ByteSource source_behind(std::ifstream in, const BeforeVoxels& before, Packing packing);
 
-/// Reads `count` densities. Nothing is allocated that the file cannot hold. Throws InputError naming
-/// `subject` if the voxels are not all there or damaged, or the densities would take over `max_bytes`;
-/// adds a warning if there is more.
+/// Sets `skip` by what comes before the voxels, of which the source holds `count`.
+void set_skip(StoredVoxels& stored, std::uint64_t count);
+
+/// Reads `count` densities, an equal share of them from each file. Nothing is allocated that the file cannot
+/// hold. Throws InputError naming `subject` where the voxels are not all there or damaged, or the densities
+/// would take over `max_bytes`; adds a warning where there is more.
 std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
                                std::uint64_t max_bytes, std::vector<std::string>& warnings);
+
+/// Layers of a segmentation whose segments may overlap: several values a voxel, along an axis that runs
+/// fastest or slowest of all.
+struct VoxelLayers {
+  std::uint64_t count = 1;
+  bool run_fastest = true;
+};
 
 /// The header of a volume file, and the voxels behind it, ready to be read.
 struct VolumeHeader {
@@ -55,6 +78,7 @@ struct VolumeHeader {
   std::map<std::string, std::string> key_values{};
   /// True if the header says so; it need not.
   bool is_labels = false;
+  VoxelLayers layers{};
 };
 
 /// Each reads the header of a file of its format, and checks that it is of one grey volume, with sizes and
@@ -72,6 +96,14 @@ struct VolumeFormat {
 };
 /// By how the file's name ends; null if it is none of them.
 const VolumeFormat* volume_format_of(const std::filesystem::path& path);
+
+/// Reads what the header is of, layers as one (`merge_layers`). Throws InputError naming `subject`.
+std::vector<float> read_volume(const std::string& subject, VolumeHeader& header, std::uint64_t max_bytes);
+
+/// Puts the layers of a segmentation, whose voxels `values` holds, into one map of labels. If a value stands
+/// for different segments in two layers, segments are numbered from 1 instead, in the values and in the
+/// header's pairs SegmentN_LabelValue. Throws InputError naming `subject` if segments overlap.
+std::vector<float> merge_layers(const std::string& subject, std::vector<float> values, VolumeHeader& header);
 
 /// Throws InputError naming the file.
 Scan read_volume_file(const std::filesystem::path& path, const VolumeFormat& format,
@@ -94,11 +126,12 @@ struct HeaderFields {
   double count(const std::string& name, double min) const;
 };
 
-/// Opens the data file `name` that the header in the file `path` names, in the same folder. If `name` is
-/// empty the data follow the header, and `attached`, its stream, is returned. Throws InputError naming
-/// `subject` if the file cannot be read, or the data are in several files.
-std::ifstream open_data(const std::string& subject, const std::filesystem::path& path,
-                        const std::string& name, std::ifstream attached);
+/// Returns the files that hold the voxels, by what the header in the file `path` says of them: one name,
+/// "LIST" with a name in each further line of the header, or a pattern with its first and last number and the
+/// step between numbers, as "slice%03d.raw 1 24 1". Names are relative to the header's folder. Throws
+/// InputError naming `subject`.
+std::vector<std::filesystem::path> data_files(const std::string& subject, const std::filesystem::path& path,
+                                              const std::string& said, std::istream& header);
 
 /// A grid by what headers say of it, checked: sizes are three whole numbers above zero whose product can be a
 /// volume; the columns of `axes`, of which only the direction counts, are neither zero nor skew; spacings are

@@ -236,6 +236,107 @@ TEST_F(VolumeFile, UnitsOfLengthAreTurnedToMillimetres) {
   EXPECT_TRUE(scan.grid.geometry().spacing_mm.isApprox(Vec3(0.02, 0.02, 0.04)));
 }
 
+TEST_F(VolumeFile, EveryAxisHasItsOwnUnit) {
+  const auto spacing_of = [&](const std::string& fields) {
+    return Vec3(read_scan(write("a.nrrd", nrrd("encoding: raw\n" + fields, voxels<std::int16_t>())))
+                    .grid.geometry()
+                    .spacing_mm);
+  };
+  EXPECT_TRUE(spacing_of("spacings: 1 2 50\nunits: \"mm\" \"cm\" \"um\"\n").isApprox(Vec3(1, 20, 0.05)));
+  EXPECT_TRUE(spacing_of("spacings: 1 2 50\nunits: mm mm um\n").isApprox(Vec3(1, 2, 0.05)));
+  EXPECT_TRUE(spacing_of("spacings: 20 20 50\nunits: \"um\"\n").isApprox(Vec3(0.02, 0.02, 0.05)));
+  // Those of a space are of its directions, whichever axes run along them.
+  const std::string placed =
+      "space: LPS\nspace directions: (0,0,40) (0,2,0) (3,0,0)\nspace origin: (1,2,500)\n"
+      "space units: \"mm\" \"mm\" \"um\"\n";
+  EXPECT_TRUE(spacing_of(placed).isApprox(Vec3(0.04, 2, 3)));
+  EXPECT_TRUE(read_scan(folder_ / "a.nrrd").grid.geometry().origin_mm.isApprox(Vec3(1, 2, 0.5)));
+  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd("encoding: raw\nspacings: 1 1 1\nunits: \"mm\" \"mm\"\n",
+                                                    voxels<std::int16_t>()))),
+                       "2 units for its 3 axes"));
+}
+
+// The voxels in three files of 8 and in two of 12.
+TEST_F(VolumeFile, VoxelsInSeveralFilesFollowEachOther) {
+  const std::string bytes = voxels<std::int16_t>();
+  for (int n = 0; n < 3; ++n)
+    write("s0" + std::to_string(8 + n) + ".raw", "x\n1234" + bytes.substr(16u * n, 16));
+  for (int n = 0; n < 2; ++n) write_gzip("z" + std::to_string(n) + ".gz", bytes.substr(24u * n, 24));
+  const std::string skip = "encoding: raw\nline skip: 1\nbyte skip: 4\n" + kPlaced + "data file: ";
+  for (const char* files : {"LIST\ns08.raw\n\n s09.raw\r\ns010.raw\n", "LIST 3\ns08.raw\ns09.raw\ns010.raw",
+                            "s0%d.raw 8 10 1\n"}) {
+    std::string header = nrrd(skip + files, "");
+    expect_voxels(read_scan(write("a.nhdr", header)).grid);
+  }
+  const std::string packed = "encoding: gzip\n" + kPlaced + "data file: ";
+  expect_voxels(read_scan(write("b.nhdr", nrrd(packed + "z%01d.gz 0 1 1 2\n", ""))).grid);
+  for (const char* files : {"LIST\nz0.gz\nz1.gz\n", "z%d.gz 0 1 1\n"}) {
+    std::string header = mha("CompressedData = True\n", "");
+    header.replace(header.find("LOCAL\n"), std::string::npos, files);
+    expect_voxels(read_scan(write("c.mhd", header)).grid);
+  }
+  const auto refused = [&](const std::string& files) {
+    return refusal(write("d.nhdr", nrrd(packed + files, "")));
+  };
+  EXPECT_TRUE(contains(refused("LIST\n"), "nothing in it"));
+  EXPECT_TRUE(contains(refused("LIST\nz0.gz\nz2.gz\n"), "z2.gz is not there"));
+  EXPECT_TRUE(contains(refused("LIST\nz0.gz\nz1.gz\nz0.gz\nz1.gz\nz1.gz\n"), "24 voxels in 5 files"));
+  EXPECT_TRUE(contains(refused("z%d.gz 0 1 0\n"), "lead nowhere"));
+  EXPECT_TRUE(contains(refused("z%d.gz 0 99999999 1\n"), "lead nowhere"));
+  EXPECT_TRUE(contains(refused("z%s.gz 0 1 1\n"), "is not there"));
+  EXPECT_TRUE(contains(refused("LIST\nz0.gz\n"), "cut short"));
+}
+
+TEST_F(VolumeFile, PatternsCountDownAndFillUp) {
+  const std::string bytes = voxels<std::int16_t>();
+  std::size_t first = 0;
+  for (const char* name : {"s100.raw", "s055.raw", "s010.raw"}) {
+    write(name, bytes.substr(first, 16));
+    first += 16;
+  }
+  expect_voxels(
+      read_scan(write("a.nhdr", nrrd("encoding: raw\n" + kPlaced + "data file: s%03d.raw 100 10 -45\n", "")))
+          .grid);
+}
+
+TEST_F(VolumeFile, FourDimensionsOfOneVolumeAreRead) {
+  const auto of = [&](const std::string& sizes, const std::string& fields) {
+    std::string bytes = nrrd("encoding: raw\n" + fields, voxels<std::int16_t>());
+    bytes.replace(bytes.find("dimension: 3\nsizes: 4 3 2"), 25, "dimension: 4\nsizes: " + sizes);
+    return write("a.nrrd", bytes);
+  };
+  const std::string axes = "(0,0.5,0) (0,0,0.25) (2,0,0)";
+  for (const auto& [sizes, fields] :
+       {std::pair<std::string, std::string>{"4 3 2 1", "space directions: " + axes + " none\n"},
+        {"1 4 3 2", "space directions: none " + axes + "\nkinds: list domain domain domain\n"},
+        {"4 3 1 2", "space directions: (0,0.5,0) (0,0,0.25) none (2,0,0)\n"}}) {
+    const Scan scan = read_scan(of(sizes, "space: LPS\nspace origin: (1,-2,3)\n" + fields));
+    expect_voxels(scan.grid);
+    EXPECT_TRUE(
+        scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(1 + 6, -2 + 0.5, 3 + 0.5)));
+  }
+  EXPECT_TRUE(read_scan(of("4 3 2 1", "spacings: 0.5 0.25 2 nan\nkinds: space space space time\n"))
+                  .grid.geometry()
+                  .spacing_mm.isApprox(Vec3(0.5, 0.25, 2)));
+  expect_voxels(read_scan(of("4 3 2 1",
+                             "space: LPST\nspace directions: (1,0,0,0) (0,1,0,0) (0,0,1,0) "
+                             "(0,0,0,2)\nspace origin: (0,0,0,0)\n"))
+                    .grid);
+  EXPECT_TRUE(contains(refusal(of("2 3 2 2", "spacings: 1 1 1 1\nkinds: list space space space\n")),
+                       "holds 2 volumes or values a voxel"));
+  EXPECT_TRUE(contains(refusal(of("4 3 1 2", "space: LPS\nspace directions: none none (1,0,0) (0,1,0)\n")),
+                       "2 of its 4 axes"));
+  std::string header = mha("", voxels<std::int16_t>());
+  header.replace(header.find("NDims = 3\nDimSize = 4 3 2"), 25,
+                 "NDims = 4\nDimSize = 4 3 2 1\nElementSpacing = 1 2 3 4\nOffset = 5 6 7 8\n"
+                 "TransformMatrix = 0 1 0 0 0 0 1 0 1 0 0 0 0 0 0 1");
+  const Scan scan = read_scan(write("a.mha", header));
+  expect_voxels(scan.grid);
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 1, 1)).isApprox(Vec3(5 + 3, 6 + 1, 7 + 2)));
+  header.replace(header.find("4 3 2 1"), 7, "2 3 2 2");
+  EXPECT_TRUE(contains(refusal(write("b.mha", header)), "holds 2 volumes"));
+}
+
 TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
   const std::string fields =
       "TransformMatrix = 0 1 0 0 0 1 1 0 0\nOffset = 1 -2 3\nElementSpacing = 0.5 0.25 2\n";
@@ -246,6 +347,24 @@ TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
   const std::string packed = zipped(voxels<std::int16_t>());
   const std::string size = "CompressedDataSize = " + std::to_string(packed.size()) + "\n";
   expect_voxels(read_scan(write("b.mha", mha(fields + "CompressedData = True\n" + size, packed))).grid);
+}
+
+// As ITK reads them, whose field names come in any order and whose unknown ones are passed over.
+TEST_F(VolumeFile, OddHeadersOfMetaImageAreRead) {
+  const std::string data = voxels<std::int16_t>();
+  const std::string odd =
+      "\n  \r\n# a comment\nComment = x = y\nElementType = met_short\nelementspacing = 0.5 0.25 2\r\n"
+      "DimSize : 4 3 2\nNoField\nOffset=1 -2 3\nndims = 3\nCompressedData = false\n\nELEMENTDATAFILE = "
+      "Local\n";
+  const Scan scan = read_scan(write("a.mha", odd + data));
+  expect_voxels(scan.grid);
+  EXPECT_TRUE(scan.warnings.empty());
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 1, 1)).isApprox(Vec3(1.5, -1.75, 5)));
+  std::string text;
+  for (int k = 0; k < kDims[2]; ++k)
+    for (int j = 0; j < kDims[1]; ++j)
+      for (int i = 0; i < kDims[0]; ++i) text += std::to_string(i + 10 * j + 100 * k - 50) + "\n";
+  expect_voxels(read_scan(write("b.mha", mha("BinaryData = False\n", text))).grid);
 }
 
 TEST_F(VolumeFile, CompressedDataSizeOfMetaImageIsCheckedWhereItIsThere) {

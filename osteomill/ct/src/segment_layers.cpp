@@ -1,0 +1,116 @@
+// The layers in which 3D Slicer keeps segments that may overlap (.seg.nrrd): SegmentN_Layer,
+// SegmentN_LabelValue.
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/parse_number.h"
+#include "osteomill/base/work_progress.h"
+
+#include "volume_file.h"
+
+namespace osteomill {
+
+namespace {
+
+// A segment's layer and its value in that.
+using Place = std::pair<std::uint64_t, float>;
+
+struct Segment {
+  Place place;
+  std::string value_key;
+};
+
+std::vector<Segment> segments_of(const std::map<std::string, std::string>& key_values) {
+  std::vector<Segment> segments;
+  for (int n = 0;; ++n) {
+    const auto number = [&](const char* what) -> std::optional<int> {
+      const auto found = key_values.find(fmt::format("Segment{}_{}", n, what));
+      return found == key_values.end() ? std::nullopt : parsed_number<int>(found->second);
+    };
+    const auto value = number("LabelValue");
+    if (!value) return segments;
+    segments.push_back(
+        {{static_cast<std::uint64_t>(std::max(0, number("Layer").value_or(0))), static_cast<float>(*value)},
+         fmt::format("Segment{}_LabelValue", n)});
+  }
+}
+
+bool a_value_has_two_layers(const std::set<Place>& places) {
+  std::set<float> values;
+  return std::any_of(places.begin(), places.end(),
+                     [&](const Place& place) { return !values.insert(place.second).second; });
+}
+
+// The layer in which a voxel has a value, and that value; {0, 0} where it has none. Throws InputError where
+// it has several.
+class Layers {
+ public:
+  Layers(const std::string& subject, const std::vector<float>& values, const VoxelLayers& layers)
+      : subject_(subject), values_(values), layers_(layers), voxels_(values.size() / layers.count) {}
+
+  std::uint64_t voxels() const { return voxels_; }
+  Place at(std::uint64_t voxel) const {
+    Place place{0, 0};
+    for (std::uint64_t layer = 0; layer < layers_.count; ++layer) {
+      const float value =
+          values_[layers_.run_fastest ? voxel * layers_.count + layer : layer * voxels_ + voxel];
+      if (value == 0) continue;
+      if (place.second != 0) {
+        throw InputError(subject_,
+                         fmt::format("has segments that overlap, in {} layers; save it as a label map "
+                                     "of one layer",
+                                     layers_.count));
+      }
+      place = {layer, value};
+    }
+    return place;
+  }
+
+ private:
+  const std::string& subject_;
+  const std::vector<float>& values_;
+  const VoxelLayers& layers_;
+  std::uint64_t voxels_;
+};
+
+}  // namespace
+
+std::vector<float> merge_layers(const std::string& subject, std::vector<float> values, VolumeHeader& header) {
+  const Layers layers(subject, values, header.layers);
+  const std::vector<Segment> segments = segments_of(header.key_values);
+  std::set<Place> places;
+  for (const Segment& segment : segments) places.insert(segment.place);
+  std::vector<float> merged;
+  merged.reserve(layers.voxels());
+  Place last{0, 0};
+  for (std::uint64_t voxel = 0; voxel < layers.voxels(); ++voxel) {
+    const Place place = layers.at(voxel);
+    if (place != last && place.second != 0) places.insert(last = place);
+    merged.push_back(place.second);
+    WorkProgress::done(0);
+  }
+  if (!a_value_has_two_layers(places)) return merged;
+  std::map<Place, float> numbers;
+  for (const Segment& segment : segments) {
+    const auto number = static_cast<float>(numbers.size() + 1);
+    header.key_values[segment.value_key] =
+        fmt::format("{}", numbers.emplace(segment.place, number).first->second);
+  }
+  for (const Place& place : places) numbers.emplace(place, static_cast<float>(numbers.size() + 1));
+  for (std::uint64_t voxel = 0; voxel < layers.voxels(); ++voxel) {
+    if (const Place place = layers.at(voxel); place.second != 0) merged[voxel] = numbers.at(place);
+  }
+  header.warnings.push_back(
+      fmt::format("has the same label values in several of its {} layers; its segments were numbered from 1",
+                  header.layers.count));
+  return merged;
+}
+
+}  // namespace osteomill
