@@ -49,8 +49,7 @@ void open_closed_streams() {
 // Flushes standard output, and returns an error's exit code if that or an earlier write failed.
 int end_output(int code) {
   if (code != kDone || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
-  return complain("standard output: cannot be written (is the disk full, or has its reader gone?)",
-                  kInputAtFault);
+  return complain(osteomill::with_reason("standard output: cannot be written").c_str(), kInputAtFault);
 }
 
 // Returns how the program was called, as it would be typed into a shell, the program as "osteomill".

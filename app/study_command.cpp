@@ -128,6 +128,8 @@ void status(const StudyFolder& folder) {
              record.slices());
   for (const fs::path& file : now.damaged)
     fmt::print("{} cannot be used: cut short, damaged, or of another study\n", file.string());
+  for (const fs::path& file : now.locked)
+    fmt::print("{} is locked by another program, and cannot be read now\n", file.string());
   if (now.missing.empty()) return;
   fmt::print("left: slices {}", ranges_text(now.missing));
   if (now.trials_done > 0) {
@@ -158,7 +160,9 @@ void run_here(BegunStudy& study, const std::vector<std::size_t>& slices, int thr
 }
 
 void run_missing(BegunStudy& study, const StudyOptions& options, std::size_t array_limit) {
-  const std::vector<std::size_t> missing = study_status(study.folder).missing;
+  const StudyStatus now = study_status(study.folder);
+  require_none_locked(now);
+  const std::vector<std::size_t>& missing = now.missing;
   if (!options.on.empty()) {
     submit_to_slurm(study.folder.path, missing, array_limit);
   } else {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -78,15 +79,16 @@ std::string header_of(const GridGeometry& geometry, const char* type) {
 template <typename Stored>
 void write_as(const char* type, const DensityGrid& grid, const std::filesystem::path& path,
               const std::filesystem::path& beside) {
+  errno = 0;
   std::ofstream header(beside);
   header << header_of(grid.geometry(), type);
   header.close();
   // Scans are large, and higher levels than 4 win little on noise.
   gzFile file = header ? gzopen(beside.c_str(), "ab4") : nullptr;
-  if (file == nullptr) throw InputError(path.string(), "cannot be created");
+  if (file == nullptr) throw InputError(path.string(), with_reason("cannot be created"));
   const bool written = write_values<Stored>(file, grid);
   if (gzclose(file) != Z_OK || !written)
-    throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+    throw InputError(path.string(), with_reason("cannot be written to its end"));
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include "osteomill/recording/hdf5.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include "osteomill/base/input_error.h"
 
@@ -17,6 +19,69 @@ std::mutex& hdf5_mutex() {
 
 constexpr std::size_t kMaxText = 60000;
 
+// A character of the private use area for each byte from 0x80 on.
+constexpr std::uint32_t kByteAsCharacter = 0xF700;
+
+// How many bytes the character takes that a text begins with, and which it is; no bytes where it is no UTF-8.
+struct Character {
+  std::size_t bytes = 0;
+  std::uint32_t code = 0;
+};
+Character first_character(std::string_view text) {
+  const auto byte = [&](std::size_t n) {
+    return static_cast<std::uint32_t>(static_cast<unsigned char>(text[n]));
+  };
+  const std::uint32_t first = byte(0);
+  if (first < 0x80) return {1, first};
+  const std::size_t bytes = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC0 || first >= 0xF8 || bytes > text.size()) return {};
+  std::uint32_t code = first & (0x7Fu >> bytes);
+  for (std::size_t n = 1; n < bytes; ++n) {
+    if ((byte(n) & 0xC0u) != 0x80) return {};
+    code = (code << 6u) | (byte(n) & 0x3Fu);
+  }
+  constexpr std::array<std::uint32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+  if (code < kLeast[bytes] || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) return {};
+  return {bytes, code};
+}
+
+bool stands_for_a_byte(const Character& character) {
+  return character.code >= kByteAsCharacter + 0x80 && character.code <= kByteAsCharacter + 0xFF;
+}
+
+std::string as_utf8(std::string_view bytes) {
+  std::string text;
+  while (!bytes.empty()) {
+    const Character character = first_character(bytes);
+    const std::size_t taken = std::max<std::size_t>(1, character.bytes);
+    if (character.bytes > 0 && !stands_for_a_byte(character)) {
+      text += bytes.substr(0, taken);
+    } else {
+      for (const char byte : bytes.substr(0, taken)) {
+        const std::uint32_t code = kByteAsCharacter + static_cast<unsigned char>(byte);
+        text += {static_cast<char>(0xE0u | (code >> 12u)), static_cast<char>(0x80u | ((code >> 6u) & 0x3Fu)),
+                 static_cast<char>(0x80u | (code & 0x3Fu))};
+      }
+    }
+    bytes.remove_prefix(taken);
+  }
+  return text;
+}
+
+std::string from_utf8(std::string_view text) {
+  std::string bytes;
+  while (!text.empty()) {
+    const Character character = first_character(text);
+    const std::size_t taken = std::max<std::size_t>(1, character.bytes);
+    if (stands_for_a_byte(character))
+      bytes += static_cast<char>(character.code - kByteAsCharacter);
+    else
+      bytes += text.substr(0, taken);
+    text.remove_prefix(taken);
+  }
+  return bytes;
+}
+
 }  // namespace
 
 Hdf5Lock::Hdf5Lock() : lock_(hdf5_mutex()) {
@@ -24,6 +89,13 @@ Hdf5Lock::Hdf5Lock() : lock_(hdf5_mutex()) {
   // disk left half-written. Before any other call, or it has no effect.
   [[maybe_unused]] static const herr_t asked = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  errno = 0;
+}
+
+Hdf5Handle access_without_locks() {
+  Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access.get(), false, true);
+  return access;
 }
 
 void Attributes::write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
@@ -36,7 +108,8 @@ void Attributes::write(const std::string& name, hid_t file_type, hid_t memory_ty
   }
 }
 
-void Attributes::put(const std::string& name, const std::string& text) const {
+void Attributes::put(const std::string& name, const std::string& bytes) const {
+  const std::string text = as_utf8(bytes);
   if (text.size() > kMaxText) {
     throw std::invalid_argument("the text of '" + name + "' is too long for a recording");
   }
@@ -97,7 +170,7 @@ void Attributes::get(const std::string& name, std::string& text) const {
   if (H5Aread(attribute.get(), type.get(), text.data()) < 0) {
     throw InputError(file_.string(), "the attribute '" + name + "' cannot be read");
   }
-  text.resize(std::min(size, text.find('\0')));
+  text = from_utf8(std::string_view(text).substr(0, std::min(size, text.find('\0'))));
 }
 
 double Attributes::real_or_infinite(const std::string& name) const {

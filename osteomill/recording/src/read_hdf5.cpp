@@ -123,8 +123,7 @@ Hdf5File open_hdf5(const fs::path& path) {
   std::error_code error;
   Hdf5File file{path, fs::file_size(path, error), {}};
   if (H5Fis_hdf5(path.c_str()) <= 0) file.refuse("is not an HDF5 file");
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access.get(), false, true);
+  const Hdf5Handle access = access_without_locks();
   file.handle = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file.handle.valid()) file.refuse("cannot be opened: it is cut short or damaged");
   require_nothing_elsewhere(file);

@@ -3,6 +3,8 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <thread>
 
@@ -118,6 +120,33 @@ TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {
   EXPECT_EQ(read.pictures[0].name, "after");
   EXPECT_EQ(read.pictures[1].name, "before");
   EXPECT_EQ(read.pictures[1].png, png);
+}
+
+// A path in Latin-1, and texts that are no UTF-8 for other reasons: in the file they are, and come back.
+TEST(Recorder, BytesThatAreNoUtf8AreStoredAsUtf8AndComeBack) {
+  const TestFolder folder;
+  for (const std::string name : {"Sch\xE4"
+                                 "del.nrrd",
+                                 "\xC0\x80\xED\xA0\x80\xF5", "\xE2\x82",
+                                 "Sch\xC3\xA4"
+                                 "del",
+                                 "\xEF\x9F\xA4 \xF0\x9F\xA6\xB4"}) {
+    RunDescription run = sample_description();
+    run.scan_name = name;
+    Recorder(folder / "run.h5", run).close();
+    EXPECT_EQ(read_recording(folder / "run.h5").description.scan_name, name);
+    fs::remove(folder / "run.h5");
+  }
+  RunDescription run = sample_description();
+  run.scan_name =
+      "Sch\xE4"
+      "del.nrrd";
+  Recorder(folder / "run.h5", run).close();
+  std::ifstream file(folder / "run.h5", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(bytes.find("Sch\xEF\x9F\xA4"
+                       "del.nrrd"),
+            std::string::npos);
 }
 
 TEST(Recorder, ARunOfNoTicksReadsBackAsOne) {
@@ -337,7 +366,7 @@ TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
       try {
         for (int tick = 0; tick < 10'000'000; ++tick) recorder->push_waiting(sample_record(tick));
       } catch (const InputError& error) {
-        told = std::string(error.what()).find("is the disk full?") != std::string::npos;
+        told = std::string(error.what()).find("File too large") != std::string::npos;
       }
       bool told_at_close = false;
       try {

@@ -93,10 +93,8 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
   H5Pset_userblock(layout.get(), kUserBlockBytes);
   // Rewritten data go to a new place: until the next flush the file on the disk refers to the old one.
   H5Pset_file_space_strategy(layout.get(), H5F_FSPACE_STRATEGY_NONE, false, 1);
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const Hdf5Handle access = access_without_locks();
   H5Pset_evict_on_close(access.get(), true);
-  // A recorder holds its file by a lock of its own (FileLock).
-  H5Pset_file_locking(access.get(), false, true);
   file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, layout.get(), access.get()), H5Fclose);
   try {
     require(file_.valid(), "cannot be created");
@@ -122,7 +120,7 @@ void RecordingFile::lay_out(const RunDescription& description) {
   create_columns();
   create_group(file_.get(), "pictures");
   create_group(file_.get(), "sessions");
-  require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written (is the disk full?)");
+  require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
   require(keep_metadata_until_flush(file_.get()), "cannot be set up for writing");
 }
 
@@ -167,13 +165,14 @@ void RecordingFile::reserve(std::uint64_t bytes) {
     error = ::posix_fallocate(descriptor(), static_cast<::off_t>(reserved_),
                               static_cast<::off_t>(wanted - reserved_));
   }
-  require(error == 0, "cannot be written (is the disk full?)");
+  errno = error;
+  require(error == 0, "cannot be written");
   reserved_ = wanted;
 }
 
 Hdf5Handle RecordingFile::create_group(hid_t in, const std::string& name) const {
   Hdf5Handle group(H5Gcreate2(in, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  require(group.valid(), "cannot be written (is the disk full?)");
+  require(group.valid(), "cannot be written");
   return group;
 }
 
@@ -221,7 +220,7 @@ RecordingFile::Column RecordingFile::create_column(hid_t group, const char* name
 }
 
 void RecordingFile::require(bool ok, const char* what) const {
-  if (!ok) throw InputError(path_.string(), what);
+  if (!ok) throw InputError(path_.string(), with_reason(what));
 }
 
 void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) {
@@ -334,14 +333,14 @@ void RecordingFile::append_to(Column& column, std::span<const Value> values) con
        H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, from.data(), nullptr, count.data(), nullptr) >= 0;
   ok = ok &&
        H5Dwrite(dataset, memory_type<Value>(), memory.get(), space.get(), H5P_DEFAULT, values.data()) >= 0;
-  require(ok, "cannot be written (is the disk full?)");
+  require(ok, "cannot be written");
   column.rows = all[0];
 }
 
 void RecordingFile::flush(std::uint64_t dropped) {
   const Hdf5Lock lock;
   Attributes(path_, file_.get()).replace("dropped_records", dropped);
-  require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written (is the disk full?)");
+  require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
   if (++flushes_ % kFlushesRemembered == 0) forget_flushed_metadata();
 }
 
@@ -372,7 +371,7 @@ void RecordingFile::add_picture(const std::string& name, std::span<const unsigne
                            H5Dclose);
   require(dataset.valid() &&
               H5Dwrite(dataset.get(), H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, png.data()) >= 0,
-          "a picture cannot be written (is the disk full?)");
+          "a picture cannot be written");
 }
 
 void RecordingFile::add_setting(const RunSetting& setting) {
@@ -387,11 +386,12 @@ void RecordingFile::finish(std::uint64_t dropped) {
   const Attributes write(path_, file_.get());
   write.replace("dropped_records", dropped);
   write.replace("complete", 1);
-  require(close(), "cannot be written to its end (is the disk full?)");
+  require(close(), "cannot be written to its end");
   write_checksum(path_);
 }
 
 void write_checksum(const fs::path& path) {
+  errno = 0;
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekg(kUserBlockBytes);
   const unsigned long crc = crc32_of_rest(file);
@@ -399,7 +399,7 @@ void write_checksum(const fs::path& path) {
   file.seekp(0);
   file << seal_line(crc);
   file.close();
-  if (!file) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+  if (!file) throw InputError(path.string(), with_reason("cannot be written to its end"));
   const std::lock_guard lock(own_mutex);
   own_checksums.insert(crc);
 }

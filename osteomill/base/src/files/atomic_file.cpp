@@ -66,7 +66,7 @@ void write_into(const fs::path& path, const std::function<void(const fs::path&)>
   // To copy nothing counts as a failure.
   if (!fs::is_empty(whole)) out << std::ifstream(whole, std::ios::binary).rdbuf();
   out.close();
-  if (!out) throw InputError(path.string(), "cannot be written to its end");
+  if (!out) throw InputError(path.string(), with_reason("cannot be written to its end"));
 }
 
 void rename_to(const fs::path& from, const fs::path& target, const fs::path& path) {
@@ -190,11 +190,12 @@ void write_file_atomically(const fs::path& path, const std::function<void(const 
 
 void write_text_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   write_file_atomically(path, [&](const fs::path& beside) {
+    errno = 0;
     std::ofstream out(beside, std::ios::binary);
-    if (!out) throw InputError(path.string(), "cannot be created");
+    if (!out) throw InputError(path.string(), with_reason("cannot be created"));
     write(out);
     out.close();
-    if (!out) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+    if (!out) throw InputError(path.string(), with_reason("cannot be written to its end"));
   });
 }
 

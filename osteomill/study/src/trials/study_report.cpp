@@ -162,6 +162,7 @@ std::string list_row(const StudyDesign& design, std::size_t number) {
 fs::path write_study_report(const StudyDesign& design, const StudyFolder& study, Unreached unreached) {
   std::vector<TrialRow> rows;
   const StudyStatus status = study_status(study, &rows);
+  require_none_locked(status);
   if (rows.empty()) throw InputError(study.path.string(), "has no trial that is done");
   const std::set<std::size_t> short_of = unreached_trials(rows);
   if (unreached == Unreached::dropped) {

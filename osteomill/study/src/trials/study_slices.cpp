@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/base/atomic_file.h"
+#include "osteomill/base/file_lock.h"
 #include "osteomill/base/input_error.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/read_hdf5.h"
@@ -53,10 +54,11 @@ void add_text(WordHash& hash, std::string_view text) {
 void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& write) {
   write_file_atomically(path, [&](const fs::path& beside) {
     const Hdf5Lock lock;
-    Hdf5Handle file(H5Fcreate(beside.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    if (!file.valid()) throw InputError(path.string(), "cannot be created");
+    const Hdf5Handle access = access_without_locks();
+    Hdf5Handle file(H5Fcreate(beside.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+    if (!file.valid()) throw InputError(path.string(), with_reason("cannot be created"));
     write(file.get());
-    if (!file.close()) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+    if (!file.close()) throw InputError(path.string(), with_reason("cannot be written to its end"));
   });
 }
 
@@ -74,7 +76,7 @@ void write_dataset(const fs::path& path, hid_t file, const char* name, const std
   const Hdf5Handle dataset(H5Dcreate2(file, name, type, space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT),
                            H5Dclose);
   if (!dataset.valid() || H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    throw InputError(path.string(), fmt::format("'{}' cannot be written (is the disk full?)", name));
+    throw InputError(path.string(), with_reason(fmt::format("'{}' cannot be written", name)));
 }
 
 // Reads a dataset of `rows` rows. Throws if it has another number of rows.
@@ -261,9 +263,11 @@ std::optional<Slice> slice_of(const SliceContent& content, const StudyFolder& st
 }  // namespace
 
 std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number) {
+  const fs::path path = slice_path(study.path, number);
+  if (is_locked(path)) throw InputError(path.string(), "is locked by another program");
   try {
-    const auto content = read_hdf5(slice_path(study.path, number),
-                                   [&](const Hdf5File& file) { return content_of(file, study, number); });
+    const auto content =
+        read_hdf5(path, [&](const Hdf5File& file) { return content_of(file, study, number); });
     return slice_of(content, study, number);
   } catch (const InputError&) {
     return std::nullopt;
@@ -273,6 +277,10 @@ std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number) {
 StudyStatus study_status(const StudyFolder& study, std::vector<TrialRow>* rows) {
   StudyStatus status;
   for (std::size_t number = 0; number < study.record.slices(); ++number) {
+    if (fs::path path = slice_path(study.path, number); is_locked(path)) {
+      status.locked.push_back(std::move(path));
+      continue;
+    }
     std::optional<Slice> slice = read_slice(study, number);
     if (slice) {
       if (rows != nullptr) std::ranges::move(slice->rows, std::back_inserter(*rows));
@@ -287,6 +295,11 @@ StudyStatus study_status(const StudyFolder& study, std::vector<TrialRow>* rows) 
       status.damaged.push_back(path);
   }
   return status;
+}
+
+void require_none_locked(const StudyStatus& status) {
+  if (!status.locked.empty())
+    throw InputError(status.locked.front().string(), "is locked by another program");
 }
 
 }  // namespace osteomill

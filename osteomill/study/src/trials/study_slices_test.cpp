@@ -11,6 +11,7 @@
 #include <hdf5.h>
 #include <sys/stat.h>
 
+#include "osteomill/base/file_lock.h"
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/temporary_folder.h"
 #include "osteomill/recording/recording.h"
@@ -95,6 +96,20 @@ TEST(StudySlices, RowsComeBackAsTheyWere) {
     }
     EXPECT_TRUE(std::isnan(back->rows[n].run.metrics.contacts_mean));
   }
+}
+
+TEST(StudySlices, WhatAnotherProgramHoldsIsNeitherDoneNorMissing) {
+  const TemporaryFolder folder;
+  const StudyFolder study{folder.path(), sample_record()};
+  for (std::size_t n = 0; n < 3; ++n) write_slice(study, sample_slice(study.record, n));
+  EXPECT_NO_THROW(require_none_locked(study_status(study)));
+  const auto lock = FileLock::of(slice_path(folder.path(), 1));
+  const StudyStatus status = study_status(study);
+  EXPECT_EQ(status.locked, std::vector<fs::path>{slice_path(folder.path(), 1)});
+  EXPECT_TRUE(status.missing.empty() && status.damaged.empty());
+  EXPECT_EQ(status.trials_done, 3u);
+  EXPECT_THROW(require_none_locked(status), InputError);
+  EXPECT_THROW(read_slice(study, 1), InputError);
 }
 
 TEST(StudySlices, WhatIsCutShortDamagedOrOfAnotherStudyIsMissing) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cerrno>
 #include <exception>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace osteomill {
 
@@ -28,6 +30,12 @@ class InputError : public std::runtime_error {
   InputError(std::string_view subject, std::string_view reason)
       : std::runtime_error(in_one_line(std::string(subject) + ": " + std::string(reason))) {}
 };
+
+/// Returns `what` with the system's reason for a failed call behind it ("cannot be written: No space left on
+/// device"); `what` alone if `error` (errno) is 0.
+inline std::string with_reason(const std::string& what, int error = errno) {
+  return error == 0 ? what : what + ": " + std::generic_category().message(error);
+}
 
 /// Returns what an exception says, in one line. `failure` is not null.
 inline std::string reason_of(const std::exception_ptr& failure) {

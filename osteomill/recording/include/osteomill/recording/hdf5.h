@@ -17,7 +17,7 @@
 namespace osteomill {
 
 /// To be held while HDF5 is called: the library is not safe in two threads at once. Also switches off its
-/// printing of errors, which are thrown as InputError instead.
+/// printing of errors, which are thrown as InputError instead, and clears errno, which tells their reason.
 class Hdf5Lock {
  public:
   Hdf5Lock();
@@ -60,7 +60,12 @@ class Hdf5Handle {
   Closer closer_ = nullptr;
 };
 
-/// Greater numbers overflow in sums of squares, and are refused when they are read.
+/// Returns how a file is opened or created without a lock of HDF5's, which some file systems (NFS, Lustre) do
+/// not have: what is read is whole, since files appear by being renamed, and what is written is held by a
+/// FileLock or has a name of its own until it is whole.
+Hdf5Handle access_without_locks();
+
+/// Greater numbers overflow in sums of squares, and are refused where they are read.
 inline constexpr double kMostReal = 1e12;
 
 /// HDF5's name for what stands in memory.
@@ -86,7 +91,9 @@ class Attributes {
  public:
   Attributes(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
 
-  /// Throws std::invalid_argument for a text of more than 60000 bytes, which HDF5 would not store.
+  /// Writes a text as UTF-8. Bytes that are none, as those of some paths, become characters of their own
+  /// (U+F780 to U+F7FF), of which `get` makes the same bytes again. Throws std::invalid_argument for a text
+  /// of more than 60000 bytes, which HDF5 would not store.
   void put(const std::string& name, const std::string& text) const;
   void put(const std::string& name, double value) const { put_reals(name, {&value, 1}); }
   void put(const std::string& name, std::uint64_t value) const;

@@ -72,8 +72,8 @@ Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<
 /// Written under another name and renamed. Throws InputError if it cannot be written.
 void write_slice(const StudyFolder& study, const Slice& slice);
 
-/// Returns a slice; nothing if there is no such file, or it is cut short, damaged, or of another study, so
-/// that it must be run (again).
+/// Nothing where there is no such file, or it is cut short, damaged, or of another study: it is to be run
+/// (again). Throws InputError where another program holds a lock on it.
 std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number);
 
 /// The progress of a study, by the files of its folder; the rows that these hold are put behind `rows`.
@@ -85,7 +85,11 @@ struct StudyStatus {
   double cpu_s = 0;
   /// Files that are there and cannot be used.
   std::vector<std::filesystem::path> damaged;
+  /// Files on which another program holds a lock: neither done nor missing, as far as anybody can tell.
+  std::vector<std::filesystem::path> locked;
 };
+/// Throws InputError if a file is locked, and what is done therefore not known.
+void require_none_locked(const StudyStatus& status);
 StudyStatus study_status(const StudyFolder& study, std::vector<TrialRow>* rows = nullptr);
 
 }  // namespace osteomill
