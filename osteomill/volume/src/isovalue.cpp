@@ -196,8 +196,15 @@ bool touches(const DensityGrid& grid, double isovalue, std::size_t axis, int pla
   return static_cast<double>(bone) > kTouchingShare * dims[across] * dims[up];
 }
 
-// Suggests an isovalue from samples in ascending order.
-SuggestedIsovalue isovalue_of_bone(std::span<const Sample> samples, bool in_hounsfield_units) {
+struct Choice {
+  double value = 0;
+  std::string how;
+  // Halfway between two densities, whatever these are of: the densities have no scale that is known.
+  bool is_halfway = false;
+};
+
+// Of samples that ascend.
+Choice isovalue_of_bone(std::span<const Sample> samples, bool in_hounsfield_units) {
   if (!(samples.back().density > samples.front().density)) {
     return {samples.front().density, "the only density there is"};
   }
@@ -217,8 +224,10 @@ SuggestedIsovalue isovalue_of_bone(std::span<const Sample> samples, bool in_houn
             fmt::format("{:g} above water; the densities are spaced as Hounsfield units are{}", kBone_HU,
                         *found.water == 0 ? "" : ", with another zero")};
   }
-  return {halfway, fmt::format("halfway between the commonest densities, {:.4g} below and {:.4g} above",
-                               found.around, found.bone)};
+  return {halfway,
+          fmt::format("halfway between the commonest densities, {:.4g} below and {:.4g} above", found.around,
+                      found.bone),
+          true};
 }
 
 constexpr std::size_t kLevels = 200;
@@ -312,19 +321,31 @@ std::vector<Boundary> boundaries_in(const DensityGrid& grid) {
   return boundaries_of(samples);
 }
 
+namespace {
+
+// Whether the isovalue bounds what the boundary bounds. One that is halfway between two densities may lie far
+// from where the boundary is sharpest, and then bounds something else: the skin, if this is the bone's.
+bool lies_on(const Choice& chosen, const Boundary& boundary) {
+  constexpr double kNear = 0.18;
+  const double off = std::abs(chosen.value - boundary.density) / (boundary.above - boundary.below);
+  return boundary.below < chosen.value && chosen.value < boundary.above &&
+         (!chosen.is_halfway || off < kNear);
+}
+
+}  // namespace
+
 SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units) {
   std::vector<Sample> samples = samples_of(grid);
   std::vector<Boundary> boundaries = boundaries_of(samples);
   std::sort(samples.begin(), samples.end(), is_less_dense);
-  SuggestedIsovalue suggested = isovalue_of_bone(samples, in_hounsfield_units);
-  suggested.boundaries = std::move(boundaries);
+  Choice chosen = isovalue_of_bone(samples, in_hounsfield_units);
   std::string others;
-  for (const Boundary& boundary : suggested.boundaries) {
-    if (boundary.below < suggested.value && suggested.value < boundary.above) continue;
-    others += fmt::format("{}{:.4g}", others.empty() ? "" : " and ", boundary.density);
+  for (const Boundary& boundary : boundaries) {
+    if (!lies_on(chosen, boundary))
+      others += fmt::format("{}{:.4g}", others.empty() ? "" : " and ", boundary.density);
   }
-  if (!others.empty()) suggested.how += fmt::format("; a guess, with other boundaries at {}", others);
-  return suggested;
+  if (!others.empty()) chosen.how += fmt::format("; a guess, with other boundaries at {}", others);
+  return {chosen.value, std::move(chosen.how), std::move(boundaries)};
 }
 
 bool is_within(const DensityGrid& grid, double isovalue) {

@@ -43,10 +43,10 @@ inline constexpr double kBone_HU = 260;
 /// - else halfway between the commonest density of the bone and of what is around it (half-maximum height;
 ///   Spoor et al. 1993), but in Hounsfield units never under 260.
 /// Commonest is counted where densities hardly change from voxel to voxel, so not in blurred edges (Panda and
-/// Rosenfeld 1978), on either side of the threshold of Otsu 1979. A guess, and said to be one, if the scan
-/// has another boundary than the one on which it lies. Always strictly between the grid's least
-/// and greatest density; if all are equal, that density. Looks at some four million voxels at the most.
-/// Not for the tick.
+/// Rosenfeld 1978), on either side of the threshold of Otsu 1979. A guess, and said to be one, where the scan
+/// has another boundary than the one on which it lies, or is sharpest elsewhere than halfway. Always strictly
+/// between the grid's least and greatest density; where all are equal, that density. Looks at some four
+/// million voxels at the most. Not for the tick.
 SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units = false);
 
 /// Returns whether there are both bone and something else at this isovalue. Goes through the grid; not for
