@@ -58,7 +58,7 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
           [](auto& s) -> auto& { return s.labels.map; }),
       field<S>(
           text("label-table", "FILE", app::kOfWhatIsBone,
-               "Colour table of 3D Slicer with names and colours of the labels"),
+               "Names and colours of labels: a colour table of 3D Slicer's or a label file of ITK-SNAP's"),
           [](auto& s) -> auto& { return s.labels.table; }),
       {no_go, [](const S& s) { return fmt::format("{}", fmt::join(s.labels.no_go, ",")); },
        [](S& s, const std::string& labels) {

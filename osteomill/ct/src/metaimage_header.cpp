@@ -137,7 +137,7 @@ GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& w
       matrix.empty() ? Mat3(Mat3::Identity()) : axes_of(fields, matrix, count),
       origin.empty() ? Vec3(Vec3::Zero())
                      : checked_point(subject, origin, first_three(fields, origin, count)),
-      millimetres_in(subject, lower(fields["DistanceUnits"])));
+      millimetres_in(subject, lower(fields["DistanceUnits"])), warnings);
 }
 
 void check_grey(const HeaderFields& fields) {

@@ -293,8 +293,8 @@ GridGeometry geometry_of(const HeaderFields& fields, const Axes& axes, std::vect
     if (has_time && values.size() == 4) values.pop_back();
     origin = space_unit_mm.cwiseProduct(checked_point(subject, "space origin", values));
   }
-  return checked_geometry(subject, sizes, spacing, steps, origin, 1,
-                          lps_from_space(subject, lower(fields["space"]), warnings));
+  const Vec3 lps_from_axes = lps_from_space(subject, lower(fields["space"]), warnings);
+  return checked_geometry(subject, sizes, spacing, steps, origin, 1, warnings, lps_from_axes);
 }
 
 StoredVoxels voxels_of(const fs::path& path, const Header& header, std::ifstream in, std::uint64_t count) {

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <new>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,6 +17,7 @@
 #include "byte_source.h"
 #include "dicom_file.h"
 #include "header_text.h"
+#include "label_table.h"
 #include "volume_file.h"
 
 namespace osteomill {
@@ -26,16 +25,6 @@ namespace osteomill {
 namespace fs = std::filesystem;
 
 namespace {
-
-using Colour = std::array<std::uint8_t, 3>;
-
-// How a label is called and shown, as far as a file says so.
-struct LabelStyle {
-  std::string name;
-  std::optional<Colour> colour;
-};
-// By the label's value.
-using LabelTable = std::map<int, LabelStyle>;
 
 // By value, in its order: how many voxels have it and its place among the labels.
 struct FoundLabel {
@@ -172,157 +161,6 @@ std::optional<std::string> cover_warning(const FoundLabels& found, const GridGeo
   return fmt::format("{}: {:.0f} % of what it labels lies outside the scan", subject, 100 * (1 - share));
 }
 
-// Longer names than this are no names; and control characters are none.
-constexpr std::size_t kMaxName = 100;
-std::string usable_name(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
-  return trimmed(name.substr(0, kMaxName));
-}
-
-LabelTable table_of(const std::vector<LabelName>& names) {
-  LabelTable table;
-  for (const LabelName& label : names) table[label.value] = {usable_name(label.name), label.colour};
-  return table;
-}
-
-std::optional<Colour> colour_of(const std::vector<double>& channels, double white) {
-  Colour colour{};
-  if (channels.size() < colour.size()) return std::nullopt;
-  for (std::size_t n = 0; n < colour.size(); ++n) {
-    const double level = std::round(255 * channels[n] / white);
-    if (!(level >= 0 && level <= 255)) return std::nullopt;
-    colour[n] = static_cast<std::uint8_t>(level);
-  }
-  return colour;
-}
-
-std::optional<int> whole_number(const std::string& text) {
-  constexpr double kMax = 1e9;
-  const auto numbers = parse_numbers(text);
-  if (!numbers || numbers->size() != 1 || !(std::abs(numbers->front()) <= kMax) ||
-      numbers->front() != std::floor(numbers->front())) {
-    return std::nullopt;
-  }
-  return static_cast<int>(numbers->front());
-}
-
-// "value name red green blue alpha", of which the name may be several words.
-bool add_line(const std::string& line, LabelTable& table) {
-  constexpr std::size_t kChannels = 4;
-  std::istringstream in(line);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  if (words.size() < kChannels + 2) return false;
-  std::string name, channels;
-  for (std::size_t n = 1; n < words.size(); ++n) {
-    std::string& text = n + kChannels < words.size() ? name : channels;
-    text += (text.empty() ? "" : " ") + words[n];
-  }
-  const auto value = whole_number(words.front());
-  const auto numbers = parse_numbers(channels);
-  const auto colour = numbers ? colour_of(*numbers, 255) : std::nullopt;
-  if (!value || !colour) return false;
-  // Slicer writes names as one word.
-  std::replace(name.begin(), name.end(), '_', ' ');
-  table[*value] = {usable_name(name), colour};
-  return true;
-}
-
-// Throws InputError, naming the file and the line.
-LabelTable read_label_table(const fs::path& path) {
-  constexpr std::uintmax_t kMaxBytes = 1 << 20;
-  const std::string subject = path.string();
-  std::ifstream in = open_regular_file(subject, path);
-  LabelTable table;
-  if (fs::file_size(path) > kMaxBytes) throw InputError(subject, "is too long for a table of labels");
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    line = trimmed(line);
-    if (line.empty() || line.starts_with('#')) continue;
-    if (!add_line(line, table)) {
-      throw InputError(
-          subject,
-          fmt::format("line {} is not \"value name red green blue alpha\", colours from 0 to 255", number));
-    }
-  }
-  if (table.empty()) throw InputError(subject, "has no labels");
-  return table;
-}
-
-// Returns the labels in the key/value pairs of a segmentation of 3D Slicer's (.seg.nrrd): Segment0_Name,
-// _Color (three numbers from 0 to 1) and _LabelValue, and so on from 0. Throws InputError naming `subject`.
-LabelTable label_table_of(const std::string& subject, const std::map<std::string, std::string>& key_values) {
-  LabelTable table;
-  for (int n = 0;; ++n) {
-    const auto find = [&](const char* what) { return key_values.find(fmt::format("Segment{}_{}", n, what)); };
-    const auto name = find("Name"), value = find("LabelValue"), colour = find("Color");
-    const auto end = key_values.end();
-    if (name == end && value == end) return table;
-    // Segmentations from before there were label values have them in order, from 1.
-    const auto label = value == end ? n + 1 : whole_number(value->second);
-    if (!label) {
-      throw InputError(subject, fmt::format("has a Segment{}_LabelValue that is not a whole number", n));
-    }
-    LabelStyle style;
-    if (name != end) style.name = usable_name(name->second);
-    if (colour != end) {
-      if (const auto channels = parse_numbers(colour->second)) style.colour = colour_of(*channels, 1);
-    }
-    table[*label] = style;
-  }
-}
-
-// Labels on a grid of their own.
-struct OwnLabels {
-  const GridGeometry& geometry;
-  std::vector<float> values;
-  LabelTable table;
-};
-
-// Puts labels on the grid of a scan. Errors and warnings name `subject`.
-LabelsRead put_on(const GridGeometry& scan, const std::string& subject, OwnLabels own,
-                  const LabelFiles& files) {
-  if (!files.table.empty()) {
-    LabelTable given = read_label_table(files.table);
-    given.merge(own.table);
-    own.table = std::move(given);
-  }
-  LabelsRead read;
-  const FoundLabels found = find_labels(subject, own.values);
-  std::vector<Label> labels = make_labels(found, own.table, files);
-  if (!files.table.empty()) {
-    if (auto warning = not_in_table(own.table, labels, files)) read.warnings.push_back(*std::move(warning));
-  }
-  const auto map =
-      std::make_shared<const LabelMap>(std::move(labels), scan, own.geometry, places_of(own.values, found));
-  if (map->box().empty()) {
-    throw InputError(subject, fmt::format("labels nothing of the scan: it lies at {}, the scan at {}",
-                                          extent_text(own.geometry), extent_text(scan)));
-  }
-  if (auto warning = cover_warning(found, own.geometry, *map, subject))
-    read.warnings.push_back(*std::move(warning));
-  read.map = map;
-  return read;
-}
-
-// Reads the labels of a DICOM segmentation.
-LabelsRead read_segmentation_labels(const LabelFiles& files, const GridGeometry& scan,
-                                    std::uint64_t max_memory_bytes) {
-  const std::string subject = files.map.string();
-  const ReadOptions options{.series = "", .max_memory_bytes = max_memory_bytes};
-  const bool is_one_file = fs::is_regular_file(files.map) && lower(files.map.extension().string()) != ".zip";
-  const std::optional<Scan> found =
-      is_one_file ? read_dicom(files.map, options) : std::optional(read_scan(files.map, options));
-  if (!found || found->labels.empty())
-    throw InputError(subject, "is not a label map: neither a DICOM segmentation nor by its name another");
-  const Scan& own = *found;
-  LabelsRead read = put_on(
-      scan, subject, {own.grid.geometry(), every_nth_density(own.grid, 1), table_of(own.labels)}, files);
-  for (const std::string& warning : own.warnings) read.warnings.push_back(subject + ": " + warning);
-  return read;
-}
-
 }  // namespace
 
 LabelsRead labels_in(const Scan& scan, const LabelFiles& files) {
@@ -343,7 +181,7 @@ LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan, std::u
     if (format == nullptr) return read_segmentation_labels(files, scan, max_memory_bytes);
     VolumeHeader header = format->read_header(files.map);
     const std::vector<float> values = read_volume(subject, header, max_memory_bytes);
-    LabelTable table = label_table_of(subject, header.key_values);
+    LabelTable table = label_table_of(subject, header);
     if (!files.table.empty()) {
       LabelTable given = read_label_table(files.table);
       given.merge(table);

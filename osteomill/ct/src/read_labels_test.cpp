@@ -1,5 +1,7 @@
 #include "osteomill/ct/read_labels.h"
 
+#include <cstring>
+
 #include "tests/support/folder_test.h"
 
 namespace osteomill {
@@ -103,6 +105,76 @@ TEST_F(ReadLabels, TakesNamesAndColoursOfATableBeforeTheFilesOwn) {
   EXPECT_TRUE(contains(read.warnings[0], "a.ctbl: has no entry for label 3")) << read.warnings[0];
 }
 
+TEST_F(ReadLabels, TakesNamesAndColoursOfItkSnapsLabelFiles) {
+  const auto file = write("a.nrrd", map_of("0 26 93 26 0 0 0 0"));
+  const auto table = write("snap.txt",
+                           "################\n# ITK-SnAP Label Description File\n"
+                           "    0     0    0    0        0  0  0    \"Clear Label\"\r\n"
+                           "   26   230  230  150        1  1  1    \"mandible, left\"\n"
+                           "   93   100  100  230      0.5  1  1    \"the \"canal\"\"\n");
+  const LabelsRead read = read_labels({file, table, {"mandible, left"}}, scan());
+  EXPECT_EQ(read.map->labels()[0], (Label{26, "mandible, left", {230, 230, 150}, true}));
+  EXPECT_EQ(read.map->labels()[1], (Label{93, "the \"canal\"", {100, 100, 230}, false}));
+  EXPECT_TRUE(read.warnings.empty());
+  for (const char* line :
+       {"1 2 3 4 1 1 \"six\"", "1 2 3 400 1 1 1 \"bright\"", "1.5 2 3 4 1 1 1 \"half\"", "\""})
+    EXPECT_TRUE(contains(refusal_of({file, write("bad.txt", line), {}}), "line 1 is neither")) << line;
+}
+
+// A NIfTI-1 file of 2 x 2 x 2 labels with an extension of such a text.
+std::string nifti_with(std::string text) {
+  std::string bytes(352, '\0');
+  const auto set = [&](std::size_t offset, auto value) {
+    std::memcpy(bytes.data() + offset, &value, sizeof(value));
+  };
+  text.resize((text.size() + 8 + 15) / 16 * 16 - 8);
+  set(0, std::int32_t{348});
+  for (const auto& [offset, value] : {std::pair{40, 3}, {42, 2}, {44, 2}, {46, 2}, {70, 2}, {72, 8}})
+    set(static_cast<std::size_t>(offset), static_cast<std::int16_t>(value));
+  for (const std::size_t offset : {76u, 80u, 84u, 88u}) set(offset, 1.0F);
+  set(108, static_cast<float>(352 + 8 + text.size()));
+  set(252, std::int16_t{1});
+  bytes.replace(344, 3, "n+1");
+  bytes[348] = 1;
+  const auto size = static_cast<std::int32_t>(8 + text.size());
+  bytes.append(reinterpret_cast<const char*>(&size), 4);
+  return bytes + std::string(4, '\0') + text + std::string("\0\x1a\x5d\0\0\0\0\0", 8);
+}
+
+TEST_F(ReadLabels, TakesNamesOfAnExtensionOfNifti) {
+  const std::string head = "<?xml version=\"1.0\"?><CaretExtension><VolumeInformation><LabelTable>";
+  const std::string tail = "</LabelTable></VolumeInformation></CaretExtension>\n";
+  for (const std::string& text :
+       {head +
+            "<Label Key=\"26\" Red=\"1\" Green=\"0.5\" Blue=\"0\" Alpha=\"1\"><![CDATA[S1 & L5]]></Label>"
+            "<Label Alpha='1' Key='93'>rib</Label>" +
+            tail,
+        head +
+            "<Label Blue=\"0\" Green=\"0.5\" Red=\"1\" Key=\"26\">S1 &amp; L5</Label><Label "
+            "Key=\"93\">rib</Label>" +
+            tail,
+        std::string("{\"26\": \"S1 & L5\", \"93\": \"rib\"}"),
+        std::string("{\"version\": 2, \"labels\": {\"background\": 0, \"S1 & L5\": 26, \"rib\": 93}}"),
+        std::string("{\"segments\": [{\"value\": 26, \"name\": \"S1 & L5\", \"color\": [255, 128, 0]},"
+                    "{\"value\": \"93\", \"name\": \"rib\"}]}")}) {
+    const auto file = write("a.nii", nifti_with(text));
+    GridGeometry lps = scan();
+    lps.direction.diagonal() = Vec3(-1, -1, 1);
+    const LabelsRead read = read_labels({file, {}, {"rib"}}, lps);
+    ASSERT_EQ(read.map->labels().size(), 2u);
+    EXPECT_EQ(read.map->labels()[0].name, "S1 & L5") << text;
+    EXPECT_EQ(read.map->labels()[1].name, "rib") << text;
+    const bool has_colour = contains(text, "Red") || contains(text, "color");
+    EXPECT_EQ((read.map->labels()[0].colour == std::array<std::uint8_t, 3>{255, 128, 0}), has_colour) << text;
+    EXPECT_TRUE(read_scan(file).is_labels);
+  }
+  for (const char* text :
+       {"{\"version\": 2}", "{\"26\": ", "<Label Key=\"26\"", "AFNI 26", "[[[[[[[[[[[[[[1]]]]"}) {
+    const auto file = write("b.nii", nifti_with(text));
+    EXPECT_FALSE(read_scan(file).is_labels) << text;
+  }
+}
+
 TEST_F(ReadLabels, RefusesWhatIsNoLabelMapInOneLine) {
   const auto refused = [&](const std::string& values, const std::string& fields = "") {
     return refusal_of({write("m.nrrd", map_of(values, fields)), {}, {}});
@@ -124,7 +196,7 @@ TEST_F(ReadLabels, RefusesWhatIsNoLabelMapInOneLine) {
   EXPECT_TRUE(contains(refusal_of({folder_ / "none.nrrd", {}, {}}), "no such file"));
   EXPECT_TRUE(contains(refusal_of({write("labels.txt", "1"), {}, {}}), "is not a label map"));
   EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "1 a 0 0 0 255\n2 b 0 0 900 255\n"), {}}),
-                       "t.ctbl: line 2 is not"));
+                       "t.ctbl: line 2 is neither"));
   EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "# nothing\n"), {}}), "t.ctbl: has no labels"));
 }
 

@@ -1,6 +1,7 @@
 #include "osteomill/ct/read_scan.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <memory>
 #include <new>
@@ -70,6 +71,7 @@ fs::path ZipReader::name_here(unz_file_info64& info) const {
 
 void ZipReader::unpack_here(const fs::path& file) {
   fs::create_directories(file.parent_path());
+  errno = 0;
   std::ofstream out(file, std::ios::binary);
   if (unzOpenCurrentFile(archive_.get()) != UNZ_OK) throw damaged();
   int count = 0;
@@ -86,8 +88,7 @@ void ZipReader::unpack_here(const fs::path& file) {
   // The checksum is looked at when a file is closed.
   if (count < 0 || unzCloseCurrentFile(archive_.get()) != UNZ_OK) throw damaged();
   out.close();
-  if (!out)
-    throw fault(fmt::format("cannot be unpacked to {} (is the disk full?)", file.parent_path().string()));
+  if (!out) throw fault(with_reason(fmt::format("cannot be unpacked to {}", file.parent_path().string())));
 }
 
 void ZipReader::unpack_into(const fs::path& folder) {
@@ -128,7 +129,8 @@ Scan read_folder(const fs::path& folder, const ReadOptions& options) {
   std::vector<fs::path> volumes;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const bool hidden = entry.path().filename().string().starts_with('.');
-    if (entry.is_regular_file() && !hidden && volume_format_of(entry.path()) != nullptr)
+    if (entry.is_regular_file() && !hidden && volume_format_of(entry.path()) != nullptr &&
+        !header_of_voxels(entry.path()))
       volumes.push_back(entry.path());
   }
   if (volumes.empty()) throw InputError(folder.string(), "holds no DICOM slices");

@@ -10,12 +10,14 @@
 #include <optional>
 #include <sstream>
 
+#include <Eigen/SVD>
 #include <fmt/format.h>
 
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/work_progress.h"
 
 #include "header_text.h"
+#include "label_table.h"
 #include "plausible_scan.h"
 
 namespace osteomill {
@@ -41,17 +43,10 @@ std::array<int, 3> checked_dims(const std::string& subject, const std::vector<do
   return dims;
 }
 
-void check_axes(const std::string& subject, const Mat3& axes) {
-  constexpr double kTolerance = 1e-3;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(axes.col(axis).norm() > 0)) throw InputError(subject, "has an axis of no length");
-    const Vec3 one = axes.col(axis).normalized();
-    const Vec3 next = axes.col((axis + 1) % 3).normalized();
-    if (!(std::abs(one.dot(next)) <= kTolerance)) {
-      throw InputError(
-          subject, "has axes that are not at right angles (a sheared or flat grid), which is not supported");
-    }
-  }
+// Axes of length 1 at right angles that lie as near to these as any do, on the same side of a mirror.
+Mat3 straightened(const Mat3& axes) {
+  const Eigen::JacobiSVD<Mat3> parts(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return parts.matrixU() * parts.matrixV().transpose();
 }
 
 }  // namespace
@@ -139,18 +134,44 @@ std::vector<fs::path> data_files(const std::string& subject, const fs::path& pat
   return files;
 }
 
+double most_skew(const Mat3& axes) {
+  const Mat3 ones = axes.colwise().normalized();
+  return std::max({std::abs(ones.col(0).dot(ones.col(1))), std::abs(ones.col(1).dot(ones.col(2))),
+                   std::abs(ones.col(2).dot(ones.col(0)))});
+}
+
 GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
                               const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
-                              double unit_mm, const Vec3& lps_from_axes) {
+                              double unit_mm, std::vector<std::string>& warnings, const Vec3& lps_from_axes) {
+  // Half of it, which is as far as an axis is turned, moves the end of a scan of 400 mm by under a
+  // millimetre.
+  constexpr double kMostShear = 4.4e-3;
   GridGeometry geometry;
   geometry.dims = checked_dims(subject, sizes);
   if (spacing.size() != 3)
     throw InputError(subject, fmt::format("has {} spacings, a volume has 3", spacing.size()));
-  check_axes(subject, axes);
+  if (!((axes.colwise().norm().array() > 0).all())) throw InputError(subject, "has an axis of no length");
+  const double skew = most_skew(axes);
+  if (!(skew <= kMostShear)) {
+    throw InputError(
+        subject, "has axes that are not at right angles (a sheared or flat grid), which is not supported");
+  }
   geometry.spacing_mm = Vec3(spacing.data()) * unit_mm;
+  Mat3 directions = axes.colwise().normalized();
+  Vec3 first_mm = origin * unit_mm;
+  if (skew > kNoShear) {
+    // The middle of the scan stays where it is.
+    const Mat3 straight = straightened(directions);
+    const Vec3 middle(0.5 * (sizes[0] - 1), 0.5 * (sizes[1] - 1), 0.5 * (sizes[2] - 1));
+    first_mm += (directions - straight) * geometry.spacing_mm.cwiseProduct(middle);
+    directions = straight;
+    warnings.push_back(
+        fmt::format("has axes that are {:.2g} degrees off right angles; they were put straight",
+                    std::asin(skew) * 57.29577951308232));
+  }
   // Adding 0 makes -0, which only puzzles, 0.
-  geometry.origin_mm = (lps_from_axes.cwiseProduct(origin) * unit_mm).array() + 0.0;
-  geometry.direction = (lps_from_axes.asDiagonal() * axes.colwise().normalized()).array() + 0.0;
+  geometry.origin_mm = lps_from_axes.cwiseProduct(first_mm).array() + 0.0;
+  geometry.direction = (lps_from_axes.asDiagonal() * directions).array() + 0.0;
   check_plausible(subject, geometry);
   return geometry;
 }
@@ -176,16 +197,17 @@ double millimetres_in(const std::string& subject, std::string_view unit) {
 }
 
 const VolumeFormat* volume_format_of(const fs::path& path) {
-  static constexpr std::array<VolumeFormat, 3> kFormats{
+  static const std::array<VolumeFormat, 3> kFormats{
       {{"NRRD", {".nrrd", ".nhdr"}, read_nrrd_header},
        {"MetaImage", {".mha", ".mhd"}, read_metaimage_header},
-       {"NIfTI", {".nii", ".nii.gz"}, read_nifti_header}}};
+       {"NIfTI", {".nii", ".nii.gz", ".hdr", ".hdr.gz"}, read_nifti_header}}};
   const std::string name = lower(path.filename().string());
   for (const VolumeFormat& format : kFormats) {
     for (const std::string_view ending : format.endings) {
       if (name.ends_with(ending)) return &format;
     }
   }
+  if (header_of_voxels(path)) return &kFormats.back();
   return nullptr;
 }
 
@@ -214,7 +236,9 @@ Scan read_volume_file(const fs::path& path, const VolumeFormat& format, const Re
   }
   Scan scan{DensityGrid(header.geometry, std::move(densities)), subject, format.name,
             std::move(header.warnings)};
-  scan.is_labels = header.is_labels || subject.find(".seg.") != std::string::npos;
+  scan.is_labels = header.is_labels || subject.find(".seg.") != std::string::npos ||
+                   std::any_of(header.texts.begin(), header.texts.end(),
+                               [](const std::string& text) { return !labels_in_text(text).empty(); });
   return scan;
 }
 

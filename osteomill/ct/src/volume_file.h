@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -79,6 +80,8 @@ struct VolumeHeader {
   /// True if the header says so; it need not.
   bool is_labels = false;
   VoxelLayers layers{};
+  /// What programs keep beside the header in words of their own: NIfTI's extensions.
+  std::vector<std::string> texts{};
 };
 
 /// Each reads the header of a file of its format, and checks that it is of one grey volume, with sizes and
@@ -91,10 +94,11 @@ VolumeHeader read_nifti_header(const std::filesystem::path& path);
 struct VolumeFormat {
   const char* name;
   /// The endings of its files, in small letters.
-  std::array<std::string_view, 2> endings;
+  std::vector<std::string_view> endings;
   VolumeHeader (*read_header)(const std::filesystem::path& path);
 };
-/// By how the file's name ends; null if it is none of them.
+/// By how the file's name ends; null where it is none of them. What ends in .img is NIfTI only if its header
+/// lies beside it.
 const VolumeFormat* volume_format_of(const std::filesystem::path& path);
 
 /// Reads what the header is of, layers as one (`merge_layers`). Throws InputError naming `subject`.
@@ -104,6 +108,9 @@ std::vector<float> read_volume(const std::string& subject, VolumeHeader& header,
 /// for different segments in two layers, segments are numbered from 1 instead, in the values and in the
 /// header's pairs SegmentN_LabelValue. Throws InputError naming `subject` if segments overlap.
 std::vector<float> merge_layers(const std::string& subject, std::vector<float> values, VolumeHeader& header);
+
+/// Returns the header of a file of voxels by its name, as a.hdr of a.img; nothing for any other file.
+std::optional<std::filesystem::path> header_of_voxels(const std::filesystem::path& path);
 
 /// Throws InputError naming the file.
 Scan read_volume_file(const std::filesystem::path& path, const VolumeFormat& format,
@@ -133,13 +140,20 @@ struct HeaderFields {
 std::vector<std::filesystem::path> data_files(const std::string& subject, const std::filesystem::path& path,
                                               const std::string& said, std::istream& header);
 
+/// The greatest cosine of an angle between two columns, 0 for axes at right angles; and how large it may be
+/// without a word: so much comes of numbers that are written with few digits.
+double most_skew(const Mat3& axes);
+inline constexpr double kNoShear = 1e-3;
+
 /// A grid by what headers say of it, checked: sizes are three whole numbers above zero whose product can be a
-/// volume; the columns of `axes`, of which only the direction counts, are neither zero nor skew; spacings are
-/// finite, above zero and, like the origin, those of a bone (`check_plausible`). `unit_mm`: the millimetres
-/// in the unit of spacing and origin. `lps_from_axes`: the signs that turn the file's frame into LPS.
+/// volume; the columns of `axes`, of which only the direction counts, are not zero and at right angles, or
+/// put so, with a warning, where they are less than a quarter of a degree off; spacings are finite, above
+/// zero and, like the origin, those of a bone (`check_plausible`). `unit_mm`: the millimetres in the unit of
+/// spacing and origin. `lps_from_axes`: the signs that turn the file's frame into LPS.
 GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
                               const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
-                              double unit_mm, const Vec3& lps_from_axes = Vec3::Ones());
+                              double unit_mm, std::vector<std::string>& warnings,
+                              const Vec3& lps_from_axes = Vec3::Ones());
 
 /// Three finite numbers; throws InputError, calling them `name`, if they are not.
 Vec3 checked_point(const std::string& subject, const std::string& name, const std::vector<double>& numbers);

@@ -421,6 +421,123 @@ TEST_F(VolumeFile, NiftiSlopeZeroMeansValuesAsStored) {
   EXPECT_EQ(scan.grid[second], 2 * -49 + 5);
 }
 
+TEST_F(VolumeFile, NiftiWithoutAScalingHasItsValuesAsStored) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const float intercept : {nan, 5.0F, std::numeric_limits<float>::infinity()}) {
+    const Scan scan = read_scan(
+        write("a.nii", Nifti().set<float>(112, nan).set<float>(116, intercept).with(voxels<std::int16_t>())));
+    expect_voxels(scan.grid);
+    EXPECT_EQ(scan.warnings.size(), 1u);
+  }
+  EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<float>(112, 2.0F).set<float>(116, nan).with(
+                                                  voxels<std::int16_t>()))),
+                       "is not a number"));
+}
+
+// Not turned, its first voxel at (9, 8, 7) in RAS.
+Nifti with_qform() {
+  return Nifti().set<std::int16_t>(252, 1).set<float>(268, 9).set<float>(272, 8).set<float>(276, 7);
+}
+
+TEST_F(VolumeFile, AQformStandsInForAnSformThatCannotBeUsed) {
+  const auto expect_qform = [&](const Nifti& nifti, const std::string& warning) {
+    const Scan scan = read_scan(write("a.nii", nifti.with(voxels<std::int16_t>())));
+    expect_voxels(scan.grid);
+    EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 1, 1)).isApprox(Vec3(-9.5, -8.25, 9)));
+    ASSERT_EQ(scan.warnings.size(), 1u);
+    EXPECT_TRUE(contains(scan.warnings[0], warning)) << scan.warnings[0];
+  };
+  Nifti zero = with_qform(), unit = with_qform();
+  for (int n = 0; n < 12; ++n) {
+    zero.set<float>(280 + 4 * n, 0);
+    unit.set<float>(280 + 4 * n, n % 5 == 0 ? 1.0F : 0.0F);
+  }
+  expect_qform(zero, "its sform has an axis of no length; its qform was taken");
+  expect_qform(unit, "its sform gives other voxel sizes");
+  for (const float shear : {0.002F, 0.01F})
+    expect_qform(with_qform().set<float>(280, shear), "its sform is sheared; its qform");
+  expect_qform(with_qform().set<float>(280, 0.3F), "its sform gives other voxel sizes");
+  expect_qform(with_qform().set<float>(292, std::numeric_limits<float>::quiet_NaN()), "is no number");
+  // A qform that is none does not spoil a good sform.
+  const Scan scan = read_scan(write("b.nii", with_qform().set<float>(256, 3).with(voxels<std::int16_t>())));
+  EXPECT_TRUE(scan.warnings.empty());
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
+}
+
+TEST_F(VolumeFile, AShearOfATenthOfADegreeIsPutStraight) {
+  const std::string data = voxels<std::int16_t>();
+  const std::string directions =
+      "encoding: raw\nspace: LPS\nspace directions: (0.5,0,0) (0.00175,1,0) (0,0,2)\n";
+  const auto nrrd_file = write("a.nrrd", nrrd(directions, data));
+  const auto mha_file = write("a.mha", mha("TransformMatrix = 1 0 0 0.00175 0.999998 0 0 0 1\n", data));
+  const auto nifti_file = write("a.nii", Nifti().set<float>(280, 0.00175F).with(data));
+  for (const auto& file : {nrrd_file, mha_file, nifti_file}) {
+    const Scan scan = read_scan(file);
+    const GridGeometry& geometry = scan.grid.geometry();
+    EXPECT_TRUE((geometry.direction.transpose() * geometry.direction).isIdentity(1e-12)) << file;
+    const bool named =
+        std::any_of(scan.warnings.begin(), scan.warnings.end(), [](const std::string& warning) {
+          return contains(warning, "0.1 degrees off right angles") || contains(warning, "0.2 degrees off");
+        });
+    EXPECT_TRUE(named) << file;
+  }
+  // The middle stays: half of what the second axis leans over, 1 voxel up.
+  EXPECT_NEAR(read_scan(nrrd_file).grid.geometry().world_from_voxel(Vec3(1.5, 1, 0.5)).x(), 0.75 + 0.00175,
+              1e-9);
+  const std::string more = "encoding: raw\nspace: LPS\nspace directions: (1,0,0) (0.005,1,0) (0,0,1)\n";
+  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd(more, data))), "right angles"));
+}
+
+// A NIfTI-2 header of the same scan, field by field as nifti2.h lays it out.
+std::string nifti2(const std::string& magic) {
+  std::string bytes(544, '\0');
+  const auto set = [&](std::size_t offset, auto value) {
+    std::memcpy(bytes.data() + offset, &value, sizeof(value));
+  };
+  set(0, std::int32_t{540});
+  std::memcpy(bytes.data() + 4, magic.data(), magic.size());
+  set(12, std::int16_t{4});
+  set(14, std::int16_t{16});
+  for (const auto& [n, size] : {std::pair{0, 4}, {1, 4}, {2, 3}, {3, 2}, {4, 1}})
+    set(16 + 8 * static_cast<std::size_t>(n), std::int64_t{size});
+  for (const auto& [n, size] : {std::pair{0, 1.0}, {1, 0.5}, {2, 0.25}, {3, 2.0}})
+    set(104 + 8 * static_cast<std::size_t>(n), size);
+  set(168, std::int64_t{magic[1] == '+' ? 544 : 0});
+  set(348, std::int32_t{1});
+  const std::array<double, 12> rows{0, 0, 2, 1, 0.5, 0, 0, -2, 0, 0.25, 0, 3};
+  for (std::size_t n = 0; n < rows.size(); ++n) set(400 + 8 * n, rows[n]);
+  set(500, std::int32_t{2});
+  return bytes;
+}
+
+TEST_F(VolumeFile, Nifti2AndPairsOfFilesGiveTheSame) {
+  const std::string data = voxels<std::int16_t>();
+  const auto expect_scan = [&](const std::filesystem::path& path) {
+    const Scan scan = read_scan(path);
+    expect_voxels(scan.grid);
+    EXPECT_EQ(scan.format, "NIfTI");
+    EXPECT_TRUE(scan.warnings.empty());
+    EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
+  };
+  expect_scan(write("a.nii", nifti2("n+2") + data));
+  expect_scan(write_gzip("a.nii.gz", nifti2("n+2") + data));
+  std::string pair = Nifti().set<float>(108, 0.0F).with("");
+  pair.replace(344, 3, "ni1");
+  write("b.img", data);
+  expect_scan(write("b.hdr", pair));
+  expect_scan(folder_ / "b.img");
+  write_gzip("c.img.gz", data);
+  expect_scan(write("c.hdr", nifti2("ni2")));
+  const auto alone = std::filesystem::path(folder_ / "alone");
+  std::filesystem::create_directory(alone);
+  std::filesystem::copy_file(folder_ / "b.hdr", alone / "b.hdr");
+  EXPECT_TRUE(contains(refusal(alone / "b.hdr"), "its voxels are not there"));
+  std::filesystem::copy_file(folder_ / "b.img", alone / "b.img");
+  expect_scan(alone);
+  EXPECT_TRUE(contains(refusal(write("d.nii", nifti2("n+1") + data)), "neither n+2 nor ni2"));
+  EXPECT_TRUE(contains(refusal(write("e.nii", nifti2("n+2").substr(0, 400))), "cut short in its header"));
+}
+
 TEST_F(VolumeFile, CutShortByOneByteIsRefused) {
   const std::string data = voxels<std::int16_t>();
   const std::string shorter = data.substr(0, data.size() - 1);

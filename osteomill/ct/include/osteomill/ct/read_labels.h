@@ -17,8 +17,9 @@ struct LabelFiles {
   /// archive or folder too.
   std::filesystem::path map;
   /// A colour table of 3D Slicer's (.ctbl or .txt): a line a label, "value name red green blue alpha",
-  /// colours from 0 to 255; lines that begin with # and empty ones are passed over. Takes precedence over the
-  /// names and colours that a .seg.nrrd has itself; may be empty.
+  /// colours from 0 to 255; or a label description file of ITK-SNAP's. Lines that begin with # and empty ones
+  /// are passed over. Takes precedence over the names and colours that the map has itself (a .seg.nrrd, an
+  /// extension of NIfTI); may be empty.
   std::filesystem::path table;
   /// Labels that no burr may touch, by value or by name (case does not matter).
   std::vector<std::string> no_go;
