@@ -228,6 +228,13 @@ TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
   }
 }
 
+// Its densities rise in thick steps, of which few voxels lie between others.
+TEST(ReadRealScan, ABlockOfStepsLooksLikeNoLabels) {
+  OSTEOMILL_NEEDS_SHARED("attacks4/stderr-closed/b6.nrrd");
+  EXPECT_NE(LabelGuess::labels,
+            guess_labels(read_scan(shared_data() / "attacks4/stderr-closed/b6.nrrd").grid));
+}
+
 TEST(ReadRealScan, LabelMapsLookLikeLabels) {
   for (const char* path : {"jaw_labels/jaw_360x360x330_labels.nrrd", "temporal_bone/ear3_256_labels.nrrd",
                            "temporal_bone/RT138_256_labels.nrrd", "found4/labels/two-labels.nrrd",
@@ -238,6 +245,48 @@ TEST(ReadRealScan, LabelMapsLookLikeLabels) {
     EXPECT_EQ(isovalue_of_labels(labels), 0.5) << path;
   }
 }
+
+// A phantom of 40 x 36 x 24 voxels, as many programs have written it; each file is odd in one way.
+struct OddPhantom {
+  const char* path;
+  double slice_mm;
+  bool has_place;
+  // Part of the only warning; empty where there is none.
+  const char* warning;
+};
+class RealOddPhantom : public ::testing::TestWithParam<OddPhantom> {};
+
+TEST_P(RealOddPhantom, IsRead) {
+  const auto& [path, slice_mm, has_place, warning] = GetParam();
+  OSTEOMILL_NEEDS_SHARED(path);
+  const Scan scan = read_scan(shared_data() / path);
+  const GridGeometry& geometry = scan.grid.geometry();
+  EXPECT_EQ(geometry.dims, (std::array<int, 3>{40, 36, 24}));
+  EXPECT_TRUE(geometry.spacing_mm.isApprox(Vec3(0.4, 0.4, slice_mm), 1e-5))
+      << geometry.spacing_mm.transpose();
+  EXPECT_TRUE(!has_place || geometry.origin_mm.isApprox(Vec3(-8, -7, 3), 1e-5))
+      << geometry.origin_mm.transpose();
+  const std::vector<float> densities = every_nth_density(scan.grid, 1);
+  const auto [min, max] = std::minmax_element(densities.begin(), densities.end());
+  EXPECT_EQ(*min, -1000);
+  EXPECT_EQ(*max, 1161);
+  EXPECT_EQ(std::count_if(densities.begin(), densities.end(), [](float v) { return v > 260; }), 2420);
+  ASSERT_EQ(scan.warnings.size(), *warning == '\0' ? 0u : 1u);
+  if (*warning != '\0') {
+    EXPECT_NE(scan.warnings[0].find(warning), std::string::npos) << scan.warnings[0];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ReadRealScan, RealOddPhantom,
+    ::testing::Values(OddPhantom{"found4/01-nan-scaling/both-nan.nii.gz", 0.5, true, "were taken as stored"},
+                      OddPhantom{"found4/02-sform/unit-sform-qform.nii.gz", 0.5, true, "its qform was taken"},
+                      OddPhantom{"found4/02-sform/shear-0.1-qform.nii.gz", 0.5, true, "its qform was taken"},
+                      OddPhantom{"found4/02-sform/zero-sform.nii.gz", 0.5, true, "its qform was taken"},
+                      OddPhantom{"found4/22-nrrd/first-unit.nrrd", 0.05, false, ""},
+                      OddPhantom{"found4/22-nrrd/list.nhdr", 0.5, true, ""},
+                      OddPhantom{"found4/23-nifti-kinds/pair.hdr", 0.5, true, ""},
+                      OddPhantom{"found4/24-metaimage/blank-line.mha", 0.5, true, ""}));
 
 INSTANTIATE_TEST_SUITE_P(ReadRealScan, RealScanIsovalue,
                          ::testing::Values(KnownIsovalue{"tooth/tooth_103x94x161_u16.nrrd", 610},

@@ -79,14 +79,21 @@ std::vector<int> ranks_of(const Values& values) {
 struct Edges {
   // Of the edges between two values, those that leave out a value between them.
   double far = 0;
-  // Of the voxels at an edge, those that lie between a lower and a higher one.
+  // Of the voxels that are not 0, those whose value often lies between a lower and a higher one.
   double between = 0;
 };
 
 Edges edges_of(const DensityGrid& grid, const std::vector<int>& ranks) {
+  // Of the voxels of a value.
+  constexpr double kOften = 0.2;
+  struct Count {
+    std::size_t voxels = 0;
+    std::size_t between = 0;
+  };
   const auto& dims = grid.geometry().dims;
   const std::array<std::ptrdiff_t, 3> paces{1, grid.row_stride(), grid.slice_stride()};
-  std::size_t edges = 0, far = 0, at_edge = 0, between = 0;
+  std::vector<Count> counts(static_cast<std::size_t>(*std::max_element(ranks.begin(), ranks.end())) + 1);
+  std::size_t edges = 0, far = 0;
   for_each_with_progress(grid.geometry().all_voxels(), [&](const VoxelIndex& voxel) {
     const float* const here = grid.address_of(voxel);
     const int rank = ranks[static_cast<std::size_t>(*here)];
@@ -96,32 +103,38 @@ Edges edges_of(const DensityGrid& grid, const std::vector<int>& ranks) {
       return other == kRare ? rank : other;
     };
     const std::array<int, 3> v{voxel.i, voxel.j, voxel.k};
-    bool is_between = false, is_at_edge = false;
+    bool between = false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const int below = v[axis] > 0 ? rank_at(-paces[axis]) : rank;
       const int above = v[axis] + 1 < dims[axis] ? rank_at(paces[axis]) : rank;
-      is_between = is_between || (below < rank && rank < above) || (above < rank && rank < below);
+      between = between || (below < rank && rank < above) || (above < rank && rank < below);
       for (const int other : {below, above}) {
-        is_at_edge = is_at_edge || other != rank;
         edges += other != rank ? 1 : 0;
         far += std::abs(other - rank) > 1 ? 1 : 0;
       }
     }
-    at_edge += is_at_edge ? 1 : 0;
-    between += is_between ? 1 : 0;
+    Count& count = counts[static_cast<std::size_t>(rank)];
+    ++count.voxels;
+    count.between += between ? 1 : 0;
   });
+  std::size_t all = 0, often_between = 0;
+  for (const Count& count : counts) {
+    all += count.voxels;
+    if (static_cast<double>(count.between) >= kOften * static_cast<double>(count.voxels))
+      often_between += count.voxels;
+  }
   const auto share = [](std::size_t count, std::size_t of) {
     return of == 0 ? 0 : static_cast<double>(count) / static_cast<double>(of);
   };
-  return {share(far, edges), share(between, at_edge)};
+  return {share(far, edges), share(often_between, all)};
 }
 
 }  // namespace
 
 LabelGuess guess_labels(const DensityGrid& grid) {
-  // Of real label maps the first is at least 0.23 and the second at most 0.02. Of CTs in 3 to 256 levels the
-  // first is at most 0.05 or the second at least 0.12.
-  constexpr double kSeldomFar = 0.05, kSeldomBetween = 0.06, kOftenBetween = 0.12;
+  // Of real label maps the first is at least 0.23 and the second 0. Of CTs and phantoms in 3 to 256 levels
+  // the first is at most 0.05 or the second at least 0.018.
+  constexpr double kSeldomFar = 0.05, kSeldomBetween = 0.01, kOftenBetween = 0.05;
   constexpr std::size_t kFewLevels = 32;
   const Values values = values_of(grid);
   if (values.different < 2) return LabelGuess::densities;
