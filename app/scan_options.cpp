@@ -1,12 +1,15 @@
 #include "app/scan_options.h"
 
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "osteomill/base/csv_field.h"
 #include "osteomill/base/input_error.h"
+#include "osteomill/base/parse_number.h"
 #include "osteomill/base/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/label_scan.h"
@@ -16,6 +19,22 @@
 #include "app/progress.h"
 
 namespace osteomill {
+
+namespace {
+
+Vec3 spacing_of(const std::string& given) {
+  Vec3 spacing_mm;
+  const auto numbers = csv_fields(given);
+  for (std::size_t n = 0; n < 3 && numbers.size() == 3; ++n) {
+    const auto number = parsed_finite(numbers[n]);
+    if (!number || *number <= 0) break;
+    spacing_mm[static_cast<Eigen::Index>(n)] = *number;
+    if (n == 2) return spacing_mm;
+  }
+  throw std::invalid_argument(given + " is not three numbers above 0 with commas between");
+}
+
+}  // namespace
 
 template <>
 const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>() {
@@ -43,6 +62,13 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
                "DICOM series to read if there are several: its number in what info lists (3, or 3.1 for one "
                "of several volumes in a series), or the beginning of its UID; else the largest CT"),
           [](auto& s) -> auto& { return s.read.series; }),
+      {text("spacing", "X,Y,Z", app::kOfTheSource,
+            "How far the voxels of a stack of PNG or TIFF pictures lie apart in mm: along columns, rows, "
+            "slices"),
+       [](const S& s) {
+         return s.read.spacing_mm ? fmt::format("{}", fmt::join(*s.read.spacing_mm, ",")) : std::string();
+       },
+       [](S& s, const std::string& given) { s.read.spacing_mm = spacing_of(given); }},
       {text("as", "scan|labels", app::kOfTheSource,
             "Take the values as densities, or as labels, all of which are bone (default: by header and "
             "content, with --iso as densities)"),
@@ -80,9 +106,8 @@ void add_bone_options(CLI::App& command, ScanOptions& options) {
 void add_scan_source(CLI::App& command, ScanOptions& options) {
   command
       .add_option("scan", options.scan,
-                  "DICOM folder or file, NRRD, MetaImage, NIfTI, or one of them in a zip file; without one, "
-                  "the built-in "
-                  "tooth")
+                  "DICOM folder or file, NRRD, MetaImage, NIfTI, a folder of PNG or TIFF slices, or one of "
+                  "them in a zip file; without one, the built-in tooth")
       ->check(not_empty());
   add_texts(command, options, kOfTheSource);
   command

@@ -27,8 +27,10 @@ const std::vector<Target>& targets() {
   return all;
 }
 
-void read_as_info_does(const fs::path& path) {
-  const Scan scan = read_scan(path, {.series = "", .max_memory_bytes = 1 << 26});
+void read_as_info_does(const fs::path& path, bool are_pictures) {
+  ReadOptions options{.series = "", .max_memory_bytes = 1 << 26};
+  if (are_pictures) options.spacing_mm = Vec3(1, 1, 1);
+  const Scan scan = read_scan(path, options);
   const SuggestedIsovalue suggested = suggest_isovalue(scan.grid, scan.in_hounsfield_units);
   isovalue_warnings(scan.grid, suggested.value);
   const ScanSummary summary = summarise(scan, suggested, suggested.value);

@@ -29,8 +29,8 @@ std::vector<Target> run_targets();
 /// Files of studies, and trajectories along which every algorithm is driven.
 std::vector<Target> study_file_targets();
 
-/// Reads a scan, in little memory, and makes of it what `osteomill info` tells.
-void read_as_info_does(const std::filesystem::path& path);
+/// Reads a scan, in little memory, and makes of it what `osteomill info` tells. Pictures are 1 mm apart.
+void read_as_info_does(const std::filesystem::path& path, bool are_pictures = false);
 
 void write_bytes(const std::filesystem::path& file, Bytes bytes);
 std::string read_bytes(const std::filesystem::path& file);

@@ -24,6 +24,7 @@ using namespace std::chrono_literals;
 
 // Keys of the options that opening the scan again needs, beside the attributes of every recording.
 constexpr const char* kSeriesKey = "scan.series";
+constexpr const char* kSpacingKey = "scan.spacing";
 constexpr const char* kLabelMapKey = "scan.labels";
 constexpr const char* kLabelTableKey = "scan.label_table";
 constexpr auto kBetween = 5s;
@@ -49,9 +50,15 @@ std::string absolute_path(const fs::path& path) {
   return path.empty() ? std::string() : fs::absolute(path).lexically_normal().string();
 }
 
+const Field<ScanOptions, std::string>& spacing_field() {
+  return *std::ranges::find(fields_of<ScanOptions, std::string>(), "spacing",
+                            &Field<ScanOptions, std::string>::option);
+}
+
 RunDescription describe(const ScanOptions& scan, const LiveMilling& milling) {
   RunDescription run = milling.describe(scan.scan.empty() ? kBuiltinTooth : absolute_path(scan.scan), "");
   run.settings.push_back({kSeriesKey, scan.read.series, ""});
+  run.settings.push_back({kSpacingKey, spacing_field().get(scan), ""});
   run.settings.push_back({kLabelMapKey, absolute_path(scan.labels.map), ""});
   run.settings.push_back({kLabelTableKey, absolute_path(scan.labels.table), ""});
   return run;
@@ -119,6 +126,7 @@ ScanOptions scan_of(const SessionStart& leftover) {
   if (leftover.run.scan_name != kBuiltinTooth) scan.scan = leftover.run.scan_name;
   scan.isovalue = leftover.run.isovalue;
   scan.read.series = text(kSeriesKey);
+  if (const std::string spacing = text(kSpacingKey); !spacing.empty()) spacing_field().set(scan, spacing);
   scan.labels = {text(kLabelMapKey), text(kLabelTableKey), {}};
   for (const Label& label : leftover.run.labels)
     if (label.no_go) scan.labels.no_go.push_back(std::to_string(label.value));

@@ -1,6 +1,7 @@
 // MetaImage, https://itk.org/Wiki/ITK/MetaIO/Documentation
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <map>
 
@@ -121,13 +122,15 @@ Mat3 axes_of(const HeaderFields& fields, const std::string& name, std::size_t di
 GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& warnings) {
   const std::string& subject = fields.subject;
   const double dimensions = fields.numbers("NDims").front();
-  if (dimensions != 3 && dimensions != 4)
+  if (!(dimensions >= 3 && dimensions <= 10) || dimensions != std::floor(dimensions))
     throw InputError(subject, fmt::format("is not a volume: NDims is {}, not 3", dimensions));
   const auto count = static_cast<std::size_t>(dimensions);
   const std::vector<double> all_sizes = fields.numbers("DimSize"),
                             sizes = first_three(fields, "DimSize", count);
-  if (all_sizes.back() != 1 && count == 4)
-    throw InputError(subject, fmt::format("holds {} volumes or values a voxel, not one", all_sizes.back()));
+  for (std::size_t axis = 3; axis < count; ++axis) {
+    if (all_sizes[axis] != 1)
+      throw InputError(subject, fmt::format("holds {} volumes or values a voxel, not one", all_sizes[axis]));
+  }
   const std::string spacing = first_of(fields, {"ElementSpacing", "ElementSize"});
   if (spacing.empty()) warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
   const std::string matrix = first_of(fields, {"TransformMatrix", "Rotation", "Orientation"});

@@ -28,6 +28,19 @@ TEST(ReadLabelsReal, TheJawsLabelsAreTheSameFromBothItsFiles) {
   EXPECT_EQ(other.map->voxel_counts(), read.map->voxel_counts());
 }
 
+TEST(ReadLabelsReal, NamesComeFromAnExtensionAndFromItkSnapsFile) {
+  OSTEOMILL_NEEDS_SHARED("found4/23-nifti-kinds");
+  const auto folder = shared_data() / "found4/23-nifti-kinds";
+  const GridGeometry scan = read_scan(folder / "totalseg.nii.gz").grid.geometry();
+  const LabelsRead own = read_labels({folder / "totalseg.nii.gz", {}, {}}, scan);
+  ASSERT_EQ(own.map->labels().size(), 2u);
+  EXPECT_EQ(own.map->labels()[0], (Label{26, "vertebrae_S1", {230, 230, 153}, false}));
+  EXPECT_EQ(own.map->labels()[1], (Label{93, "rib_left_2", {102, 102, 230}, false}));
+  const LabelsRead given = read_labels({folder / "totalseg.nii.gz", folder / "itksnap.txt", {}}, scan);
+  EXPECT_EQ(given.map->labels()[0], (Label{26, "mandible left", {230, 230, 150}, false}));
+  EXPECT_EQ(given.map->labels()[1].name, "canal");
+}
+
 TEST(ReadLabelsReal, TheTemporalBonesLabelsAreCountedAsTheirReadmeDoes) {
   OSTEOMILL_NEEDS_SHARED("temporal_bone");
   const auto file = shared_data() / "temporal_bone/ear3_256_labels.nrrd";

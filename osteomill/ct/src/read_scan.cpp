@@ -17,6 +17,7 @@
 #include "osteomill/base/work_progress.h"
 
 #include "dicom_file.h"
+#include "picture_stack.h"
 #include "volume_file.h"
 
 namespace osteomill {
@@ -123,16 +124,18 @@ void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t m
   }
 }
 
-// Reads the only volume file of a folder without DICOM.
+// Of a folder without DICOM: its only volume file, or its pictures.
 Scan read_folder(const fs::path& folder, const ReadOptions& options) {
   if (std::optional<Scan> scan = read_dicom(folder, options)) return std::move(*scan);
-  std::vector<fs::path> volumes;
+  std::vector<fs::path> volumes, pictures;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const bool hidden = entry.path().filename().string().starts_with('.');
     if (entry.is_regular_file() && !hidden && volume_format_of(entry.path()) != nullptr &&
         !header_of_voxels(entry.path()))
       volumes.push_back(entry.path());
+    if (entry.is_regular_file() && !hidden && is_picture(entry.path())) pictures.push_back(entry.path());
   }
+  if (volumes.empty() && !pictures.empty()) return read_pictures(folder, std::move(pictures), options);
   if (volumes.empty()) throw InputError(folder.string(), "holds no DICOM slices");
   if (volumes.size() > 1) {
     throw InputError(folder.string(), fmt::format("holds {} scans; name one of them", volumes.size()));
@@ -170,11 +173,12 @@ Scan read_any(const fs::path& path, const ReadOptions& options) {
   if (!fs::is_regular_file(status)) throw InputError(path.string(), "is neither a file nor a folder");
   if (fs::file_size(path, error) == 0) throw InputError(path.string(), "is empty");
   if (const VolumeFormat* format = volume_format_of(path)) return read_volume_file(path, *format, options);
+  if (is_picture(path)) return read_pictures(path, {path}, options);
   if (is_zip(path)) return read_zip(path, options);
   if (std::optional<Scan> scan = read_dicom(path, options)) return std::move(*scan);
   throw InputError(
       path.string(),
-      "is not a scan: neither DICOM nor a zip archive, nor NRRD, MetaImage or NIfTI by its name");
+      "is not a scan: neither DICOM nor a zip archive, nor NRRD, MetaImage, NIfTI, PNG or TIFF by its name");
 }
 
 }  // namespace
@@ -183,6 +187,9 @@ Scan read_scan(const fs::path& path, const ReadOptions& options) {
   try {
     Scan scan = read_any(path, options);
     scan.name = path.string();
+    if (options.spacing_mm && scan.format != "PNG" && scan.format != "TIFF")
+      throw InputError(scan.name,
+                       fmt::format("is {}, which says itself how far its voxels lie apart", scan.format));
     return scan;
   } catch (const std::bad_alloc&) {
     throw InputError(path.string(), "does not fit into memory");

@@ -192,7 +192,7 @@ double millimetres_in(const std::string& subject, std::string_view unit) {
       {"?", 1},          {"millimeters", 1}};
   const auto found = kUnits.find(unit);
   if (found == kUnits.end())
-    throw InputError(subject, fmt::format("has lengths in \"{}\", which is not known", unit));
+    throw InputError(subject, fmt::format("has lengths in \"{:.40}\", which is not known", unit));
   return found->second;
 }
 

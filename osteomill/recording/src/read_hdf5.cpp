@@ -35,6 +35,11 @@ bool holds_its_own_values(hid_t dataset) {
   return own;
 }
 
+// The system's reasons for which a file cannot be locked.
+bool is_of_a_lock(int error) {
+  return error == ENOLCK || error == EAGAIN || error == ENOSYS || error == EOPNOTSUPP;
+}
+
 void require_nothing_elsewhere(const Hdf5File& file) {
   std::string refused;
   const auto look = [](hid_t group, const char* name, const H5L_info_t* link, void* found) -> herr_t {
@@ -124,7 +129,10 @@ Hdf5File open_hdf5(const fs::path& path) {
   Hdf5File file{path, fs::file_size(path, error), {}};
   if (H5Fis_hdf5(path.c_str()) <= 0) file.refuse("is not an HDF5 file");
   const Hdf5Handle access = access_without_locks();
+  errno = 0;
   file.handle = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (!file.handle.valid() && is_of_a_lock(errno))
+    file.refuse(with_reason("cannot be locked, as HDF5_USE_FILE_LOCKING asks for"));
   if (!file.handle.valid()) file.refuse("cannot be opened: it is cut short or damaged");
   require_nothing_elsewhere(file);
   return file;

@@ -24,7 +24,7 @@ struct Scan {
   DensityGrid grid;
   /// The file or folder as the user named it.
   std::string name;
-  /// "DICOM", "NRRD", "MetaImage" or "NIfTI".
+  /// "DICOM", "NRRD", "MetaImage", "NIfTI", "PNG" or "TIFF".
   std::string format;
   /// One sentence each; what a user should know but what does not forbid milling.
   std::vector<std::string> warnings;
@@ -47,16 +47,18 @@ struct ReadOptions {
   /// The most memory that the densities may take, and the most that is unpacked of an archive. By default,
   /// the memory that the program may take.
   std::uint64_t max_memory_bytes = allowed_memory_bytes();
+  /// The distances of voxels along columns, rows and slices, for pictures, which do not say them.
+  std::optional<Vec3> spacing_mm = std::nullopt;
 };
 
 /// Reads a DICOM series (a folder and the folders in it, files in any order; a DICOMDIR; one of its files,
-/// with the rest of its series beside it; an Enhanced multi-frame file), NRRD, MetaImage or NIfTI, or a zip
-/// archive or folder of any of these. W is the patient's LPS frame in mm (NIfTI's RAS is turned into it);
-/// stored values are rescaled to what they mean (RescaleSlope, RescaleIntercept). Throws InputError, naming
-/// the path and the reason, if it is not a scan that can be placed in space without guessing. Voxels for
-/// which it has no density, padding and NaN, are known to the grid (`DensityGrid::has_density`). Bounded
-/// memory: what the header asks for is held against the file and the options before it is allocated. Names of
-/// patients, their dates and numbers are never read.
+/// with the rest of its series beside it; an Enhanced multi-frame file), NRRD, MetaImage, NIfTI, or pictures
+/// (a folder of PNG or TIFF, a TIFF file of several pages), or a zip archive or folder of any of these. W is
+/// the patient's LPS frame in mm (NIfTI's RAS is turned into it); stored values are rescaled to what they
+/// mean (RescaleSlope, RescaleIntercept). Throws InputError, naming the path and the reason, if it is not a
+/// scan that can be placed in space without guessing. Bounded memory: what the header asks for is held
+/// against the file and the options before it is allocated. Names of patients, their dates and numbers are
+/// never read.
 Scan read_scan(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace osteomill
