@@ -131,7 +131,7 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
 
 namespace {
 
-// Where nobody says it, its values are looked at.
+// Looks at its values unless the user or the file says it.
 LabelGuess held_by(const ScanOptions& options, const Scan& scan) {
   const auto of = [](bool labels) { return labels ? LabelGuess::labels : LabelGuess::densities; };
   if (options.as_labels) return of(*options.as_labels);

@@ -518,7 +518,7 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t
     header.undecodable = std::move(loaded->undecodable);
     DcmDataset& data = *header.data->getDataset();
     describe(data, header);
-    // What is encoded in a way that is not known may look damaged.
+    // A file that is encoded in an unknown way may look damaged.
     const bool is_known = header.undecodable.empty() || !header.is_image();
     header.lost = loaded->damaged && header.pixel_bytes == 0 && is_known;
     if (loaded->damaged && is_known) throw InputError(path.string(), "is cut short or damaged");

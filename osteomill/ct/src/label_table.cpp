@@ -86,7 +86,7 @@ bool add_line(const std::string& line, LabelTable& table) {
   return true;
 }
 
-// What the key/value pairs of a segmentation of 3D Slicer's (.seg.nrrd) say: Segment0_Name, _Color (three
+// Reads the key/value pairs of a segmentation of 3D Slicer's (.seg.nrrd): Segment0_Name, _Color (three
 // numbers from 0 to 1) and _LabelValue, and so on from 0. Throws InputError naming `subject`.
 LabelTable segments_in(const std::string& subject, const std::map<std::string, std::string>& key_values) {
   LabelTable table;
@@ -133,8 +133,8 @@ std::optional<Colour> colour_in(const Json* json) {
   return colour_of(channels, are_shares ? 1 : 255);
 }
 
-// Of JSON, {"26": "mandible"}, {"labels": {"mandible": 26}} and [{"value": 26, "name": "mandible"}], however
-// deep.
+// Takes the labels of JSON, {"26": "mandible"}, {"labels": {"mandible": 26}} and [{"value": 26, "name":
+// "mandible"}], however deep.
 void add_labels(const Json& json, bool of_labels, int depth, LabelTable& table) {
   constexpr int kDeepest = 8;
   if (depth > kDeepest || !json.is_structured()) return;
@@ -215,6 +215,12 @@ LabelTable labels_in_text(const std::string& text) {
     const std::string json = text.substr(start, std::min(text.find('\0'), text.size()) - start);
     add_labels(Json::parse(json, nullptr, false), false, 0, table);
   }
+  return table;
+}
+
+LabelTable table_of(const std::vector<LabelName>& names) {
+  LabelTable table;
+  for (const LabelName& label : names) table[label.value] = {usable_name(label.name), label.colour};
   return table;
 }
 

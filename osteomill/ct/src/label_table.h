@@ -6,6 +6,9 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "osteomill/ct/read_scan.h"
 
 #include "volume_file.h"
 
@@ -34,8 +37,11 @@ LabelTable read_label_table(const std::filesystem::path& path);
 /// `subject`.
 LabelTable label_table_of(const std::string& subject, const VolumeHeader& header);
 
+/// Returns the names and colours that a scan which is a label map gives its labels.
+LabelTable table_of(const std::vector<LabelName>& names);
+
 /// Returns the labels that a text names: XML or JSON, anything else names none. For extensions of files whose
-/// meaning nobody says.
+/// meaning no document gives.
 LabelTable labels_in_text(const std::string& text);
 
 }  // namespace osteomill

@@ -56,7 +56,7 @@ constexpr std::array kNames{"NDims",
                             "ElementDataFile"};
 
 // The header ends with the line that names the data; before it, fields may come in any order. What ITK passes
-// over is passed over here: empty lines, lines that are no field, and fields that nobody knows.
+// over is passed over here: empty lines, lines that are no field, and unknown fields.
 HeaderFields read_fields(const std::string& subject, std::istream& in) {
   HeaderFields fields{subject};
   std::string line;
@@ -94,7 +94,7 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
   return found->second;
 }
 
-// The first three of so many numbers.
+// Returns the first three of `count` numbers.
 std::vector<double> first_three(const HeaderFields& fields, const std::string& name, std::size_t count) {
   std::vector<double> numbers = fields.numbers(name);
   if (numbers.size() != count)
@@ -104,7 +104,7 @@ std::vector<double> first_three(const HeaderFields& fields, const std::string& n
   return numbers;
 }
 
-// The columns of a matrix of so many dimensions, of which the first three are those of space.
+// Returns the columns of a square matrix, whose first three dimensions are those of space.
 Mat3 axes_of(const HeaderFields& fields, const std::string& name, std::size_t dimensions) {
   const std::vector<double> values = fields.numbers(name);
   if (values.size() != dimensions * dimensions) {

@@ -80,7 +80,7 @@ class Bytes {
   bool swap_ = false;
 };
 
-// What is read of a header, whichever of the two layouts it has.
+// Holds what is read of a header, whichever of the two layouts it has.
 struct Header {
   std::string subject;
   // dim[0] to dim[7].
@@ -201,7 +201,7 @@ Placement by_sform(const Header& header) {
   return placement;
 }
 
-// Nothing where it is no rotation.
+// Nothing if it is no rotation.
 std::optional<Placement> by_qform(const Header& header) {
   const Vec3& bcd = header.quaternion_bcd;
   if (!(bcd.norm() < 1.01) || !header.qoffset.allFinite()) return std::nullopt;
@@ -215,7 +215,7 @@ bool has_sizes_of(const Placement& placement, const Vec3& spacing) {
   return ((lengths - spacing).cwiseAbs().array() <= kAgreement * spacing.array()).all();
 }
 
-// Why a placement cannot be used as it is; empty where it can.
+// Says why a placement cannot be used as it is; empty if it can.
 std::string fault_of(const Placement& placement, const Vec3& spacing) {
   if (!placement.steps.allFinite() || !placement.origin.allFinite()) return "holds what is no number";
   if (!((placement.steps.colwise().norm().array() > 0).all())) return "has an axis of no length";
@@ -224,7 +224,7 @@ std::string fault_of(const Placement& placement, const Vec3& spacing) {
   return "";
 }
 
-// By the sform, as nibabel and 3D Slicer read it; where it cannot be used, by the qform, as ITK does.
+// Uses the sform, as nibabel and 3D Slicer do; if it cannot be used, the qform, as ITK does.
 Placement placement_of(const Header& header, std::vector<std::string>& warnings) {
   const std::optional<Placement> qform =
       header.qform_code > 0 && (header.spacing.array() > 0).all() ? by_qform(header) : std::nullopt;
@@ -308,7 +308,7 @@ std::string without_ending(const fs::path& path) {
   return name.substr(0, name.size() - 4);
 }
 
-// The file beside that has the same name and one of these endings; nothing where there is none.
+// The file beside that has the same name and one of these endings; nothing if there is none.
 std::optional<fs::path> beside(const fs::path& path, const char* small, const char* large) {
   std::error_code error;
   for (const std::string ending : {small, large}) {

@@ -103,7 +103,7 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
   throw InputError(subject, fmt::format("has voxels of type \"{:.40}\", which is not known", type));
 }
 
-// The texts of a field: in quotes, or the words where it has no quotes.
+// The texts of a field: in quotes, or its words if it has no quotes.
 std::vector<std::string> texts_of(const std::string& field) {
   std::vector<std::string> texts;
   if (field.find('"') == std::string::npos) {
@@ -119,7 +119,7 @@ std::vector<std::string> texts_of(const std::string& field) {
   return texts;
 }
 
-// The units of so many axes, each its own; a single one is that of all.
+// Returns the unit of each axis; a single one is that of all.
 std::vector<std::string> units_of(const HeaderFields& fields, const std::string& name, std::size_t axes) {
   std::vector<std::string> units = texts_of(fields[name]);
   if (units.empty()) units.emplace_back();
@@ -133,7 +133,7 @@ double millimetres(const HeaderFields& fields, const std::string& unit) {
   return millimetres_in(fields.subject, lower(unit));
 }
 
-// A step along each axis, in the directions of the space; nothing where an axis leads nowhere in it ("none").
+// A step along each axis, in the directions of the space; nothing if an axis has no direction in it ("none").
 std::vector<std::optional<std::vector<double>>> space_directions(const std::string& subject,
                                                                  std::string_view rest) {
   constexpr std::size_t kMostAxes = 16;
@@ -238,8 +238,8 @@ Axes axes_of(const HeaderFields& fields) {
   return axes;
 }
 
-// What lies along the axes that are not the grid's: as a rule one value. Segments that may overlap lie along
-// one axis, first or last.
+// Returns the layers along the axes that are not the grid's: as a rule one. Segments that may overlap lie
+// along one axis, first or last.
 VoxelLayers layers_of(const Header& header, const Axes& axes) {
   VoxelLayers layers;
   for (std::size_t axis = 0; axis < axes.sizes.size(); ++axis) {

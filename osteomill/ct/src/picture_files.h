@@ -19,7 +19,7 @@ struct Picture {
 };
 
 /// Each calls `use` with the picture in a file, or with each of its pages in turn. Throws InputError naming
-/// the file where it cannot be read, or takes more than `max_bytes`.
+/// the file if it cannot be read, or takes more than `max_bytes`.
 void read_png(const std::filesystem::path& path, std::uint64_t max_bytes,
               const std::function<void(const Picture&)>& use);
 void read_tiff(const std::filesystem::path& path, std::uint64_t max_bytes,

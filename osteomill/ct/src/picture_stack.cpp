@@ -57,7 +57,7 @@ bool is_png(const fs::path& path) {
 }
 
 // The slices one behind the other. Of pictures with three channels and more a value is a colour: red * 65536
-// + green * 256 + blue, 0 where it is not opaque at all.
+// + green * 256 + blue, 0 if it is not opaque at all.
 class Slices {
  public:
   explicit Slices(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}

@@ -32,7 +32,7 @@ class PictureStack : public testing_support::FolderTest {
     png_init_io(png, file);
     png_set_IHDR(png, info, columns, kRows, 8 * sizeof(Value), colour_type, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    // What shows a picture on a screen does not change its values.
+    // Gamma is for screens and does not change values.
     png_set_gAMA(png, info, 0.45455);
     png_write_info(png, info);
     if (sizeof(Value) == 2) png_set_swap(png);

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What libpng reads a file with. Its errors come back by longjmp, so that functions which call it hold
-// nothing that has a destructor.
+// The state with which libpng reads a file. Its errors come back by longjmp, so that functions which call it
+// hold nothing that has a destructor.
 struct PngFile {
   PngFile() = default;
   ~PngFile() {

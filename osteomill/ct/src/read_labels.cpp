@@ -161,6 +161,56 @@ std::optional<std::string> cover_warning(const FoundLabels& found, const GridGeo
   return fmt::format("{}: {:.0f} % of what it labels lies outside the scan", subject, 100 * (1 - share));
 }
 
+// Labels on a grid of their own.
+struct OwnLabels {
+  const GridGeometry& geometry;
+  std::vector<float> values;
+  LabelTable table;
+};
+
+// Puts labels on the grid of a scan. Errors and warnings name `subject`.
+LabelsRead put_on(const GridGeometry& scan, const std::string& subject, OwnLabels own,
+                  const LabelFiles& files) {
+  if (!files.table.empty()) {
+    LabelTable given = read_label_table(files.table);
+    given.merge(own.table);
+    own.table = std::move(given);
+  }
+  LabelsRead read;
+  const FoundLabels found = find_labels(subject, own.values);
+  std::vector<Label> labels = make_labels(found, own.table, files);
+  if (!files.table.empty()) {
+    if (auto warning = not_in_table(own.table, labels, files)) read.warnings.push_back(*std::move(warning));
+  }
+  const auto map =
+      std::make_shared<const LabelMap>(std::move(labels), scan, own.geometry, places_of(own.values, found));
+  if (map->box().empty()) {
+    throw InputError(subject, fmt::format("labels nothing of the scan: it lies at {}, the scan at {}",
+                                          extent_text(own.geometry), extent_text(scan)));
+  }
+  if (auto warning = cover_warning(found, own.geometry, *map, subject))
+    read.warnings.push_back(*std::move(warning));
+  read.map = map;
+  return read;
+}
+
+// Reads the labels of a DICOM segmentation.
+LabelsRead read_segmentation_labels(const LabelFiles& files, const GridGeometry& scan,
+                                    std::uint64_t max_memory_bytes) {
+  const std::string subject = files.map.string();
+  const ReadOptions options{.series = "", .max_memory_bytes = max_memory_bytes};
+  const bool is_one_file = fs::is_regular_file(files.map) && lower(files.map.extension().string()) != ".zip";
+  const std::optional<Scan> found =
+      is_one_file ? read_dicom(files.map, options) : std::optional(read_scan(files.map, options));
+  if (!found || found->labels.empty())
+    throw InputError(subject, "is not a label map: neither a DICOM segmentation nor by its name another");
+  const Scan& own = *found;
+  LabelsRead read = put_on(
+      scan, subject, {own.grid.geometry(), every_nth_density(own.grid, 1), table_of(own.labels)}, files);
+  for (const std::string& warning : own.warnings) read.warnings.push_back(subject + ": " + warning);
+  return read;
+}
+
 }  // namespace
 
 LabelsRead labels_in(const Scan& scan, const LabelFiles& files) {
@@ -180,14 +230,9 @@ LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan, std::u
   try {
     if (format == nullptr) return read_segmentation_labels(files, scan, max_memory_bytes);
     VolumeHeader header = format->read_header(files.map);
-    const std::vector<float> values = read_volume(subject, header, max_memory_bytes);
-    LabelTable table = label_table_of(subject, header);
-    if (!files.table.empty()) {
-      LabelTable given = read_label_table(files.table);
-      given.merge(table);
-      table = std::move(given);
-    }
-    LabelsRead read;
+    std::vector<float> values = read_volume(subject, header, max_memory_bytes);
+    LabelsRead read =
+        put_on(scan, subject, {header.geometry, std::move(values), label_table_of(subject, header)}, files);
     for (const std::string& warning : header.warnings) read.warnings.push_back(subject + ": " + warning);
     return read;
   } catch (const std::bad_alloc&) {

@@ -124,7 +124,7 @@ void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t m
   }
 }
 
-// Of a folder without DICOM: its only volume file, or its pictures.
+// Reads a folder: DICOM, else its only volume file, or its pictures.
 Scan read_folder(const fs::path& folder, const ReadOptions& options) {
   if (std::optional<Scan> scan = read_dicom(folder, options)) return std::move(*scan);
   std::vector<fs::path> volumes, pictures;

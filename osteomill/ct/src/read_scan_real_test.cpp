@@ -251,7 +251,7 @@ struct OddPhantom {
   const char* path;
   double slice_mm;
   bool has_place;
-  // Part of the only warning; empty where there is none.
+  // Part of the only warning; empty if there is none.
   const char* warning;
 };
 class RealOddPhantom : public ::testing::TestWithParam<OddPhantom> {};

@@ -48,7 +48,7 @@ bool a_value_has_two_layers(const std::set<Place>& places) {
                      [&](const Place& place) { return !values.insert(place.second).second; });
 }
 
-// The layer in which a voxel has a value, and that value; {0, 0} where it has none. Throws InputError where
+// The layer in which a voxel has a value, and that value; {0, 0} if it has none. Throws InputError if
 // it has several.
 class Layers {
  public:

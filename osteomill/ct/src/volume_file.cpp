@@ -89,7 +89,7 @@ std::optional<std::string> filled_in(const std::string& pattern, long number) {
          pattern.substr(at + 1);
 }
 
-// Nothing where it is no pattern with its numbers: then it is a name.
+// Nothing if it is no pattern with its numbers: then it is a name.
 std::optional<std::vector<std::string>> names_of_pattern(const std::string& subject,
                                                          const std::string& said) {
   std::istringstream in(said);

@@ -22,7 +22,7 @@ enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64,
 /// Returns how many bytes one voxel takes.
 std::uint64_t bytes_of(VoxelType type);
 
-/// What a file of voxels holds before them.
+/// The content of a file ahead of its voxels.
 struct BeforeVoxels {
   /// Lines of text, then bytes of the file as it is, then unpacked bytes.
   double lines = 0;
@@ -58,8 +58,8 @@ ByteSource source_behind(std::ifstream in, const BeforeVoxels& before, Packing p
 void set_skip(StoredVoxels& stored, std::uint64_t count);
 
 /// Reads `count` densities, an equal share of them from each file. Nothing is allocated that the file cannot
-/// hold. Throws InputError naming `subject` where the voxels are not all there or damaged, or the densities
-/// would take over `max_bytes`; adds a warning where there is more.
+/// hold. Throws InputError naming `subject` if the voxels are not all there or damaged, or the densities
+/// would take over `max_bytes`; adds a warning if there is more.
 std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
                                std::uint64_t max_bytes, std::vector<std::string>& warnings);
 
@@ -80,7 +80,7 @@ struct VolumeHeader {
   /// True if the header says so; it need not.
   bool is_labels = false;
   VoxelLayers layers{};
-  /// What programs keep beside the header in words of their own: NIfTI's extensions.
+  /// Texts that programs keep beside the header: NIfTI's extensions.
   std::vector<std::string> texts{};
 };
 
@@ -97,8 +97,8 @@ struct VolumeFormat {
   std::vector<std::string_view> endings;
   VolumeHeader (*read_header)(const std::filesystem::path& path);
 };
-/// By how the file's name ends; null where it is none of them. What ends in .img is NIfTI only if its header
-/// lies beside it.
+/// Returns the format by the ending of the file's name; null if it is none of them. A name that ends in .img
+/// is NIfTI only if its header lies beside it.
 const VolumeFormat* volume_format_of(const std::filesystem::path& path);
 
 /// Reads what the header is of, layers as one (`merge_layers`). Throws InputError naming `subject`.

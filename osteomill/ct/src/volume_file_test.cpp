@@ -349,7 +349,7 @@ TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
   expect_voxels(read_scan(write("b.mha", mha(fields + "CompressedData = True\n" + size, packed))).grid);
 }
 
-// As ITK reads them, whose field names come in any order and whose unknown ones are passed over.
+// ITK's rules: field names come in any order and whose unknown ones are passed over.
 TEST_F(VolumeFile, OddHeadersOfMetaImageAreRead) {
   const std::string data = voxels<std::int16_t>();
   const std::string odd =

@@ -22,7 +22,7 @@ constexpr std::size_t kMaxText = 60000;
 // A character of the private use area for each byte from 0x80 on.
 constexpr std::uint32_t kByteAsCharacter = 0xF700;
 
-// How many bytes the character takes that a text begins with, and which it is; no bytes where it is no UTF-8.
+// The first character of a text, and how many bytes it takes; no bytes if it is no UTF-8.
 struct Character {
   std::size_t bytes = 0;
   std::uint32_t code = 0;

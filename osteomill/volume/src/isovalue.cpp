@@ -203,7 +203,7 @@ struct Choice {
   bool is_halfway = false;
 };
 
-// Of samples that ascend.
+// Takes samples that ascend.
 Choice isovalue_of_bone(std::span<const Sample> samples, bool in_hounsfield_units) {
   if (!(samples.back().density > samples.front().density)) {
     return {samples.front().density, "the only density there is"};

@@ -77,14 +77,14 @@ std::vector<int> ranks_of(const Values& values) {
 
 // How the values of neighbours differ, as shares.
 struct Edges {
-  // Of the edges between two values, those that leave out a value between them.
+  // Share of the edges between two values that leave out a value between them.
   double far = 0;
-  // Of the voxels that are not 0, those whose value often lies between a lower and a higher one.
+  // Share of the voxels that are not 0 whose value often lies between a lower and a higher one.
   double between = 0;
 };
 
 Edges edges_of(const DensityGrid& grid, const std::vector<int>& ranks) {
-  // Of the voxels of a value.
+  // Share of the voxels of a value.
   constexpr double kOften = 0.2;
   struct Count {
     std::size_t voxels = 0;
@@ -132,14 +132,14 @@ Edges edges_of(const DensityGrid& grid, const std::vector<int>& ranks) {
 }  // namespace
 
 LabelGuess guess_labels(const DensityGrid& grid) {
-  // Of real label maps the first is at least 0.23 and the second 0. Of CTs and phantoms in 3 to 256 levels
+  // In real label maps the first is at least 0.23 and the second 0. Of CTs and phantoms in 3 to 256 levels
   // the first is at most 0.05 or the second at least 0.018.
   constexpr double kSeldomFar = 0.05, kSeldomBetween = 0.01, kOftenBetween = 0.05;
   constexpr std::size_t kFewLevels = 32;
   const Values values = values_of(grid);
   if (values.different < 2) return LabelGuess::densities;
   const bool mostly_0 = values.counts[0] == *std::max_element(values.counts.begin(), values.counts.end());
-  // Of two values none can lie between others, and the bone of a mask is what it would be as a scan.
+  // With two values none can lie between others, and the bone of a mask is what it would be as a scan.
   if (values.different == 2) return mostly_0 ? LabelGuess::labels : LabelGuess::densities;
   const Edges edges = edges_of(grid, ranks_of(values));
   const bool touch_any = edges.far >= kSeldomFar;

@@ -51,7 +51,7 @@ TEST(LabelScan, SegmentationsAndMasksLookLikeLabels) {
             })));
 }
 
-// The brain, with so many voxels of another label strewn over it.
+// The brain, with `strays` voxels of another label strewn over it.
 DensityGrid strewn(std::size_t strays, double label) {
   std::vector<float> values = every_nth_density(filled(brain), 1);
   std::size_t left = strays;
@@ -71,7 +71,7 @@ TEST(LabelScan, AFewStrayVoxelsOfALabelDecideNothing) {
   }
 }
 
-// As a phantom's edges hold a few voxels of other levels, which make no two materials lie beside each other.
+// A phantom's edges hold a few voxels of other levels, which make no two materials lie beside each other.
 TEST(LabelScan, AFewStrayVoxelsOfALevelDecideNothing) {
   int number = 0;
   const DensityGrid phantom = filled([&](const Vec3& p) {

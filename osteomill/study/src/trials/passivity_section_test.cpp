@@ -118,18 +118,20 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
       for (double* unrest : {&row.metrics.force_N.hp_rms, &row.metrics.force_N.hp_share})
         *unrest *= 1 + 0.01 * static_cast<double>(seed);
       extras.others->push_back(row);
+      if (row.phase == kHolding) extras.in_one_hole.push_back(row);
     }
   }
   const std::string html = bytes_of(write_comparison_report(runs, out_, extras));
-  for (const char* file : {"study.csv", "stability.csv", "summary.csv", "figures/study_milling.svg",
-                           "figures/study_holding.png", "figures/stability.svg"}) {
+  for (const char* file :
+       {"study.csv", "one-hole.csv", "stability.csv", "summary.csv", "figures/study_milling.svg",
+        "figures/study_holding.png", "figures/stability.svg"}) {
     EXPECT_TRUE(fs::exists(out_ / file)) << file;
   }
   std::size_t place = 0;
   for (const char* next :
-       {"8 simulated hands", "force above 20 Hz, rms, milling (N)", "The bone before and after", ">Force<",
-        ">Torque<", ">Shaft<", "The paper's findings", "Study over 8 hands", "Passivity against a flat wall",
-        "How long the ticks took", "What was run", ">Settings<"}) {
+       {"8 simulated hands", "Calm force while milling", "The bone before and after", ">Force<", ">Torque<",
+        ">Shaft<", "The paper's findings", "Study over 8 hands", "Holding still in one hole",
+        "Passivity against a flat wall", "How long the ticks took", "What was run", ">Settings<"}) {
     const std::size_t found = html.find(next, place);
     ASSERT_NE(found, std::string::npos) << next;
     place = found;

@@ -56,7 +56,8 @@ struct ReadOptions {
 /// (a folder of PNG or TIFF, a TIFF file of several pages), or a zip archive or folder of any of these. W is
 /// the patient's LPS frame in mm (NIfTI's RAS is turned into it); stored values are rescaled to what they
 /// mean (RescaleSlope, RescaleIntercept). Throws InputError, naming the path and the reason, if it is not a
-/// scan that can be placed in space without guessing. Bounded memory: what the header asks for is held
+/// scan that can be placed in space without guessing. Voxels for which it has no density, padding and NaN,
+/// are known to the grid (`DensityGrid::has_density`). Bounded memory: what the header asks for is held
 /// against the file and the options before it is allocated. Names of patients, their dates and numbers are
 /// never read.
 Scan read_scan(const std::filesystem::path& path, const ReadOptions& options = {});

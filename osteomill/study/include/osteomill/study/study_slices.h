@@ -72,8 +72,8 @@ Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<
 /// Written under another name and renamed. Throws InputError if it cannot be written.
 void write_slice(const StudyFolder& study, const Slice& slice);
 
-/// Nothing where there is no such file, or it is cut short, damaged, or of another study: it is to be run
-/// (again). Throws InputError where another program holds a lock on it.
+/// Returns nothing if there is no such file, or it is cut short, damaged, or of another study: it is to be
+/// run (again). Throws InputError if another program holds a lock on it.
 std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number);
 
 /// The progress of a study, by the files of its folder; the rows that these hold are put behind `rows`.

@@ -5,7 +5,7 @@
 /// Scans that hold labels in the place of densities. Passes over the voxels; not for the tick.
 namespace osteomill {
 
-/// What the values of a grid look like: densities, labels, or either.
+/// The guess at a grid's values: densities, labels, or either.
 enum class LabelGuess { densities, unclear, labels };
 
 /// Guesses whether a grid holds labels: few small whole numbers from 0 up, 0 the commonest, that are no
