@@ -93,6 +93,8 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
     EXPECT_EQ(html.find(link), std::string::npos) << link;
   }
   EXPECT_NE(html.find("osteomill compare --out &lt;folder&gt; --seed 1"), std::string::npos);
+  EXPECT_NE(html.find("bone is felt when it meets the burr's centre, 1.5 mm after its rim"),
+            std::string::npos);
   EXPECT_NE(html.find("holds in this hand</span>"), std::string::npos);
   const std::string summary = bytes_of(out_ / "summary.csv");
   EXPECT_EQ(std::count(summary.begin(), summary.end(), '\n'), 7);

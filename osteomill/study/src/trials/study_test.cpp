@@ -100,6 +100,14 @@ TEST(Study, FindingsAreCountedHandByHand) {
   EXPECT_EQ(check_study_findings(Study(sample_rows(5, 0.1)))[1].verdict, Verdict::does_not_agree);
 }
 
+TEST(Study, FewerThanFiveHandsSettleNoFinding) {
+  for (const std::uint64_t seeds : {1u, 4u, 5u}) {
+    const auto findings = check_study_findings(Study(sample_rows(seeds)));
+    EXPECT_EQ(findings[1].agreeing, seeds);
+    EXPECT_EQ(findings[1].verdict, seeds < 5 ? Verdict::not_settled : Verdict::agrees) << seeds;
+  }
+}
+
 // 2's hands in other grips are no rows of the study, and decide one finding.
 TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
   std::vector<MeasuredRun> rows = sample_rows(3);
