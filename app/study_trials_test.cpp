@@ -90,7 +90,7 @@ TEST_F(StudyOfScans, EveryFieldOfTheBoneTellsBonesApart) {
     EXPECT_EQ(bone_text(asked_trial({{field.option, value}})) != bone_text({}), of_the_bone) << field.option;
     told += of_the_bone ? 1 : 0;
   }
-  EXPECT_EQ(told, 6u);
+  EXPECT_EQ(told, 7u);
   EXPECT_NE(bone_text(asked_trial({{"iso", "300"}})), bone_text(asked_trial({{"iso", "400"}})));
   EXPECT_EQ(bone_text(asked_trial({{"push", "2"}, {"burr-radius", "2"}})), bone_text({}));
 }

@@ -519,9 +519,13 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t
     DcmDataset& data = *header.data->getDataset();
     describe(data, header);
     // A file that is encoded in an unknown way may look damaged.
-    const bool is_known = header.undecodable.empty() || !header.is_image();
+    const bool is_known = header.undecodable.empty();
     header.lost = loaded->damaged && header.pixel_bytes == 0 && is_known;
-    if (loaded->damaged && is_known) throw InputError(path.string(), "is cut short or damaged");
+    if (loaded->damaged) {
+      throw InputError(path.string(), is_known ? "is cut short or damaged"
+                                               : fmt::format("is encoded as {}, which is not supported",
+                                                             header.undecodable));
+    }
     if (!header.is_directory()) FileReader(data, header).read_frames();
   } catch (const InputError& fault) {
     header.fault = fault;
