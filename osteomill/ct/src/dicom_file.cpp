@@ -520,7 +520,7 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t
     describe(data, header);
     // A file that is encoded in an unknown way may look damaged.
     const bool is_known = header.undecodable.empty();
-    header.lost = loaded->damaged && header.pixel_bytes == 0 && is_known;
+    header.lost = loaded->damaged && header.pixel_bytes == 0 && (is_known || !header.is_image());
     if (loaded->damaged) {
       throw InputError(path.string(), is_known ? "is cut short or damaged"
                                                : fmt::format("is encoded as {}, which is not supported",
