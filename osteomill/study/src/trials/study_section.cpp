@@ -523,8 +523,7 @@ std::vector<Table> conclusions(const Study& study, const std::map<std::string, P
 
 // An algorithm whose test most hands could not do is taken for nothing, however calm it is.
 std::string which_to_take(const Study& study) {
-  if (study.algorithms().size() == 1) return "";
-  if (!are_compared(study)) return "Which to take for what, these hands are too few to settle.";
+  if (!are_compared(study)) return "";
   std::map<AlgorithmId, std::vector<std::string>> reasons;
   std::vector<std::string> same, open;
   for (const Question& question : questions_of(study)) {

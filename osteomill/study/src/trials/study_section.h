@@ -54,7 +54,7 @@ std::string too_few_hands(const Study& study);
 std::vector<Table> conclusions(const Study& study, const std::map<std::string, Probe>& probes = {});
 
 /// Returns one sentence on which algorithm to take for what, by the ranks that the hands settle, and what
-/// they do not settle; empty for one algorithm alone.
+/// they do not settle; empty if the hands are too few, or for one algorithm alone.
 std::string which_to_take(const Study& study);
 
 /// Returns the report's section on a study: medians with their intervals, and which differences between
