@@ -126,6 +126,7 @@ std::vector<MeasuredRun> hold_in_one_hole(const CompareOptions& options, const s
   TrialPlan miller = own == trials.end() ? trials.front() : *own;
   miller.settings.algorithm = default_algorithm();
   std::vector<TrialPlan> hands{miller};
+  hands.reserve(static_cast<std::size_t>(options.seeds));
   for (int n = 1; n < options.seeds; ++n)
     hands.push_back(with_seed(miller, options.trial.milling.seed + static_cast<std::uint64_t>(n)));
   std::vector<MeasuredRun> runs;

@@ -140,8 +140,9 @@ Cell differences(const Study& study, std::string_view phase, const Field<RunMetr
           {fmt::format("{}, {}: same for a hand ({}), {}", first, second, size_text(pair), p_text(pair.p)),
            Look::faint});
     } else {
-      pieces.push_back(
-          {pair.second_is_greater ? second + " > " + first : first + " > " + second, Look::strong});
+      pieces.push_back({pair.second_is_greater ? fmt::format("{} > {}", second, first)
+                                               : fmt::format("{} > {}", first, second),
+                        Look::strong});
       pieces.push_back({fmt::format(", {}, {}", size_text(pair), p_text(pair.p))});
     }
   }
@@ -537,6 +538,7 @@ std::string which_to_take(const Study& study) {
     if (first.size() == 1) reasons[first.front().algorithm].push_back(question.name);
   }
   std::vector<std::string> parts;
+  parts.reserve(reasons.size() + 2);
   for (const auto& [algorithm, names] : reasons)
     parts.push_back(fmt::format("take {} for {}", algorithm.label, fmt::join(names, ", ")));
   if (!same.empty())
