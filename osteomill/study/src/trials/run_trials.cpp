@@ -146,7 +146,8 @@ std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::ve
   MillingTrial milling(milled.bone, milled.densities, milled.entry, milled.settings);
   while (milling.is_milling() && !milling.finished()) milling.tick();
   std::vector<MeasuredRun> runs;
-  for (const TrialPlan& hold : holds) {
+  for (TrialPlan hold : holds) {
+    hold.settings.hand_and_device = milled.settings.hand_and_device;
     MillingTrial trial(milling, hold.settings);
     Recording holding;
     holding.path = fmt::format("{}, seed {}, in one hole", hold.settings.algorithm.id.name,
@@ -156,7 +157,6 @@ std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::ve
     note_shortfall(trial, milled.settings.hand_and_device.script, holding);
     runs.push_back(measured_phase(holding));
     runs.back().recording = nullptr;
-    runs.back().seed = milled.settings.hand_and_device.seed;
   }
   return runs;
 }
