@@ -22,6 +22,7 @@ for text in "Study over 3 hands" "no difference can be significant"; do
   grep -q "$text" a/report.html || fault "report.html does not say: $text"
 done
 [ "$(untimed a/study.csv "" | cut -d, -f13 | grep -c "[1-9]")" -gt 10 ] || fault "hardly a trial touched the bone"
+diff <(cut -d, -f1-3 a/study.csv | sort -u) <(cut -d, -f1-3 a/one-hole.csv | sort -u) || fault "other hands held in one hole"
 [ ! -e a/stability.csv ] || fault "--no-stability measured stability"
 
 "$osteomill" report a/*.h5 --out again >again.out
