@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # What the hand got, as its device wrote it down, when either side of the datagrams is killed:
 #   killed_test.sh OSTEOMILL UDP_DEVICE
-# The device is the example in C: a line for every millisecond, with the time, when it last heard a wrench, the force
-# and the torque that it drove.
+# The device writes a line for every millisecond: the time, when it last heard a wrench, the force and the torque that it
+# drove.
 set -euo pipefail
 osteomill=$1 udp_device=$2
 folder=$(mktemp -d)
@@ -27,19 +27,10 @@ until_true() {  # SECONDS WHAT COMMAND...
   done
   fail "never $2"
 }
-# On a machine that is held up the tool may be placed when the handle is lowest, and then comes no lower: once more.
 press() {  # SECONDS
-  for _ in 1 2 3 4 5; do
-    begin_device
-    begin_milling "$1"
-    for _ in $(seq 70); do
-      ! pressed || return 0
-      sleep 0.1
-    done
-    kill -9 $program $device
-    wait $program $device 2>/dev/null || true
-  done
-  fail "never pressed"
+  begin_device
+  begin_milling "$1"
+  until_true 60 "pressed" pressed
 }
 pressed() { [ -s hand ] && tail -n 1 hand | awk '{ exit !($3 * $3 + $4 * $4 + $5 * $5 > 0.01) }'; }
 # No step above 4 N or 100 N mm in a millisecond, and once the last wrench is 5 ms old, zero within 5 more.
@@ -55,7 +46,7 @@ judge() {
 }
 
 # osteomill is killed while the hand presses: the device's own lapse lets go of it. Until then no other program has it.
-press 60
+press 90
 ! "$osteomill" live --device "udp:127.0.0.1:$port" --seconds 1 >/dev/null 2>second || fail "two programs have one device"
 grep -q "udp:127.0.0.1:$port: another program has the device in use" second || fail "why: $(cat second)"
 kill -9 $program
@@ -65,7 +56,7 @@ wait $device || fail "the device ended otherwise"
 judge 1 "osteomill killed"
 
 # It is asked to end: the hand is let go of by a wrench, before it is a matter of lapsing.
-press 60
+press 90
 kill -TERM $program
 sleep 0.3
 kill $device
@@ -73,15 +64,16 @@ wait $device || true
 judge 1 "osteomill ended"
 
 # The device is killed: osteomill says so, and goes on when it is there again.
-press 12
+press 20
 kill -9 $device
 wait $device 2>/dev/null || true
-until_true 10 "missed" grep -qE "example device: has (been gone|given no pose) for" errors
+until_true 10 "missed" grep -qE "sinking device: has (been gone|given no pose) for" errors
 judge 0 "the device killed"
 begin_device
-until_true 10 "there again" grep -q "example device: all is well again" errors
+until_true 10 "there again" grep -q "sinking device: all is well again" errors
+until_true 60 "pressed again" pressed
 wait $program || fail "osteomill ended with $?"
-grep -qE "^device +example device: .* poses/s, at fault [1-9]" said || fail "what was wrong is not counted"
+grep -qE "^device +sinking device: .* poses/s, at fault [1-9]" said || fail "what was wrong is not counted"
 sleep 0.3
 kill $device
 wait $device || true

@@ -1,0 +1,24 @@
+/* The example of a device's side with a hand that sinks by 2 mm/s, so that it presses soon after the tool is placed,
+ * whenever that is. */
+#define OWN_DEVICE
+#include "../../examples/udp_device.c"
+
+static void describe(struct answer *answer) {
+  strcpy(answer->name, "sinking device");
+  answer->sensed = answer->driven = 6;
+  answer->max_force_N = 10;
+  answer->max_torque_Nmm = 200;
+}
+
+static int read_handle(double time_s, struct state *state) {
+  state->position_mm[1] = -2 * time_s;
+  state->orientation_wxyz[0] = 1;
+  state->buttons = 1;
+  state->not_driven = 0;
+  return 1;
+}
+
+static void drive_motors(const double force_N[3], const double torque_Nmm[3]) {
+  (void)force_N;
+  (void)torque_Nmm;
+}
