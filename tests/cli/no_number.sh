@@ -19,11 +19,12 @@ refused() {
 }
 
 words='FILE|FOLDER|SERIES|DEVICE|HOST:PORT|LABEL,...|SETTING|TEXT'
-options() { "$osteomill" "$1" --help | sed -nE 's/^  (-.,)?(--[a-z-]+)( ([^ ]+))?( .*)?$/\2 \4/p' | grep -v -- "--help"; }
+options() { sed -nE 's/^  (-.,)?(--[a-z-]+)( ([^ ]+))?( .*)?$/\2 \4/p' <<<"$1" | grep -v -- "--help"; }
 tried=0
 for command in simulate compare live rates replay info mesh save devices settings report study; do
+  help=$("$osteomill" "$command" --help)
   while read -r option type; do
-    if "$osteomill" "$command" --help | grep -qE -- "^  $option( ?$|  )"; then
+    if grep -qE -- "^  $option( ?$|  )" <<<"$help"; then
       value=nan text="$option: nan .*true.*false"
     elif [[ "|$words|" == *"|$type|"* ]]; then
       continue
@@ -34,7 +35,7 @@ for command in simulate compare live rates replay info mesh save devices setting
     tried=$((tried + 1))
     refused 2 "$text" "$command" "$option=$value"
     [ "$type" = "" ] || [ "$type" = X,Y,Z ] || refused 2 "$option: .*inf" "$command" "$option=inf"
-    if "$osteomill" "$command" --help | grep -q -- "--config"; then
+    if [[ $help == *--config* ]]; then
       [ "$value" = nan ] && toml=nan || toml="[0, nan, 0]"
       [ "$command" != replay ] || printf 'time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling\n0,0,0,30,1,0,0,0,0\n' >t.csv
       for value in "$toml" "[]"; do
@@ -42,7 +43,7 @@ for command in simulate compare live rates replay info mesh save devices setting
         refused 1 "^osteomill: c.toml: line 1: .*${option#--}" "$command" $([ "$command" = replay ] && echo t.csv) --config c.toml
       done
     fi
-  done < <(options "$command")
+  done < <(options "$help")
 done
 [ $tried -gt 150 ] || fault "only $tried options were tried"
 
@@ -53,7 +54,7 @@ while read -r option type; do
   [ "$option" = --push ] && varied=seed || varied=push
   printf '[fixed]\n%s = %s\n[grid]\n%s = [1, 2]\n' "${option#--}" "$value" $varied >s.toml
   refused 1 "^osteomill: s.toml: .*(${option#--}: .*nan|nan)" study s.toml --list
-done < <({ options compare; printf -- '--rate Hz\n--voxel mm\n--device-damping N\n--grip NUMBER\n--draw-hand\n'; } | sort -u)
+done < <({ options "$("$osteomill" compare --help)"; printf -- '--rate Hz\n--voxel mm\n--device-damping N\n--grip NUMBER\n--draw-hand\n'; } | sort -u)
 refused 2 "nan .*number" compare --set point-shell.scale=nan
 refused 2 "stiffness .*number" compare --set surface-points.stiffness=inf
 [ $faults -eq 0 ]
