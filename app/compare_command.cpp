@@ -63,7 +63,7 @@ std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone
   for (const AlgorithmDescription& algorithm : options.algorithms) {
     trials.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);
     trials.back().settings.algorithm = algorithm;
-    warn_of_doubts(trials.back().settings, bone.volume.geometry());
+    warn_of_settings(trials.back().settings, bone.volume.geometry());
   }
   return trials;
 }

@@ -183,7 +183,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   Holder holder(options.device);
   MillingSetup setup = options.trial.milling.setup;
   LoadedBone loaded = load_bone(options.scan);
-  warn_of_doubts(setup, loaded.volume.geometry());
+  warn_of_settings(setup, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const std::shared_ptr<const LabelMap> labels = bone->labels();
   const MillingEntry entry = place_entry(*bone, options.trial);

@@ -33,7 +33,7 @@ void run_rates(const RatesOptions& options) {
   TrialPlan plan = trial_plan(bone, options.trial, "");
   for (const AlgorithmDescription& algorithm : options.algorithms) {
     plan.settings.algorithm = algorithm;
-    warn_of_doubts(plan.settings, bone.volume.geometry());
+    warn_of_settings(plan.settings, bone.volume.geometry());
   }
   MeasuredRates measured{measure_rates(plan, options.algorithms, show_progress), {}};
   end_progress();

@@ -81,7 +81,7 @@ class Log {
 void replay_trajectory(ReplayOptions options) {
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.input);
   LoadedBone bone = load_bone(options.scan);
-  warn_of_doubts(options.milling.setup, bone.volume.geometry());
+  warn_of_settings(options.milling.setup, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   MillingSetup& setup = options.milling.setup;
   setup.guard = GuardSettings::for_simulation(setup.guard.limits, setup.guard.passivity_controller);
@@ -148,7 +148,7 @@ RunDescription run_as(const ReplayOptions& options, RunDescription run, const Gr
   if (!(run.algorithm == algorithm->id)) setup.haptics = {};
   setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
   take_given_options(*options.command, given, setup);
-  warn_of_doubts(setup, scan);
+  warn_of_settings(setup, scan);
   set_session_settings(run, session, 0);
   return run;
 }

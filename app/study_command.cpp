@@ -82,7 +82,7 @@ void check_every_trial(StudyTrials& study) {
       show_progress("checking", static_cast<double>(n) / static_cast<double>(count));
   }
   end_progress();
-  if (const std::string doubt = study.doubt(); !doubt.empty()) warn(doubt);
+  if (const std::string warning = study.settings_warning(); !warning.empty()) warn(warning);
 }
 
 // The CPU time of three trials spread over the study, the shortest first.

@@ -29,7 +29,7 @@ std::string tool_text(const MillingTool& tool) {
 
 // Returns what is poor of its settings. Throws std::invalid_argument if the trial itself would when it
 // begins: a setting is out of its range, or does not go with the bone.
-std::vector<std::string> doubts_of(StudyTest test, const TrialPlan& trial) {
+std::vector<std::string> trial_warnings(StudyTest test, const TrialPlan& trial) {
   const TrialSettings& settings = trial.settings;
   if (test != StudyTest::milling) {
     require_valid(settings.hand_and_device.handle);
@@ -37,11 +37,11 @@ std::vector<std::string> doubts_of(StudyTest test, const TrialPlan& trial) {
       throw std::invalid_argument(settings.algorithm.id.name + " has no stiffness");
     // Beyond the wall nothing is felt, so the shaft may be wider.
     return make_algorithm(settings.algorithm, settings.haptics)
-        ->doubts_about(settings.tool, trial.bone.geometry());
+        ->setting_warnings(settings.tool, trial.bone.geometry());
   }
   milling_settings(settings);
   SimulatedOperator(settings.hand_and_device, settings.tool, trial.entry);
-  return doubts_about(settings, trial.bone.geometry());
+  return setting_warnings(settings, trial.bone.geometry());
 }
 
 std::vector<Text> trial_texts() {
@@ -205,9 +205,9 @@ TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
   return plan;
 }
 
-std::string StudyTrials::doubt() const {
-  if (doubted_.size() < 2) return first_doubt_;
-  return fmt::format("{}; {} of the trials are in doubt", first_doubt_, doubted_.size());
+std::string StudyTrials::settings_warning() const {
+  if (warned_trials_.size() < 2) return first_warning_;
+  return fmt::format("{}; {} of the trials are in doubt", first_warning_, warned_trials_.size());
 }
 
 std::vector<TrialPlan> StudyTrials::make(std::size_t first, std::size_t count) {
@@ -216,9 +216,9 @@ std::vector<TrialPlan> StudyTrials::make(std::size_t first, std::size_t count) {
   for (std::size_t number = first; number < first + count; ++number) {
     try {
       trials.push_back(trial_of(design_.trial(number)));
-      const std::vector<std::string> doubts = doubts_of(design_.test, trials.back());
-      if (!doubts.empty() && doubted_.insert(number).second && doubted_.size() == 1)
-        first_doubt_ = fmt::format("{}: trial {}: {}", file_, number, doubts.front());
+      const std::vector<std::string> warnings = trial_warnings(design_.test, trials.back());
+      if (!warnings.empty() && warned_trials_.insert(number).second && warned_trials_.size() == 1)
+        first_warning_ = fmt::format("{}: trial {}: {}", file_, number, warnings.front());
     } catch (...) {
       throw_of_trial(file_, number);
     }

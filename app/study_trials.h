@@ -63,8 +63,9 @@ class StudyTrials {
   /// InputError, naming the file and the trial, if a setting is out of its range or does not go with the
   /// others, or if its scan is at fault or has changed.
   std::vector<TrialPlan> make(std::size_t first, std::size_t count);
-  /// Returns a line on the poor settings of trials that were made (doubts_about); empty if there are none.
-  std::string doubt() const;
+  /// Returns a line on the poor settings of trials that were made (setting_warnings); empty if there are
+  /// none.
+  std::string settings_warning() const;
 
  private:
   struct Bone {
@@ -87,8 +88,8 @@ class StudyTrials {
   std::map<std::string, std::unique_ptr<Bone>> bones_;
   std::map<std::string, Volume> walls_;
   std::map<std::string, std::uint64_t> fingerprints_;
-  std::set<std::size_t> doubted_;
-  std::string first_doubt_;
+  std::set<std::size_t> warned_trials_;
+  std::string first_warning_;
 };
 
 }  // namespace osteomill::app

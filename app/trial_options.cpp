@@ -79,8 +79,8 @@ MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {
   return entry;
 }
 
-void warn_of_doubts(const MillingSetup& setup, const GridGeometry& scan) {
-  for (const std::string& doubt : doubts_about(setup, scan)) warn(doubt);
+void warn_of_settings(const MillingSetup& setup, const GridGeometry& scan) {
+  for (const std::string& warning : setting_warnings(setup, scan)) warn(warning);
 }
 
 TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const std::string& command_line) {

@@ -46,8 +46,8 @@ MillingEntry entry_into(const Volume& bone, const TrialOptions& options);
 /// wants.
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options);
 
-/// Warns of settings that are poor in a scan of this grid (doubts_about), and throws as that does.
-void warn_of_doubts(const MillingSetup& setup, const GridGeometry& scan);
+/// Warns of settings that are poor in a scan of this grid (setting_warnings), and throws as that does.
+void warn_of_settings(const MillingSetup& setup, const GridGeometry& scan);
 
 /// Returns the plan of a trial on a bone, which outlives it. Throws std::invalid_argument if the tool cannot
 /// work in that bone, and as entry_into.

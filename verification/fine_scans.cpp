@@ -184,7 +184,7 @@ Section time_of_a_tick(const Effort& effort) {
       for (const Recording* phase : {&phases.milling, &phases.holding}) {
         for (const TickRecord& record : phase->records) {
           busy_us.push_back(record.busy_us());
-          owed.push_back(record.owed_bricks);
+          owed.push_back(record.pending_bricks);
         }
       }
       const double longest_us = std::ranges::max(busy_us);

@@ -102,7 +102,7 @@ void Simulation::look_for_warnings() {
   if (warnings_to_come_.valid()) {
     if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();
   } else if (std::tuple now(milling.isovalue(), milling.setup().tool.burr_radius_mm,
-                            doubts_about(milling.setup(), milling.geometry()));
+                            setting_warnings(milling.setup(), milling.geometry()));
              now != looked_at_) {
     looked_at_ = now;
     warnings_to_come_ = std::async(std::launch::async, [this, now, tool = milling.setup().tool] {

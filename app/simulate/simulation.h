@@ -77,7 +77,7 @@ struct Simulation {
   OpenScan scan;
   std::string command_line;
   /// Warnings about this isovalue, tool and settings (isovalue_warnings,
-  /// coarseness_warnings, doubts_about).
+  /// coarseness_warnings, setting_warnings).
   std::vector<std::string> warnings;
   Holder holder;
   /// Holds the tool where mouse, keyboard or SpaceMouse move it.
@@ -100,7 +100,7 @@ struct Simulation {
   void count_labels();
   void look_for_warnings();
 
-  // The isovalue, the burr's radius (mm) and the doubts (doubts_about) that the warnings are for.
+  // The isovalue, the burr's radius (mm) and the lines of setting_warnings that the warnings are for.
   std::optional<std::tuple<double, double, std::vector<std::string>>> looked_at_;
   std::future<std::vector<std::string>> warnings_to_come_;
   std::uint64_t counted_version_ = 0;

@@ -14,7 +14,7 @@ inline BrickTree::EightBits every_node(int, const VoxelIndex&) {
 /// which lies at `origin_G` + its place in the grid's frame. Makes all bricks.
 template <typename F>
 void for_each_point(BoneBricks& bricks, const BrickPoints& kind, F&& f) {
-  bricks.make_and_visit(every_node, [&](const VoxelIndex& brick, std::uint32_t slot) {
+  bricks.build_and_visit(every_node, [&](const VoxelIndex& brick, std::uint32_t slot) {
     const Vec3 origin_G = bricks.lattice().brick_origin_G(brick);
     kind.for_each_of(slot, [&](const ShellPoint& point) { f(point, origin_G); });
   });

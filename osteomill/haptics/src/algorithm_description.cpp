@@ -31,13 +31,14 @@ bool is_usable(const AlgorithmId& algorithm) {
          colour[0] == '#' && colour.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos;
 }
 
-std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms) {
+std::vector<AlgorithmId> sorted_unique(std::vector<AlgorithmId> algorithms) {
   std::sort(algorithms.begin(), algorithms.end());
-  std::vector<AlgorithmId> once;
+  std::vector<AlgorithmId> unique;
   for (AlgorithmId& algorithm : algorithms) {
-    if (std::find(once.begin(), once.end(), algorithm) == once.end()) once.push_back(std::move(algorithm));
+    if (std::find(unique.begin(), unique.end(), algorithm) == unique.end())
+      unique.push_back(std::move(algorithm));
   }
-  return once;
+  return unique;
 }
 
 const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option) {

@@ -22,7 +22,7 @@ double setting(std::string_view algorithm, const HapticSettings& settings, const
 
 TEST(Algorithms, OneNameStandsOnceWhateverItsLabels) {
   const std::vector<AlgorithmId> once =
-      each_once({{"a", "1 a", ""}, {"b", "2 b", ""}, {"a", "3 a", ""}, {"b", "2 b", ""}});
+      sorted_unique({{"a", "1 a", ""}, {"b", "2 b", ""}, {"a", "3 a", ""}, {"b", "2 b", ""}});
   ASSERT_EQ(once.size(), 2u);
   EXPECT_EQ(once[0].label, "1 a");
   EXPECT_EQ(once[1], "b");

@@ -94,7 +94,7 @@ Fields record_fields() {
   all.push_back(
       field<R>({"owed_bricks", "", NumberRange::count(0),
                 "bricks of bone points that may have shown more bone than there was, left to later ticks"},
-               &R::owed_bricks));
+               &R::pending_bricks));
   add_real(all, "given_share", "", &R::given_share,
            "how much of the force that was asked for the device had sent by then");
   add_vector(

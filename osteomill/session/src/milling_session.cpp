@@ -146,7 +146,7 @@ void MillingSession::work(Device& device, TickRecord& record) {
   record.fault = safe.fault;
   record.cutting_torque_W_Nmm = cutting_torque_W_Nmm;
   record.contacts = step.contacts;
-  record.owed_bricks = step.owed_bricks;
+  record.pending_bricks = step.pending_bricks;
   intersection_W_ = step.intersection_W;
   record.burr_force_W_N = step.burr_force_W_N;
 }

@@ -51,9 +51,9 @@ void require_workable(const MillingTool& tool, const GridGeometry& scan) {
   }
 }
 
-std::vector<std::string> doubts_about(const MillingSetup& setup, const GridGeometry& scan) {
+std::vector<std::string> setting_warnings(const MillingSetup& setup, const GridGeometry& scan) {
   require_workable(setup.tool, scan);
-  return make_algorithm(setup.algorithm, setup.haptics)->doubts_about(setup.tool, scan);
+  return make_algorithm(setup.algorithm, setup.haptics)->setting_warnings(setup.tool, scan);
 }
 
 MillingSettings milling_settings(const MillingSetup& setup) {

@@ -46,7 +46,7 @@ struct Pressed {
   double sunk_mm = 0;
   bool finite = true;
   // In the tick that read or summed the most.
-  std::uint64_t most_points = 0;
+  std::uint64_t max_points = 0;
 };
 
 // The hand goes down, half a percent deeper each tick, until it feels what it wants or its arm ends.
@@ -71,9 +71,9 @@ Pressed press(const MillingSetup& setup, const Put& put, bool spindle_on) {
   while (pressed.force_N < pressed.wanted_N && depth_mm < kArm_mm) tick_at(depth_mm *= 1.005);
   for (int n = 0; n < kHeldTicks; ++n) tick_at(depth_mm);
   const auto* counts = barrier_shell::counts_of(session.algorithm());
-  pressed.most_points = counts != nullptr
-                            ? counts->most_points
-                            : static_cast<std::uint64_t>(session.algorithm().sample_point_count());
+  pressed.max_points = counts != nullptr
+                           ? counts->max_points
+                           : static_cast<std::uint64_t>(session.algorithm().sample_point_count());
   return pressed;
 }
 
@@ -82,28 +82,28 @@ bool says(const std::string& line, const std::string& word) {
 }
 
 // Expects that a setup holds a tool that is pressed by a few newtons; if not, it has to be refused or
-// doubted in words that name `setting`. No algorithm of ours is let off by a doubt.
-void expect_held_or_told(const MillingSetup& setup, const std::string& setting) {
+// warned of in words that name `setting`. No algorithm of ours is excused by a warning.
+void expect_held_or_warned(const MillingSetup& setup, const std::string& setting) {
   // Some hundred microseconds of work.
   constexpr std::uint64_t kMostPoints = 20000;
   constexpr double kMostSunk_mm = 0.3;
   const bool is_ours = setup.algorithm.id == kOurs;
-  std::vector<std::string> doubts;
+  std::vector<std::string> warnings;
   try {
-    doubts = doubts_about(setup, small_bone().geometry());
+    warnings = setting_warnings(setup, small_bone().geometry());
   } catch (const std::invalid_argument& error) {
     EXPECT_TRUE(says(error.what(), setting)) << error.what();
     EXPECT_THROW(press(setup, kPuts[0], false), std::invalid_argument) << "the session has to refuse it too";
     return;
   }
-  for (const std::string& doubt : doubts) EXPECT_TRUE(says(doubt, setting)) << doubt;
+  for (const std::string& warning : warnings) EXPECT_TRUE(says(warning, setting)) << warning;
   // With the paper's algorithms the shaft alone gives only a torque.
   for (const Put& put : is_ours ? std::span(kPuts) : std::span(kPuts).first(1)) {
     const Pressed pressed = press(setup, put, false);
     EXPECT_TRUE(pressed.finite) << put.name;
-    if (!doubts.empty() && !is_ours) continue;
+    if (!warnings.empty() && !is_ours) continue;
     EXPECT_GT(pressed.force_N, 0.9 * pressed.wanted_N) << put.name;
-    EXPECT_LE(pressed.most_points, kMostPoints) << put.name;
+    EXPECT_LE(pressed.max_points, kMostPoints) << put.name;
     EXPECT_LT(pressed.sunk_mm, is_ours ? kMostSunk_mm : setup.tool.burr_radius_mm) << put.name;
   }
 }
@@ -115,8 +115,8 @@ MillingSetup setup_of(const AlgorithmDescription& algorithm) {
 TEST(SettingRanges, EveryDefaultHoldsWithoutADoubt) {
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     SCOPED_TRACE(algorithm.id.name);
-    EXPECT_TRUE(doubts_about(setup_of(algorithm), small_bone().geometry()).empty());
-    expect_held_or_told(setup_of(algorithm), "none");
+    EXPECT_TRUE(setting_warnings(setup_of(algorithm), small_bone().geometry()).empty());
+    expect_held_or_warned(setup_of(algorithm), "none");
   }
 }
 
@@ -127,7 +127,7 @@ TEST(SettingRanges, EitherEndOfAnAlgorithmsSettingHoldsOrIsToldOf) {
         SCOPED_TRACE(algorithm.id.name + "." + setting.name + " = " + std::to_string(value));
         MillingSetup setup = setup_of(algorithm);
         setup.haptics.named = {{algorithm.id.name, setting.name, value}};
-        expect_held_or_told(setup, setting.name);
+        expect_held_or_warned(setup, setting.name);
       }
     }
   }
@@ -141,7 +141,7 @@ TEST(SettingRanges, EitherEndOfToolCuttingAndLimitsHoldsOrIsToldOf) {
         SCOPED_TRACE(algorithm.id.name + ", " + field.option + " = " + std::to_string(value));
         MillingSetup setup = setup_of(algorithm);
         field.set(setup, value);
-        expect_held_or_told(setup, field.option.substr(0, field.option.find('-')));
+        expect_held_or_warned(setup, field.option.substr(0, field.option.find('-')));
       }
     }
   }
@@ -168,7 +168,7 @@ TEST(SettingRanges, PointsLieAsCloseAsAThinToolNeeds) {
     SCOPED_TRACE(std::to_string(tool.burr_radius_mm) + " " + std::to_string(tool.shaft_radius_mm));
     MillingSetup setup = setup_of(default_algorithm());
     setup.tool = tool;
-    expect_held_or_told(setup, "none");
+    expect_held_or_warned(setup, "none");
   }
 }
 

@@ -25,32 +25,32 @@ namespace {
 constexpr std::size_t kNearPoints = 65536;
 constexpr int kCentrelinePoints = 51;
 
-// Sums over the points a tick, at most.
-constexpr int kPasses = 4;
+// Largest number of sums over the points in a tick.
+constexpr int kMaxPasses = 4;
 // Factor by which a step is shortened if the energy did not fall.
-constexpr double kShorter = 0.4;
+constexpr double kBacktrackFactor = 0.4;
 // A step below both counts as converged: the sums after it would be the same.
-constexpr double kDone_mm = 2e-4;
-constexpr double kDone_rad = 2e-5;
+constexpr double kConvergedStep_mm = 2e-4;
+constexpr double kConvergedStep_rad = 2e-5;
 // Rounding error of the energy, as a share of it: it is summed in single precision.
 constexpr double kEnergyRounding = 1e-6;
 // Relative rise of the energy attributed to rounding: the last, unevaluated step and another order of
 // summing.
-constexpr double kNoRise = 1e-5;
+constexpr double kEnergyRiseTolerance = 1e-5;
 
 // The most that the tool moves between two gatherings, and what a gathering reaches for.
 constexpr MoveSize kMaxLeeway{0.4, 0.03};
 constexpr MoveSize kMinLeeway{0.05, 0.004};
-constexpr MoveSize kLeewayToSpare{0.03, 0.002};
+constexpr MoveSize kExtraLeeway{0.03, 0.002};
 constexpr double kLeewayPerMove = 3;
-// In free space: farther than the fastest hand goes in a tick.
-constexpr MoveSize kFarthestFlight{5.0, 0.3};
+// Largest move in free space: farther than the fastest hand goes in a tick.
+constexpr MoveSize kMaxFreeMove{5.0, 0.3};
 
 // For a tool that begins in touch with bone: its cores are first made so small that the nearest point lies
-// kStartShare of the skin's width away. They then grow at up to kGrowth_mm_s, as long as the nearest point
-// keeps more than kGrownShare of the skin's width.
-constexpr double kStartShare = 0.2;
-constexpr double kGrownShare = 0.02;
+// kStartGapShare of the skin's width away. They then grow at up to kGrowth_mm_s, as long as the nearest point
+// keeps more than kMinGapShare of the skin's width.
+constexpr double kStartGapShare = 0.2;
+constexpr double kMinGapShare = 0.02;
 constexpr double kGrowth_mm_s = 5;
 // A move of the device beyond these in a tick counts as a placement, not as a motion of the hand; the wrench
 // is then blended over kRamp_s.
@@ -74,7 +74,7 @@ ToolMove in_world(const Pose& X_WT, const Vector6& move_T) {
 
 // How often the damping is corrected, and by how much a step may then leave the balls before it is cut short.
 constexpr int kDampings = 6;
-constexpr double kBoundKept = 1.01;
+constexpr double kBoundTolerance = 1.01;
 // Lower bound on a radius that is a divisor, mm: in a tick of length zero nothing is released.
 constexpr double kMinRadius = 1e-9;
 
@@ -114,7 +114,7 @@ NewtonStep newton_step(const EnergySum& sum, const Coupling& coupling, const Vec
     const Vector6 u = so_far_T + step.move_T;
     const double over[2] = {u.head<3>().norm() / radii[0], u.tail<3>().norm() / radii[1]};
     const int worse = over[1] > over[0] ? 1 : 0;
-    if (over[worse] <= kBoundKept) break;
+    if (over[worse] <= kBoundTolerance) break;
     const Vector6 falling = factor.solve(stiffness.cwiseProduct(u));
     const auto part = u.segment<3>(3 * worse);
     damping +=
@@ -126,7 +126,7 @@ NewtonStep newton_step(const EnergySum& sum, const Coupling& coupling, const Vec
     step.move_T = factor.solve(pull) - so_far_T;
   }
   for (int part = 0; part < 2; ++part) {
-    step.move_T *= share_within(Vec3::Zero(), kBoundKept * radii[part], so_far_T.segment<3>(3 * part),
+    step.move_T *= share_within(Vec3::Zero(), kBoundTolerance * radii[part], so_far_T.segment<3>(3 * part),
                                 step.move_T.segment<3>(3 * part));
   }
   return step;
@@ -158,7 +158,7 @@ void BarrierShell::prepare(const Scene& scene) {
   tool_ = scene.tool;
   barrier_ = skin_of(scene.tool, settings_);
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
-  smaller_mm_ = 0;
+  core_inset_mm_ = 0;
   const Cores whole = cores();
   const double at_shaft_mm = widest_spacing_mm(whole.cylinder_radius_mm);
   const double spacing_mm =
@@ -171,7 +171,7 @@ void BarrierShell::prepare(const Scene& scene) {
 
 void BarrierShell::reset() noexcept {
   has_pose_ = false;
-  carried_ = false;
+  started_inside_bone_ = false;
   has_energy_ = false;
   sent_ = {};
 }
@@ -181,33 +181,33 @@ void BarrierShell::volume_changed(const VolumeChange& change) noexcept {
 }
 
 Cores BarrierShell::cores() const {
-  return Cores::within(tool_, settings_.rounding_mm, smaller_mm_);
+  return Cores::within(tool_, settings_.rounding_mm, core_inset_mm_);
 }
 
-// Begins with cores so small that no point lies in them. Called in every tick until all bone about the tool
-// is known.
+// Begins with cores inset so far that no point lies in them. Called in every tick until all bone about the
+// tool is known.
 void BarrierShell::begin_outside(const Pose& X_WD) {
   last_move_ = {};
-  smaller_mm_ = 0;
+  core_inset_mm_ = 0;
   ramp_ = 0;
   ramp_from_ = {};
   has_energy_ = false;
-  if (carried_) return;
+  if (started_inside_bone_) return;
   gather(X_WT_, {});
   has_begun_ = !near_.is_incomplete();
   near_.measure(cores(), barrier_, X_WT_, measured_);
   const EnergySum &ball = measured_.ball.sum, &cylinder = measured_.cylinder.sum;
   const double nearest_mm = std::min(ball.nearest_mm, cylinder.nearest_mm);
-  smaller_mm_ = std::max(0.0, kStartShare * barrier_.width_mm - nearest_mm);
+  core_inset_mm_ = std::max(0.0, kStartGapShare * barrier_.width_mm - nearest_mm);
   if (ball.touching + cylinder.touching == 0 && X_WT_ == X_WD) ramp_ = 1;
 }
 
 void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
-  if (smaller_mm_ == 0) return;
+  if (core_inset_mm_ == 0) return;
   // No more than there is room for: in a hole too narrow for the tool they stay as small as it.
-  const double room_mm = 0.2 * (nearest_mm - kGrownShare * barrier_.width_mm);
+  const double room_mm = 0.2 * (nearest_mm - kMinGapShare * barrier_.width_mm);
   const double growth = std::clamp(room_mm, 0.0, kGrowth_mm_s * std::max(0.0, dt_s));
-  smaller_mm_ = std::max(0.0, smaller_mm_ - growth);
+  core_inset_mm_ = std::max(0.0, core_inset_mm_ - growth);
   has_energy_ = false;
 }
 
@@ -216,7 +216,7 @@ void BarrierShell::gather(const Pose& X_WT, const MoveSize& leeway) {
   near_.gather(bricks_, cores(), barrier_.width_mm, X_WT, leeway);
 }
 
-BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) {
+BarrierShell::State BarrierShell::evaluate(const Pose& X_WT, const Pose& X_WD) {
   near_.measure(cores(), barrier_, X_WT, measured_);
   const EnergySum &ball = measured_.ball.sum, &cylinder = measured_.cylinder.sum;
   State state{X_WT, coupling_.sum(X_WT, X_WD), ball.energy_Nmm + cylinder.energy_Nmm,
@@ -224,28 +224,28 @@ BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) 
   state.sum += ball;
   state.sum += cylinder;
   ++counts_.passes;
-  counts_.most_points = std::max<std::uint64_t>(counts_.most_points, near_.point_count());
+  counts_.max_points = std::max<std::uint64_t>(counts_.max_points, near_.point_count());
   return state;
 }
 
 // Counts a rise of the stored energy since the last tick, at the device's pose of then.
-void BarrierShell::watch_energy(const State& state) {
+void BarrierShell::count_energy_rise(const State& state) {
   if (!has_energy_) return;
   const double now_Nmm = state.barrier_Nmm + coupling_.energy_Nmm(state.X_WT, X_WD_before_);
   const double rise_Nmm = now_Nmm - energy_before_Nmm_;
-  if (rise_Nmm <= kNoRise * (1 + energy_before_Nmm_)) return;
+  if (rise_Nmm <= kEnergyRiseTolerance * (1 + energy_before_Nmm_)) return;
   ++counts_.energy_rises;
   counts_.energy_risen_Nmm += rise_Nmm;
   counts_.worst_rise_Nmm = std::max(counts_.worst_rise_Nmm, rise_Nmm);
 }
 
 // Returns true if no points are gathered, the move is within the bound, and the path is clear.
-bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) {
+bool BarrierShell::path_is_clear(const Pose& X_WD, const MoveBound& bound) {
   const ToolMove move = move_between(X_WT_, X_WD);
-  const MoveSize way = size_of(move);
-  return near_.is_empty() && share_within(bound, move) >= 1 && way.move_mm <= kFarthestFlight.move_mm &&
-         way.turn_rad <= kFarthestFlight.turn_rad &&
-         look_if_clear(bricks_, cores(), barrier_.width_mm, X_WT_, way);
+  const MoveSize move_size = size_of(move);
+  return near_.is_empty() && share_within(bound, move) >= 1 && move_size.move_mm <= kMaxFreeMove.move_mm &&
+         move_size.turn_rad <= kMaxFreeMove.turn_rad &&
+         check_clearance(bricks_, cores(), barrier_.width_mm, X_WT_, move_size);
 }
 
 void BarrierShell::gather_for_next_move() {
@@ -253,18 +253,18 @@ void BarrierShell::gather_for_next_move() {
     return std::clamp(kLeewayPerMove * last + spare, min, max);
   };
   gather(X_WT_,
-         {reach(last_move_.move_mm, kLeewayToSpare.move_mm, kMinLeeway.move_mm, kMaxLeeway.move_mm),
-          reach(last_move_.turn_rad, kLeewayToSpare.turn_rad, kMinLeeway.turn_rad, kMaxLeeway.turn_rad)});
+         {reach(last_move_.move_mm, kExtraLeeway.move_mm, kMinLeeway.move_mm, kMaxLeeway.move_mm),
+          reach(last_move_.turn_rad, kExtraLeeway.turn_rad, kMinLeeway.turn_rad, kMaxLeeway.turn_rad)});
 }
 
-// The share of a step for which the gathering gave leeway.
+// Returns the share of a step for which the gathering gave leeway.
 double BarrierShell::share_with_leeway(const MoveSize& step) const {
   const double move = step.move_mm > leeway_left_.move_mm ? leeway_left_.move_mm / step.move_mm : 1;
   const double turn = step.turn_rad > leeway_left_.turn_rad ? leeway_left_.turn_rad / step.turn_rad : 1;
   return std::max(0.0, std::min(move, turn));
 }
 
-// Newton's, as much of it as is certified and may be released.
+// Returns Newton's step, as much of it as is certified and may be released.
 NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   const ToolMove so_far = move_between(X_WT_, best.X_WT);
   const Vec3 moved = so_far.translation_mm - bound.middle.translation_mm;
@@ -274,7 +274,7 @@ NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   so_far_T << to_T * moved, to_T * turned;
   NewtonStep step = newton_step(best.sum, coupling_, so_far_T, bound);
   const MoveSize wanted = size_of(step.move_T);
-  step.is_last = wanted.move_mm <= kDone_mm && wanted.turn_rad <= kDone_rad;
+  step.is_last = wanted.move_mm <= kConvergedStep_mm && wanted.turn_rad <= kConvergedStep_rad;
   // Nothing is summed after it: back from the rim of a ball, where the damping is a little too much, it
   // stays.
   const Vector6 slope = best.sum.gradient + 0.5 * (best.sum.convex + best.sum.rest) * step.move_T;
@@ -292,7 +292,7 @@ NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   return step;
 }
 
-Pose BarrierShell::after(const State& best, const NewtonStep& step, const Pose& X_WD) {
+Pose BarrierShell::pose_after(const State& best, const NewtonStep& step, const Pose& X_WD) {
   return step.reaches_device ? X_WD : moved(best.X_WT, in_world(best.X_WT, step.move_T));
 }
 
@@ -302,19 +302,19 @@ BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
       move_bound(start, X_WD_before_, X_WD, coupling_.length_mm(),
                  {settings_.release_time_s, settings_.release_mm_s, settings_.release_rad_s}, dt_s);
   gather_for_next_move();
-  if (may_fly(X_WD, bound)) return {X_WD};
-  State best = evaluated(start, X_WD);
-  watch_energy(best);
+  if (path_is_clear(X_WD, bound)) return {X_WD};
+  State best = evaluate(start, X_WD);
+  count_energy_rise(best);
   counts_.nearest_share = std::min(counts_.nearest_share, best.sum.nearest_mm / barrier_.width_mm);
   for (int passes = 1;;) {
     NewtonStep step = next_step(best, bound);
     if (step.is_last) {
-      best.X_WT = after(best, step, X_WD);
+      best.X_WT = pose_after(best, step, X_WD);
       return best;
     }
     bool taken = false;
-    while (!taken && passes < kPasses) {
-      const State trial = evaluated(after(best, step, X_WD), X_WD);
+    while (!taken && passes < kMaxPasses) {
+      const State trial = evaluate(pose_after(best, step, X_WD), X_WD);
       ++passes;
       taken = trial.sum.energy_Nmm <= best.sum.energy_Nmm * (1 + kEnergyRounding);
       if (taken) {
@@ -322,7 +322,7 @@ BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
         leeway_left_.turn_rad -= step.move_T.tail<3>().norm();
         best = trial;
       } else {
-        step.move_T *= kShorter;
+        step.move_T *= kBacktrackFactor;
         step.reaches_device = false;
       }
     }
@@ -360,14 +360,14 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
   if (!has_pose_) X_WD_before_ = X_WD;
   // At the start a tool whose centreline is in bone follows the device without force until it is outside. Any
   // other tool counts as coming from outside, even if its surface overlaps bone.
-  if (carried_ || !has_pose_) {
-    carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
+  if (started_inside_bone_ || !has_pose_) {
+    started_inside_bone_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
     X_WT_ = X_WD;
     has_begun_ = false;
   }
   if (!has_begun_) begin_outside(X_WD);
   HapticStep result;
-  if (carried_) {
+  if (started_inside_bone_) {
     result.X_WT = X_WT_;
     sent_ = {};
   } else {
@@ -376,12 +376,12 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
     X_WT_ = state.X_WT;
     energy_before_Nmm_ = state.sum.energy_Nmm;
     has_energy_ = true;
-    near_.find_bearing(measured_, barrier_.width_mm, bricks_);
+    near_.list_supporting(measured_, barrier_.width_mm, bricks_);
     grow_cores(state.sum.nearest_mm, dt_s);
     last_move_ = size_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);
   }
-  result.owed_bricks = static_cast<int>(bricks_.owed());
+  result.pending_bricks = static_cast<int>(bricks_.pending_count());
   has_pose_ = true;
   X_WD_before_ = X_WD;
   return result;

@@ -53,15 +53,15 @@ class BarrierShell final : public HapticAlgorithm {
   void begin_outside(const Pose& X_WD);
   void grow_cores(double nearest_mm, double dt_s);
   Cores cores() const;
-  State evaluated(const Pose& X_WT, const Pose& X_WD);
+  State evaluate(const Pose& X_WT, const Pose& X_WD);
   void gather(const Pose& X_WT, const MoveSize& leeway);
   void gather_for_next_move();
-  bool may_fly(const Pose& X_WD, const MoveBound& bound);
+  bool path_is_clear(const Pose& X_WD, const MoveBound& bound);
   double share_with_leeway(const MoveSize& step) const;
   NewtonStep next_step(const State& best, const MoveBound& bound);
-  static Pose after(const State& best, const NewtonStep& step, const Pose& X_WD);
+  static Pose pose_after(const State& best, const NewtonStep& step, const Pose& X_WD);
   State solve(const Pose& X_WD, double dt_s);
-  void watch_energy(const State& state);
+  void count_energy_rise(const State& state);
   HapticStep report(const State& state, const Pose& X_WD, double dt_s);
 
   Settings settings_;
@@ -82,12 +82,12 @@ class BarrierShell final : public HapticAlgorithm {
   // The leeway that the last gathering gave, and what is left of it.
   MoveSize leeway_;
   MoveSize leeway_left_;
-  // Began inside bone and has not yet been outside: with the device, and nothing is felt.
-  bool carried_ = false;
+  // Began inside bone and has not yet been outside: moves with the device, and nothing is felt.
+  bool started_inside_bone_ = false;
   // True once all bone around the tool was known; until then the tool stands still.
   bool has_begun_ = false;
   // Inset of the cores, mm, still to be removed by growing, for a tool that began in touch with bone.
-  double smaller_mm_ = 0;
+  double core_inset_mm_ = 0;
   // Progress of the blend, 0 to 1, from the wrench sent before to the computed one.
   double ramp_ = 1;
   Wrench ramp_from_;

@@ -10,34 +10,34 @@ namespace osteomill::barrier_shell {
 
 namespace {
 
-// More than the rounding of a place near the tool.
+// Margin, mm, above the rounding error of a position near the tool.
 constexpr double kClear_mm = 1e-4;
 
 constexpr std::size_t kBricks = 4096;
 
-bool may_reach_ball(const Reach& reach, const Vec3& centre_T, double radius_mm) {
-  const double within = reach.cores.ball_radius_mm + reach.near_mm + radius_mm + kClear_mm;
+bool can_reach_ball(const GatherRegion& region, const Vec3& centre_T, double radius_mm) {
+  const double within = region.cores.ball_radius_mm + region.near_mm + radius_mm + kClear_mm;
   return centre_T.squaredNorm() < within * within;
 }
 
-bool may_reach_cylinder(const Reach& reach, const Vec3& centre_T, double radius_mm) {
+bool can_reach_cylinder(const GatherRegion& region, const Vec3& centre_T, double radius_mm) {
   const double z = centre_T.z();
   const double rho2 = centre_T.x() * centre_T.x() + centre_T.y() * centre_T.y();
   const double lever = std::sqrt(rho2 + z * z) + radius_mm;
-  const double within = reach.near_mm + reach.per_lever * lever + radius_mm + kClear_mm;
-  const double beside = reach.cores.cylinder_radius_mm + within;
+  const double within = region.near_mm + region.per_lever * lever + radius_mm + kClear_mm;
+  const double beside = region.cores.cylinder_radius_mm + within;
   if (rho2 >= beside * beside) return false;
-  return z > -within && z < reach.cores.cylinder_length_mm + within;
+  return z > -within && z < region.cores.cylinder_length_mm + within;
 }
 
-// Tells which nodes of the bricks' octree may hold points that come near the tool: may_reach_ball or
-// may_reach_cylinder of their spheres, of eight at a time in vector instructions, as every tick asks it of
+// Tells which nodes of the bricks' octree may hold points that come near the tool: can_reach_ball or
+// can_reach_cylinder of their spheres, of eight at a time in vector instructions, as every tick asks it of
 // hundreds.
-class ReachedNodes {
+class NodeOverlapTest {
  public:
-  ReachedNodes(const SurfaceLattice& lattice, const ToolFromGrid& X_TG, const Reach& reach)
+  NodeOverlapTest(const SurfaceLattice& lattice, const ToolFromGrid& X_TG, const GatherRegion& region)
       : lattice_(lattice),
-        reach_(reach),
+        region_(region),
         first_T_(X_TG * lattice.before_first_G()),
         half_brick_T_(X_TG.turn * lattice.half_brick_mm().asDiagonal()) {
     for (int n = 0; n < 8; ++n) {
@@ -51,16 +51,16 @@ class ReachedNodes {
         first_T_ + n.x() * half_brick_T_.col(0) + n.y() * half_brick_T_.col(1) + n.z() * half_brick_T_.col(2);
     const double size = static_cast<double>(1 << (level - 1));
     const double radius_mm = lattice_.radius_mm(level - 1);
-    const double near_mm = reach_.near_mm + radius_mm + kClear_mm;
-    const double ball_mm = reach_.cores.ball_radius_mm + near_mm;
+    const double near_mm = region_.near_mm + radius_mm + kClear_mm;
+    const double ball_mm = region_.cores.ball_radius_mm + near_mm;
     const Eight x = middle_T.x() + size * octants_T_.col(0).array();
     const Eight y = middle_T.y() + size * octants_T_.col(1).array();
     const Eight z = middle_T.z() + size * octants_T_.col(2).array();
     const Eight rho2 = x * x + y * y;
     const Eight r2 = rho2 + z * z;
-    const Eight within = near_mm + reach_.per_lever * (r2.sqrt() + radius_mm);
-    const Eight beside = reach_.cores.cylinder_radius_mm + within;
-    const Eight ends = (-z).max(z - reach_.cores.cylinder_length_mm) - within;
+    const Eight within = near_mm + region_.per_lever * (r2.sqrt() + radius_mm);
+    const Eight beside = region_.cores.cylinder_radius_mm + within;
+    const Eight ends = (-z).max(z - region_.cores.cylinder_length_mm) - within;
     // Negative if met.
     const Eight gap = (rho2 - beside * beside).max(ends).min(r2 - ball_mm * ball_mm);
     unsigned met = 0;
@@ -72,7 +72,7 @@ class ReachedNodes {
   using Eight = Eigen::Array<double, 8, 1>;
 
   const SurfaceLattice& lattice_;
-  const Reach& reach_;
+  const GatherRegion& region_;
   Vec3 first_T_;
   Mat3 half_brick_T_;
   // From a node's middle to those of the eight below it, in half bricks of theirs.
@@ -92,7 +92,7 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
   X_WT_gathered_ = X_WT;
   const BrickPoints& at_cylinder = fine_at_cylinder_ ? bricks.fine() : bricks.coarse();
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
-  const Reach reach{cores, reach_mm + leeway.move_mm, leeway.turn_rad};
+  const GatherRegion region{cores, reach_mm + leeway.move_mm, leeway.turn_rad};
   const auto gather_brick = [&](const VoxelIndex& brick, std::uint32_t slot) {
     if (brick_count_ < bricks_.size()) bricks_[brick_count_++] = {slot, ball_.count, cylinder_.count};
     const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G(brick);
@@ -103,18 +103,18 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
     const auto radius_mm = [&](const BrickPoints& points) {
       return static_cast<double>(points.brick(slot).bound.radius_mm);
     };
-    if (may_reach_ball(reach, middle_T(bricks.fine()), radius_mm(bricks.fine()))) {
-      gather_near_ball(bricks.fine(), bricks.fine().brick(slot).first_chunk, frame, reach, ball_);
+    if (can_reach_ball(region, middle_T(bricks.fine()), radius_mm(bricks.fine()))) {
+      gather_near_ball(bricks.fine(), bricks.fine().brick(slot).first_chunk, frame, region, ball_);
     }
-    if (may_reach_cylinder(reach, middle_T(at_cylinder), radius_mm(at_cylinder))) {
-      gather_near_cylinder(at_cylinder, at_cylinder.brick(slot).first_chunk, frame, reach, cylinder_);
+    if (can_reach_cylinder(region, middle_T(at_cylinder), radius_mm(at_cylinder))) {
+      gather_near_cylinder(at_cylinder, at_cylinder.brick(slot).first_chunk, frame, region, cylinder_);
     }
   };
   ball_.count = cylinder_.count = brick_count_ = 0;
   ball_.overflowed = cylinder_.overflowed = false;
-  brick_missing_ = !bricks.make_and_visit(ReachedNodes(bricks.lattice(), X_TG, reach), gather_brick);
-  close_gathering(ball_);
-  close_gathering(cylinder_);
+  brick_missing_ = !bricks.build_and_visit(NodeOverlapTest(bricks.lattice(), X_TG, region), gather_brick);
+  pad_last_lanes(ball_);
+  pad_last_lanes(cylinder_);
 }
 
 void NearBone::measure(const Cores& cores, const Barrier& barrier, const Pose& X_WT,
@@ -126,20 +126,20 @@ void NearBone::measure(const Cores& cores, const Barrier& barrier, const Pose& X
   measure_cylinder(cylinder_, moved, cores, barrier, measured.cylinder);
 }
 
-void NearBone::find_bearing(const MeasuredBone& measured, double within_mm,
-                            BoneBricks& bricks) const noexcept {
+void NearBone::list_supporting(const MeasuredBone& measured, double within_mm,
+                               BoneBricks& bricks) const noexcept {
   const auto within = static_cast<float>(within_mm);
-  const auto bears = [&](const MeasuredPoints& points, std::size_t first, std::size_t end) {
+  const auto supports = [&](const MeasuredPoints& points, std::size_t first, std::size_t end) {
     const float* distance = points.distance.data();
     return std::any_of(distance + first, distance + end, [&](float mm) { return mm < within; });
   };
-  bricks.clear_bearing();
+  bricks.clear_supporting();
   for (std::size_t n = 0; n < brick_count_; ++n) {
     const bool last = n + 1 == brick_count_;
-    if (bears(measured.ball, bricks_[n].at_ball, last ? ball_.count : bricks_[n + 1].at_ball) ||
-        bears(measured.cylinder, bricks_[n].at_cylinder,
-              last ? cylinder_.count : bricks_[n + 1].at_cylinder)) {
-      bricks.add_bearing(bricks_[n].slot);
+    if (supports(measured.ball, bricks_[n].at_ball, last ? ball_.count : bricks_[n + 1].at_ball) ||
+        supports(measured.cylinder, bricks_[n].at_cylinder,
+                 last ? cylinder_.count : bricks_[n + 1].at_cylinder)) {
+      bricks.add_supporting(bricks_[n].slot);
     }
   }
 }
@@ -149,11 +149,11 @@ double MeasuredBone::max_use(const Vector6& move_T, const Barrier& barrier) cons
   return std::max(max_use_by_ball(ball, move_T, min_mm), max_use_by_cylinder(cylinder, move_T, min_mm));
 }
 
-bool look_if_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-                   const MoveSize& leeway) noexcept {
+bool check_clearance(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+                     const MoveSize& leeway) noexcept {
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
-  const Reach reach{cores, reach_mm + leeway.move_mm, leeway.turn_rad};
-  return !bricks.look_for_points(ReachedNodes(bricks.lattice(), X_TG, reach));
+  const GatherRegion region{cores, reach_mm + leeway.move_mm, leeway.turn_rad};
+  return !bricks.search_for_points(NodeOverlapTest(bricks.lattice(), X_TG, region));
 }
 
 }  // namespace osteomill::barrier_shell

@@ -50,13 +50,13 @@ class NearBone {
   /// Measures the points from a pose within the leeway of the last gathering.
   void measure(const Cores& cores, const Barrier& barrier, const Pose& X_WT,
                MeasuredBone& measured) const noexcept;
-  /// Lists in `bricks` those that bear the tool: with points that were measured nearer than `within_mm` to a
-  /// part since the last gathering.
-  void find_bearing(const MeasuredBone& measured, double within_mm, BoneBricks& bricks) const noexcept;
+  /// Lists in `bricks` those that support the tool: with points that were measured nearer than `within_mm` to
+  /// a part since the last gathering.
+  void list_supporting(const MeasuredBone& measured, double within_mm, BoneBricks& bricks) const noexcept;
 
  private:
   // A brick's slot, and where its points begin.
-  struct Gathered {
+  struct GatheredBrick {
     std::uint32_t slot;
     std::size_t at_ball;
     std::size_t at_cylinder;
@@ -64,7 +64,7 @@ class NearBone {
 
   bool fine_at_cylinder_;
   // The bricks gathered: the first brick_count_ entries.
-  std::vector<Gathered> bricks_;
+  std::vector<GatheredBrick> bricks_;
   std::size_t brick_count_ = 0;
   bool brick_missing_ = false;
   Pose X_WT_gathered_;
@@ -72,9 +72,9 @@ class NearBone {
   NearPoints cylinder_;
 };
 
-/// Looks for bone within `reach_mm` of the tool at `X_WT` or anywhere within the leeway, and returns whether
-/// there is surely none. Makes no bricks.
-bool look_if_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-                   const MoveSize& leeway) noexcept;
+/// Searches for bone within `reach_mm` of the tool at `X_WT` or anywhere within the leeway. Returns true only
+/// if there is none; may return false in free space. Classifies octree nodes but builds no bricks.
+bool check_clearance(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+                     const MoveSize& leeway) noexcept;
 
 }  // namespace osteomill::barrier_shell

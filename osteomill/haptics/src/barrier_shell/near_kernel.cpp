@@ -95,18 +95,18 @@ HWY_INLINE V beyond_end(V z, V length) {
 }
 
 void GatherNearBall(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                    const Reach& reach, NearPoints& near) {
-  const V radius2 = squared(hn::Add(constant(reach.cores.ball_radius_mm), constant(reach.near_mm)));
+                    const GatherRegion& region, NearPoints& near) {
+  const V radius2 = squared(hn::Add(constant(region.cores.ball_radius_mm), constant(region.near_mm)));
   gather(
       points, first_chunk, frame, [&](const Vector& at) HWY_ATTR { return hn::Lt(dot(at, at), radius2); },
       near);
 }
 
 void GatherNearCylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                        const Reach& reach, NearPoints& near) {
-  const V near_mm = constant(reach.near_mm), per_lever = constant(reach.per_lever);
-  const V radius = constant(reach.cores.cylinder_radius_mm),
-          length = constant(reach.cores.cylinder_length_mm);
+                        const GatherRegion& region, NearPoints& near) {
+  const V near_mm = constant(region.near_mm), per_lever = constant(region.per_lever);
+  const V radius = constant(region.cores.cylinder_radius_mm),
+          length = constant(region.cores.cylinder_length_mm);
   gather(
       points, first_chunk, frame,
       [&](const Vector& at) HWY_ATTR {
@@ -135,7 +135,7 @@ struct BarrierLaw {
   explicit BarrierLaw(const Barrier& barrier)
       : width(static_cast<float>(barrier.width_mm)),
         pressure(static_cast<float>(barrier.pressure_N_per_mm2)) {}
-  HWY_INLINE V reach() const { return constant(width); }
+  HWY_INLINE V region() const { return constant(width); }
   HWY_INLINE Push push(V area, V distance) const {
     const V one = constant(1), inverse_width = constant(1 / width);
     const V share =
@@ -190,7 +190,7 @@ void SumBall(const NearPoints& near, const Frame& moved, const Cores& cores, con
       hn::StoreU(distance, d, &measured.distance[n]);
       store_rows(out, measured.out_x, measured.out_y, measured.out_z, n);
       nearest = hn::Min(nearest, distance);
-      if (hn::AllFalse(d, hn::Lt(distance, law.reach()))) continue;  // adds nothing, to the last bit
+      if (hn::AllFalse(d, hn::Lt(distance, law.region()))) continue;  // adds nothing, to the last bit
       const Push p = law.push(hn::LoadU(d, &near.area[n]), distance);
       touching += hn::CountTrue(d, hn::Gt(p.pressure, hn::Zero(d)));
       const V q = hn::Mul(p.pressure, inverse), m = hn::Add(p.stiffness, q);
@@ -245,7 +245,7 @@ void SumSide(const NearPoints& near, const Frame& moved, const Cores& cores, con
       store_rows(out, measured.out_x, measured.out_y, measured.out_z, n);
       nearest = hn::Min(nearest, distance);
       if (!hn::AllFalse(d, at_end)) list_at_end(measured, at_end, n);
-      if (hn::AllFalse(d, hn::Lt(distance, law.reach()))) continue;  // adds nothing, to the last bit
+      if (hn::AllFalse(d, hn::Lt(distance, law.region()))) continue;  // adds nothing, to the last bit
       const Push p = law.push(hn::LoadU(d, &near.area[n]), distance);
       touching += hn::CountTrue(d, hn::Gt(p.pressure, hn::Zero(d)));
       const V pu = hn::Mul(p.pressure, out.x), pv = hn::Mul(p.pressure, out.y);
@@ -328,13 +328,13 @@ HWY_EXPORT(GreatestUseByBall);
 HWY_EXPORT(GreatestUseByCylinder);
 
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                      const Reach& reach, NearPoints& near) noexcept {
-  HWY_DYNAMIC_DISPATCH(GatherNearBall)(points, first_chunk, frame, reach, near);
+                      const GatherRegion& region, NearPoints& near) noexcept {
+  HWY_DYNAMIC_DISPATCH(GatherNearBall)(points, first_chunk, frame, region, near);
 }
 
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                          const Reach& reach, NearPoints& near) noexcept {
-  HWY_DYNAMIC_DISPATCH(GatherNearCylinder)(points, first_chunk, frame, reach, near);
+                          const GatherRegion& region, NearPoints& near) noexcept {
+  HWY_DYNAMIC_DISPATCH(GatherNearCylinder)(points, first_chunk, frame, region, near);
 }
 
 void sum_ball(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,

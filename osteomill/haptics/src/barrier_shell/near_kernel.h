@@ -10,21 +10,21 @@
 
 namespace osteomill::barrier_shell {
 
-/// The reach within which points are gathered: `near_mm` of a core or, at the cylinder, `near_mm` +
-/// `per_lever` times their distance from the burr's centre.
-struct Reach {
+/// The region in which points are gathered: within `near_mm` of a core or, at the cylinder, within `near_mm`
+/// + `per_lever` times their distance from the burr's centre.
+struct GatherRegion {
   Cores cores;
   double near_mm = 0;
   double per_lever = 0;
 };
 
-/// Appends the points of a brick that are within reach of the part; `frame` is the brick's, seen from the
+/// Appends the points of a brick that lie in the part's region; `frame` is the brick's, seen from the
 /// tool. The first call chooses the widest vector instructions that the processor has; they give the same
 /// bits as the narrowest. That holds for all functions below too. Safe in the haptic tick.
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                      const Reach& reach, NearPoints& near) noexcept;
+                      const GatherRegion& region, NearPoints& near) noexcept;
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                          const Reach& reach, NearPoints& near) noexcept;
+                          const GatherRegion& region, NearPoints& near) noexcept;
 
 /// Names the sums over points on the ball. With n the direction out of it, p the push, q = p / r and
 /// m = psi'' + q: energy, q, p n and m n n^T.

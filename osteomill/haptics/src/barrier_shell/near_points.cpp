@@ -18,8 +18,8 @@ Mat3 cross(const Vec3& v) {
   return m;
 }
 
-Vec3 place(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z,
-           std::size_t n) {
+Vec3 position_of(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z,
+                 std::size_t n) {
   return {static_cast<double>(x[n]), static_cast<double>(y[n]), static_cast<double>(z[n])};
 }
 
@@ -138,7 +138,7 @@ Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept {
   return frame;
 }
 
-void close_gathering(NearPoints& near) noexcept {
+void pad_last_lanes(NearPoints& near) noexcept {
   while (near.count % NearPoints::kLanes != 0) {
     near.x[near.count] = PointChunk::kFarAway_mm;
     near.y[near.count] = near.z[near.count] = near.area[near.count] = 0;
@@ -162,7 +162,7 @@ void measure_cylinder(const NearPoints& near, const Frame& moved, const Cores& c
   const std::span at_end(measured.at_end.data(), measured.at_end_count);
   std::sort(at_end.begin(), at_end.end());
   for (const std::uint32_t n : at_end) {
-    const Vec3 point_T = place(measured.x, measured.y, measured.z, n);
+    const Vec3 point_T = position_of(measured.x, measured.y, measured.z, n);
     const CoreDistance distance = distance_to_cylinder(cores, point_T);
     add_point(measured.sum, static_cast<double>(near.area[n]) * barrier.at(distance.distance_mm), point_T,
               distance);

@@ -48,7 +48,7 @@ struct Frame {
 Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept;
 
 /// Fills the last group of lanes with points far away, after the last brick.
-void close_gathering(NearPoints& near) noexcept;
+void pad_last_lanes(NearPoints& near) noexcept;
 
 /// Adds a point that pushes with `push` (energy, pressure and stiffness of all its area) at `point_T`,
 /// `distance` from a core: one at a time, without vector instructions, for every part.

@@ -31,20 +31,20 @@ std::vector<ShellPoint> random_points(const Cores& cores, std::mt19937& bits) {
   return points;
 }
 
-struct Found {
+struct Occupancy {
   MeasuredPoints ball{2048}, cylinder{2048};
   double ball_use, cylinder_use;
 };
 
-Found found(const BrickPoints& points, const Cores& cores, const Barrier& barrier, const Vector6& move) {
+Occupancy found(const BrickPoints& points, const Cores& cores, const Barrier& barrier, const Vector6& move) {
   const Frame still = frame_of(Mat3::Identity(), Vec3::Zero());
-  const Reach reach{cores, barrier.width_mm + 0.05, 0.01};
+  const GatherRegion region{cores, barrier.width_mm + 0.05, 0.01};
   NearPoints ball(2048), cylinder(2048);
-  gather_near_ball(points, points.brick(0).first_chunk, still, reach, ball);
-  gather_near_cylinder(points, points.brick(0).first_chunk, still, reach, cylinder);
-  close_gathering(ball);
-  close_gathering(cylinder);
-  Found f;
+  gather_near_ball(points, points.brick(0).first_chunk, still, region, ball);
+  gather_near_cylinder(points, points.brick(0).first_chunk, still, region, cylinder);
+  pad_last_lanes(ball);
+  pad_last_lanes(cylinder);
+  Occupancy f;
   measure_ball(ball, still, cores, barrier, f.ball);
   measure_cylinder(cylinder, still, cores, barrier, f.cylinder);
   f.ball_use = max_use_by_ball(f.ball, move, 1e-6);
@@ -101,7 +101,7 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
       }
       on_ball += ball.touching;
       on_cylinder += cylinder.touching;
-      std::vector<Found> fast;
+      std::vector<Occupancy> fast;
       for (const std::int64_t target : instruction_sets_here(near_kernel_targets())) {
         const ForcedInstructionSet forced(target);
         fast.push_back(found(points, cores, barrier, move));

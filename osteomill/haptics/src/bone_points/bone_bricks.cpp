@@ -10,17 +10,17 @@ namespace {
 constexpr std::size_t kSlots = 16384;
 constexpr std::size_t kFineChunks = 24576;
 constexpr std::size_t kCoarseChunks = 16384;
-// Bricks nearer than this to the tool are not forgotten.
-constexpr double kKept_mm = 2;
+// Distance from the tool, mm, within which bricks are not evicted.
+constexpr double kKeepDistance_mm = 2;
 
-// Cost of visiting a brick, in points built: of one that is skipped, and of each kDensitiesLookedAt densities
+// Cost of visiting a brick, in points built: of one that is skipped, and of each kDensitiesPerPoint densities
 // that are sampled.
-constexpr int kPassedOverCost = 2;
-constexpr int kLookedAtCost = 4;
-constexpr int kDensitiesLookedAt = 60;
+constexpr int kSkipCost = 2;
+constexpr int kClassifyCost = 4;
+constexpr int kDensitiesPerPoint = 60;
 
-std::uint32_t held_without_points(SurfaceLattice::Found found) {
-  return found == SurfaceLattice::Found::no_bone ? BrickTree::kNoBone : BrickTree::kBoneAlone;
+std::uint32_t content_without_points(SurfaceLattice::Occupancy occupancy) {
+  return occupancy == SurfaceLattice::Occupancy::no_bone ? BrickTree::kNoBone : BrickTree::kAllBone;
 }
 
 }  // namespace
@@ -30,83 +30,84 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm)
   choose_point_instructions();
 }
 
-// Notes at an unseen place whether it may hold surface, if this tick may: a larger place then gets a node,
-// and a brick stays unseen until it is made.
-void BoneBricks::look(int level, const VoxelIndex& node, BrickTree::Place place) {
-  if (tree_.held(place) != BrickTree::kUnseen || !queue_.may_make()) return;
-  queue_.count_made(kLookedAtCost);
-  const SurfaceLattice::Found found = lattice_.found_in(level, node);
-  if (found != SurfaceLattice::Found::surface) {
-    tree_.put(place, held_without_points(found));
+// Sets whether an unknown entry may hold surface, if this tick's budget allows it: an entry above the bricks
+// then gets a node, and a brick stays unknown until it is built.
+void BoneBricks::classify(int level, const VoxelIndex& node, BrickTree::EntryIndex entry) {
+  if (tree_.content(entry) != BrickTree::kUnknown || !queue_.has_build_budget()) return;
+  queue_.spend_build_budget(kClassifyCost);
+  const SurfaceLattice::Occupancy occupancy = lattice_.occupancy_of(level, node);
+  if (occupancy != SurfaceLattice::Occupancy::surface) {
+    tree_.set_content(entry, content_without_points(occupancy));
   } else if (level > 0) {
-    tree_.open(place);
+    tree_.add_node(entry);
   }
 }
 
-// Returns what making the slot's brick costs, in points.
+// Returns the cost of building the slot's brick, in points.
 int BoneBricks::cost_of(std::uint32_t slot) const {
-  return lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(fine().brick(slot).count);
+  return lattice_.densities_of_brick() / kDensitiesPerPoint + static_cast<int>(fine().brick(slot).count);
 }
 
-// Makes a brick's points, also again; returns what it cost.
-int BoneBricks::make_brick(const VoxelIndex& brick, BrickTree::Place place) {
-  const std::uint32_t held = tree_.held(place);
-  std::uint32_t slot = BrickTree::is_index(held) ? held : BrickStore::kNoSlot;
-  const SurfaceLattice::Found found = store_.make(lattice_, brick, slot);
+// Builds or rebuilds a brick's points. Returns the cost, in points.
+int BoneBricks::build_brick(const VoxelIndex& brick, BrickTree::EntryIndex entry) {
+  const std::uint32_t content = tree_.content(entry);
+  std::uint32_t slot = BrickTree::is_index(content) ? content : BrickStore::kNoSlot;
+  const SurfaceLattice::Occupancy occupancy = store_.build(lattice_, brick, slot);
   if (slot != BrickStore::kNoSlot) {
-    tree_.put(place, slot);
+    tree_.set_content(entry, slot);
     return cost_of(slot);
   }
-  tree_.put(place, held_without_points(found));
-  return lattice_.densities_of_brick() / kDensitiesLookedAt;
+  tree_.set_content(entry, content_without_points(occupancy));
+  return lattice_.densities_of_brick() / kDensitiesPerPoint;
 }
 
 // Bricks that are new come first: if the surface has moved on into another brick, it is found there before it
 // is taken from where it was.
 void BoneBricks::refresh(const VoxelBox& voxels, int others) noexcept {
   const VoxelBox bricks = lattice_.bricks_touched_by(voxels);
-  for_each(bricks, [&](const VoxelIndex& brick) { others -= make_new(brick); });
-  queue_.take_bearing_turns([&](std::uint32_t slot) { return cost_of(slot); },
-                            [&](std::uint32_t slot) {
-                              if (store_.is_used(slot)) remake(store_.brick(slot));
-                            });
+  for_each(bricks, [&](const VoxelIndex& brick) { others -= build_exposed(brick); });
+  queue_.update_supporting_in_turns([&](std::uint32_t slot) { return cost_of(slot); },
+                                    [&](std::uint32_t slot) {
+                                      if (store_.is_used(slot)) rebuild_if_stale(store_.brick(slot));
+                                    });
   queue_.add(bricks);
   int spent = 0;
   do {
     const std::optional<VoxelIndex> brick = queue_.next();
     if (!brick) break;
-    spent += remake(*brick);
+    spent += rebuild_if_stale(*brick);
   } while (spent < others);
 }
 
-// Makes a brick that held bone alone and now has a surface; returns what it cost.
-int BoneBricks::make_new(const VoxelIndex& brick) {
-  const auto [place, level] = tree_.find(brick);
-  if (tree_.held(place) != BrickTree::kBoneAlone ||
-      lattice_.found_in(0, brick) != SurfaceLattice::Found::surface)
+// Builds a brick that was all bone and now has a surface. Returns the cost, in points.
+int BoneBricks::build_exposed(const VoxelIndex& brick) {
+  const auto [entry, level] = tree_.find(brick);
+  if (tree_.content(entry) != BrickTree::kAllBone ||
+      lattice_.occupancy_of(0, brick) != SurfaceLattice::Occupancy::surface)
     return 0;
-  if (level == 0 && store_.has_room()) return make_brick(brick, place);
-  tree_.put(place, BrickTree::kUnseen);
-  return kPassedOverCost;
+  if (level == 0 && store_.has_free_space()) return build_brick(brick, entry);
+  tree_.set_content(entry, BrickTree::kUnknown);
+  return kSkipCost;
 }
 
-// Makes a brick's points again if they are of other densities; returns what it cost.
-int BoneBricks::remake(const VoxelIndex& brick) {
-  const BrickTree::Place place = tree_.find(brick).first;
-  const std::uint32_t held = tree_.held(place);
-  if (!BrickTree::is_index(held) || !store_.is_stale(lattice_, held)) return kPassedOverCost;
-  return make_brick(brick, place);
+// Rebuilds a brick's points if its densities have changed. Returns the cost, in points.
+int BoneBricks::rebuild_if_stale(const VoxelIndex& brick) {
+  const BrickTree::EntryIndex entry = tree_.find(brick).first;
+  const std::uint32_t content = tree_.content(entry);
+  if (!BrickTree::is_index(content) || !store_.is_stale(lattice_, content)) return kSkipCost;
+  return build_brick(brick, entry);
 }
 
-void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) noexcept {
+void BoneBricks::evict_far_bricks(const MillingTool& tool, const Pose& X_WT) noexcept {
   const Pose X_TW = X_WT.inverse();
   const auto is_near = [&](const VoxelIndex& brick) {
     const Vec3 middle_W = lattice_.origin_W() + lattice_.direction() * lattice_.middle_G(0, brick);
-    return tool_distance(tool, X_TW * middle_W).distance_mm < lattice_.radius_mm(0) + kKept_mm;
+    return tool_distance(tool, X_TW * middle_W).distance_mm < lattice_.radius_mm(0) + kKeepDistance_mm;
   };
-  store_.make_room(is_near,
-                   [&](const VoxelIndex& brick) { tree_.put(tree_.find(brick).first, BrickTree::kUnseen); });
-  tree_.forget_nodes();
+  store_.evict_far_bricks(is_near, [&](const VoxelIndex& brick) {
+    tree_.set_content(tree_.find(brick).first, BrickTree::kUnknown);
+  });
+  tree_.evict_nodes();
 }
 
 }  // namespace osteomill

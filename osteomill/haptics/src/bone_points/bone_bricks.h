@@ -13,10 +13,10 @@
 
 namespace osteomill {
 
-/// The bone's surface as points in bricks under an octree. Bricks are made when the tool comes near and
-/// forgotten when room runs out, and so are the octree's nodes: neither time nor memory grows with the scan.
-/// Milling takes densities away only, so a brick that has not been brought up to date shows more bone than
-/// there is. Building allocates; all else is safe in the haptic tick.
+/// The bone's surface as points in bricks under an octree. Bricks are built when the tool comes near and
+/// evicted when memory runs short, and so are the octree's nodes: neither time nor memory grows with the
+/// scan. Milling takes densities away only, so a brick that has not been brought up to date shows more bone
+/// than there is. Building allocates; all else is safe in the haptic tick.
 class BoneBricks {
  public:
   /// For a burr of a millimetre, points nearer to one another say nothing more.
@@ -31,70 +31,71 @@ class BoneBricks {
   const BrickPoints& fine() const { return store_.fine(); }
   const BrickPoints& coarse() const { return store_.coarse(); }
 
-  /// Goes down the octree into the nodes that `meets` lets through (BrickTree::visit), makes each missing
-  /// brick that it reaches, as far as there is room and this tick may make more, and calls `use(brick, slot)`
+  /// Goes down the octree into the nodes that `overlap` lets through (BrickTree::visit), builds each missing
+  /// brick that it reaches, as far as memory and this tick's budget allow, and calls `use(brick, slot)`
   /// for each brick with points, in a fixed order. The brick's points are those of `slot` in `fine` and
   /// `coarse`. Returns whether no brick is missing.
-  template <typename Meets, typename Use>
-  bool make_and_visit(const Meets& meets, const Use& use) {
+  template <typename Overlap, typename Use>
+  bool build_and_visit(const Overlap& overlap, const Use& use) {
     bool all = true;
-    tree_.visit(meets, [&](int level, const VoxelIndex& node, BrickTree::Place place) {
-      look(level, node, place);
-      if (level == 0 && tree_.held(place) == BrickTree::kUnseen && queue_.may_make() && store_.has_room())
-        queue_.count_made(make_brick(node, place));
-      const std::uint32_t held = tree_.held(place);
-      if (held == BrickTree::kUnseen) all = false;
-      if (level == 0 && BrickTree::is_index(held)) use(node, held);
+    tree_.visit(overlap, [&](int level, const VoxelIndex& node, BrickTree::EntryIndex entry) {
+      classify(level, node, entry);
+      if (level == 0 && tree_.content(entry) == BrickTree::kUnknown && queue_.has_build_budget() &&
+          store_.has_free_space())
+        queue_.spend_build_budget(build_brick(node, entry));
+      const std::uint32_t content = tree_.content(entry);
+      if (content == BrickTree::kUnknown) all = false;
+      if (level == 0 && BrickTree::is_index(content)) use(node, content);
     });
     return all;
   }
-  /// Looks at unseen nodes that `make_and_visit` would reach, as far as this tick may, until it has found
-  /// where there may be points. Returns whether it has.
-  template <typename Meets>
-  bool look_for_points(const Meets& meets) {
+  /// Classifies unknown nodes that `build_and_visit` would reach, as far as this tick's budget allows, until
+  /// it finds one that may hold points. Returns whether it found one.
+  template <typename Overlap>
+  bool search_for_points(const Overlap& overlap) {
     bool found = false;
     const auto if_not_yet = [&](int level, const VoxelIndex& node) {
-      return found ? BrickTree::EightBits{0} : meets(level, node);
+      return found ? BrickTree::EightBits{0} : overlap(level, node);
     };
-    tree_.visit(if_not_yet, [&](int level, const VoxelIndex& node, BrickTree::Place place) {
+    tree_.visit(if_not_yet, [&](int level, const VoxelIndex& node, BrickTree::EntryIndex entry) {
       if (found) return;
-      look(level, node, place);
-      const std::uint32_t held = tree_.held(place);
-      found = held == BrickTree::kUnseen || (level == 0 && BrickTree::is_index(held));
+      classify(level, node, entry);
+      const std::uint32_t content = tree_.content(entry);
+      found = content == BrickTree::kUnknown || (level == 0 && BrickTree::is_index(content));
     });
     return found;
   }
 
-  /// About how many points of bricks that do not bear the tool are brought up to date a tick.
-  static constexpr int kOthersPerTick = 100;
-  /// Says that densities fell in `voxels`, and brings points up to date. Bricks into which the surface has
-  /// newly come are made at once, or the next time the tool meets them. Bricks that bear the tool take turns
-  /// (UpdateQueue). Of all other bricks about `others` points are done a tick; new bricks and passing over
-  /// unchanged ones count as points too.
-  void refresh(const VoxelBox& voxels, int others = kOthersPerTick) noexcept;
-  /// Lists the bricks that bear the tool, by their slots; the user of the points keeps the list.
-  void clear_bearing() { queue_.clear_bearing(); }
-  void add_bearing(std::uint32_t slot) { queue_.add_bearing(slot); }
+  /// About the number of points that a tick updates in bricks on which the tool does not rest.
+  static constexpr int kOtherPointsPerTick = 100;
+  /// Follows densities that fell in `voxels`: updates points. Bricks that the surface enters are built at
+  /// once, or the next time the tool meets them. Bricks on which the tool rests take turns (UpdateQueue). Of
+  /// all other bricks about `others` points are updated a tick; building bricks and skipping unchanged ones
+  /// count as points too.
+  void refresh(const VoxelBox& voxels, int others = kOtherPointsPerTick) noexcept;
+  /// List the slots of the bricks on which the tool rests. The caller must refresh the list after every step.
+  void clear_supporting() { queue_.clear_supporting(); }
+  void add_supporting(std::uint32_t slot) { queue_.add_supporting(slot); }
   bool is_up_to_date() const { return queue_.is_empty(); }
-  /// Returns how many bricks still have to be looked at, those that bear the tool among them.
-  std::size_t owed() const noexcept { return queue_.size(); }
-  /// Makes room if little is left, by forgetting what is not near the tool.
-  void make_room(const MillingTool& tool, const Pose& X_WT) noexcept;
-  /// Begins a tick: makes room, and brings bricks that still wait up to date if no densities fell since the
-  /// tick before. From the first tick on a tick makes no more bricks than it has time for.
+  /// Returns how many bricks wait for their update, including those on which the tool rests.
+  std::size_t pending_count() const noexcept { return queue_.size(); }
+  /// Evicts bricks and nodes that are not near the tool, if memory runs short.
+  void evict_far_bricks(const MillingTool& tool, const Pose& X_WT) noexcept;
+  /// Begins a tick: evicts bricks if memory runs short, and updates bricks that still wait if no densities
+  /// fell since the tick before. From the first tick on, a tick builds no more bricks than it has time for.
   void begin_tick(const MillingTool& tool, const Pose& X_WT) noexcept {
     if (queue_.begin_tick()) refresh({});
-    make_room(tool, X_WT);
+    evict_far_bricks(tool, X_WT);
   }
-  /// Points that found no room as bricks that had some grew.
+  /// Returns how many points were dropped because the pool was full when a brick grew.
   std::uint64_t dropped() const { return fine().dropped() + coarse().dropped(); }
 
  private:
-  void look(int level, const VoxelIndex& node, BrickTree::Place place);
+  void classify(int level, const VoxelIndex& node, BrickTree::EntryIndex entry);
   int cost_of(std::uint32_t slot) const;
-  int make_brick(const VoxelIndex& brick, BrickTree::Place place);
-  int make_new(const VoxelIndex& brick);
-  int remake(const VoxelIndex& brick);
+  int build_brick(const VoxelIndex& brick, BrickTree::EntryIndex entry);
+  int build_exposed(const VoxelIndex& brick);
+  int rebuild_if_stale(const VoxelIndex& brick);
 
   SurfaceLattice lattice_;
   BrickTree tree_;

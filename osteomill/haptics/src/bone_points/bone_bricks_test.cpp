@@ -123,8 +123,8 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
   BoneBricks kept(volume, 0.13);
   const auto at_the_middle = [](BoneBricks& bricks, const auto& use) {
     const Vec3 middle_G = Vec3::Constant(0.5 * 89 * 0.13);
-    bricks.make_and_visit(near(bricks.lattice(), middle_G, 0.6),
-                          [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
+    bricks.build_and_visit(near(bricks.lattice(), middle_G, 0.6),
+                           [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
   };
   make_all(kept);
   const auto heights = [&](BoneBricks& bricks) {
@@ -134,12 +134,12 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
     });
     return z_mm;
   };
-  int bearing = 0;
+  int supporting = 0;
   at_the_middle(kept, [&](std::uint32_t slot) {
-    kept.add_bearing(slot);
-    ++bearing;
+    kept.add_supporting(slot);
+    ++supporting;
   });
-  ASSERT_GT(bearing, 4);
+  ASSERT_GT(supporting, 4);
   const VoxelBox all = volume.geometry().all_voxels();
   constexpr int kTicks = 30, kTurns = 4;
   std::vector<std::vector<float>> as_made_anew;
@@ -172,8 +172,9 @@ TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
   int ticks = 0;
   for (bool all = false; !all; ++ticks) {
     bricks.begin_tick({}, {});
-    all = bricks.make_and_visit(every_node, [](const VoxelIndex&, std::uint32_t) {});
-    EXPECT_LE(bricks.fine().total(), before + UpdateQueue::kMadePerTick + SurfaceLattice::kMaxPointsOfBrick);
+    all = bricks.build_and_visit(every_node, [](const VoxelIndex&, std::uint32_t) {});
+    EXPECT_LE(bricks.fine().total(),
+              before + UpdateQueue::kBuiltPointsPerTick + SurfaceLattice::kMaxPointsOfBrick);
     before = bricks.fine().total();
     ASSERT_LT(ticks, 1000);
   }
@@ -192,7 +193,7 @@ TEST(BoneBricks, ACopyGoesOnByItself) {
   BoneBricks copy = kept;
   std::mt19937 bits(5);
   for (int n = 0; n < 200; ++n) copy.refresh(mill_at_random(volume, bits), 1000);
-  copy.make_room({}, {{1000, 0, 0}, Quat::Identity()});
+  copy.evict_far_bricks({}, {{1000, 0, 0}, Quat::Identity()});
   EXPECT_NE(copy.fine().total(), points);
   EXPECT_EQ(kept.fine().total(), points);
 }
@@ -206,7 +207,7 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
   BoneBricks bricks(volume, 0.13);
   const auto made_about = [&](const Vec3& middle_G, double within_mm) {
     std::size_t made = 0;
-    bricks.make_and_visit(
+    bricks.build_and_visit(
         near(bricks.lattice(), middle_G, within_mm),
         [&](const VoxelIndex&, std::uint32_t slot) { made += bricks.fine().brick(slot).count > 0; });
     return made;
@@ -215,7 +216,7 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
   EXPECT_GT(made_about({0, 0, 0}, 1000), 3000u);
   EXPECT_EQ(made_about(last_G, 6), 0u);
   const MillingTool far_away{1.5, 1, 25};
-  bricks.make_room(far_away, {{1000, 0, 0}, Quat::Identity()});
+  bricks.evict_far_bricks(far_away, {{1000, 0, 0}, Quat::Identity()});
   EXPECT_GT(made_about(last_G, 6), 100u);
 }
 
@@ -228,11 +229,11 @@ TEST(BoneBricks, NeitherTimeNorRoomGrowsWithTheScan) {
   for (int n = 0; n < 6000; ++n) {
     const Vec3 at_G(uniform(bits, 1, 999), uniform(bits, 1, 999), 510);
     int found = 0;
-    bricks.make_and_visit(near(bricks.lattice(), at_G, 0.1), [&](const VoxelIndex&, std::uint32_t slot) {
+    bricks.build_and_visit(near(bricks.lattice(), at_G, 0.1), [&](const VoxelIndex&, std::uint32_t slot) {
       found += static_cast<int>(bricks.fine().brick(slot).count);
     });
     ASSERT_GT(found, 10) << n;
-    bricks.make_room({}, {{0, 0, 1000}, Quat::Identity()});
+    bricks.evict_far_bricks({}, {{0, 0, 1000}, Quat::Identity()});
   }
 }
 

@@ -24,8 +24,8 @@ constexpr D d;
 constexpr std::size_t kWidth = hn::MaxLanes(d);
 
 // Smallest share of a cell's face that a crossing stands for, and the share of one without a normal.
-constexpr float kMinSeen = 0.02f;
-constexpr float kSeenWithoutNormal = 0.6f;
+constexpr float kMinCosine = 0.02f;
+constexpr float kCosineWithoutNormal = 0.6f;
 // Normals that sum to less than this share of the area cancel each other; the point then has no normal.
 constexpr float kNoNormal = 1e-6f;
 
@@ -58,7 +58,7 @@ HWY_INLINE V& along(V3& v) {
 
 // Over crossings: area times place, area, and area times the surface's unit normal.
 struct Sums {
-  V3 place;
+  V3 position_mm;
   V area;
   V3 normal;
 };
@@ -90,21 +90,21 @@ HWY_INLINE void add_crossings(const CrossingLattice& lattice, const CrossingRow&
   const V steepness = length(gradient);
   const auto has_normal = hn::Gt(steepness, hn::Zero(d));
   V3 normal = scaled(gradient, hn::IfThenElseZero(has_normal, hn::Div(constant(-1.0f), steepness)));
-  const V seen = hn::IfThenElse(has_normal, hn::Max(constant(kMinSeen), hn::Abs(along<kAxis>(normal))),
-                                constant(kSeenWithoutNormal));
-  const V area = hn::IfThenElseZero(crossed, hn::Mul(constant(face[kAxis]), seen));
+  const V cosine = hn::IfThenElse(has_normal, hn::Max(constant(kMinCosine), hn::Abs(along<kAxis>(normal))),
+                                  constant(kCosineWithoutNormal));
+  const V area = hn::IfThenElseZero(crossed, hn::Mul(constant(face[kAxis]), cosine));
   V3 at{hn::Iota(d, static_cast<float>(row.i + static_cast<int>(node))), constant(static_cast<float>(row.j)),
         constant(static_cast<float>(row.k))};
   along<kAxis>(at) = hn::Add(along<kAxis>(at), fraction);
   const V3 at_mm{hn::Mul(at.x, constant(step[0])), hn::Mul(at.y, constant(step[1])),
                  hn::Mul(at.z, constant(step[2]))};
-  sums.place = sum(sums.place, scaled(at_mm, area));
+  sums.position_mm = sum(sums.position_mm, scaled(at_mm, area));
   sums.normal = sum(sums.normal, scaled(normal, area));
   sums.area = hn::Add(sums.area, area);
 }
 
 HWY_INLINE void add_means_of(const Sums& sums, unsigned cells, PointRows& points) {
-  const V3 place = scaled(sums.place, hn::Div(constant(1.0f), sums.area));
+  const V3 position_mm = scaled(sums.position_mm, hn::Div(constant(1.0f), sums.area));
   const V normal_length = length(sums.normal);
   const V3 normal =
       scaled(sums.normal, hn::IfThenElseZero(hn::Gt(normal_length, hn::Mul(constant(kNoNormal), sums.area)),
@@ -112,9 +112,9 @@ HWY_INLINE void add_means_of(const Sums& sums, unsigned cells, PointRows& points
   const hn::Mask<D> chosen = lanes_of(cells);
   const CompressLanes<D> to_front(d, chosen);
   const std::size_t n = points.count;
-  hn::StoreU(to_front(place.x), d, &points.x_mm[n]);
-  hn::StoreU(to_front(place.y), d, &points.y_mm[n]);
-  hn::StoreU(to_front(place.z), d, &points.z_mm[n]);
+  hn::StoreU(to_front(position_mm.x), d, &points.x_mm[n]);
+  hn::StoreU(to_front(position_mm.y), d, &points.y_mm[n]);
+  hn::StoreU(to_front(position_mm.z), d, &points.z_mm[n]);
   hn::StoreU(to_front(sums.area), d, &points.area_mm2[n]);
   hn::StoreU(to_front(normal.x), d, &points.normal_x[n]);
   hn::StoreU(to_front(normal.y), d, &points.normal_y[n]);
@@ -125,12 +125,12 @@ HWY_INLINE void add_means_of(const Sums& sums, unsigned cells, PointRows& points
 // Stores the sums of every node of a row.
 struct StoredSums {
   static constexpr int kSums = 7;
-  alignas(64) float rows[kSums][CrossingRow::kMostNodes] = {};
+  alignas(64) float rows[kSums][CrossingRow::kMaxNodes] = {};
 
   HWY_INLINE void store(const Sums& sums, std::size_t node) {
-    hn::Store(sums.place.x, d, &rows[0][node]);
-    hn::Store(sums.place.y, d, &rows[1][node]);
-    hn::Store(sums.place.z, d, &rows[2][node]);
+    hn::Store(sums.position_mm.x, d, &rows[0][node]);
+    hn::Store(sums.position_mm.y, d, &rows[1][node]);
+    hn::Store(sums.position_mm.z, d, &rows[2][node]);
     hn::Store(sums.area, d, &rows[3][node]);
     hn::Store(sums.normal.x, d, &rows[4][node]);
     hn::Store(sums.normal.y, d, &rows[5][node]);
@@ -144,7 +144,7 @@ struct StoredSums {
   // rows.
   void sum_groups(std::size_t group) {
     for (auto& row : rows) {
-      for (std::size_t cell = 0; cell * group < CrossingRow::kMostNodes; ++cell) {
+      for (std::size_t cell = 0; cell * group < CrossingRow::kMaxNodes; ++cell) {
         float of_cell = 0;
         for (std::size_t n = 0; n < group; ++n) of_cell += row[cell * group + n];
         row[cell] = of_cell;
@@ -174,7 +174,7 @@ void AddMeans(const CrossingLattice& lattice, std::span<const CrossingRow> rows,
     return;
   }
   StoredSums stored;
-  for (std::size_t node = 0; node < CrossingRow::kMostNodes; node += kWidth) {
+  for (std::size_t node = 0; node < CrossingRow::kMaxNodes; node += kWidth) {
     stored.store(sums_of(lattice, rows, node), node);
   }
   stored.sum_groups(group);

@@ -19,7 +19,7 @@ struct CrossingLattice {
 
 /// A row of nodes and the edges that begin at them.
 struct CrossingRow {
-  static constexpr std::size_t kMostNodes = 16;
+  static constexpr std::size_t kMaxNodes = 16;
   /// The number of nodes that are read at once.
   static constexpr std::size_t kNodes = 8;
   /// The first node's density; those of all neighbours of the edges' ends lie about it.

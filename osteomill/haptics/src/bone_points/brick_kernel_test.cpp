@@ -51,7 +51,7 @@ struct Scene {
                     3 + j,
                     5 + k,
                     {0, 0, 0}};
-    const std::size_t nodes = group == 1 ? CrossingRow::kNodes : CrossingRow::kMostNodes;
+    const std::size_t nodes = group == 1 ? CrossingRow::kNodes : CrossingRow::kMaxNodes;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t n = 0; n < nodes; ++n) {
         const float* here = row.densities + n;

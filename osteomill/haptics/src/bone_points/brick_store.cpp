@@ -4,7 +4,7 @@ namespace osteomill {
 
 namespace {
 
-// Kept free for what one tick makes.
+// Slots and chunks kept free for the bricks that one tick builds.
 constexpr std::size_t kSpareSlots = 2048;
 constexpr std::size_t kSpareChunks = 4096;
 
@@ -15,38 +15,38 @@ BrickStore::BrickStore(std::size_t slots, std::size_t fine_chunks, std::size_t c
   for (std::size_t n = slots; n-- > 0;) free_[free_count_++] = static_cast<std::uint32_t>(n);
 }
 
-bool BrickStore::has_room() const {
-  constexpr std::size_t kMostChunks = SurfaceLattice::kMaxPointsOfBrick / PointChunk::kSlots + 1;
-  return free_count_ > 0 && fine_.free_chunks() >= kMostChunks && coarse_.free_chunks() >= kMostChunks;
+bool BrickStore::has_free_space() const {
+  constexpr std::size_t kMaxChunks = SurfaceLattice::kMaxPointsOfBrick / PointChunk::kSlots + 1;
+  return free_count_ > 0 && fine_.free_chunks() >= kMaxChunks && coarse_.free_chunks() >= kMaxChunks;
 }
 
-bool BrickStore::is_short_of_room() const {
+bool BrickStore::is_nearly_full() const {
   return free_count_ < kSpareSlots || fine_.free_chunks() < kSpareChunks ||
          coarse_.free_chunks() < kSpareChunks;
 }
 
-SurfaceLattice::Found BrickStore::make(const SurfaceLattice& lattice, const VoxelIndex& brick,
-                                       std::uint32_t& slot) {
+SurfaceLattice::Occupancy BrickStore::build(const SurfaceLattice& lattice, const VoxelIndex& brick,
+                                            std::uint32_t& slot) {
   const std::uint32_t changes = lattice.changes_of(brick);
-  SurfaceLattice::RowBits without_bone{};
-  if (slot != kNoSlot) without_bone = slots_[slot].without_bone;
-  const SurfaceLattice::Found found = lattice.find_surface(brick, without_bone, found_);
+  SurfaceLattice::RowBits empty_rows{};
+  if (slot != kNoSlot) empty_rows = slots_[slot].empty_rows;
+  const SurfaceLattice::Occupancy occupancy = lattice.find_surface(brick, empty_rows, surface_);
   if (slot == kNoSlot) {
-    if (found_.fine.count == 0) return found;
+    if (surface_.fine.count == 0) return occupancy;
     slot = free_[--free_count_];
   }
-  slots_[slot] = {brick, changes, without_bone};
-  fine_.replace(slot, found_.fine);
-  SurfaceLattice::merge_flat_cells(found_);
-  coarse_.replace(slot, found_.coarse);
+  slots_[slot] = {brick, changes, empty_rows};
+  fine_.replace(slot, surface_.fine);
+  SurfaceLattice::merge_flat_cells(surface_);
+  coarse_.replace(slot, surface_.coarse);
   if (!is_used(slot)) {
     free_[free_count_++] = slot;
     slot = kNoSlot;
   }
-  return found;
+  return occupancy;
 }
 
-void BrickStore::forget(std::uint32_t slot) {
+void BrickStore::evict(std::uint32_t slot) {
   fine_.replace(slot, PointRows{});
   coarse_.replace(slot, PointRows{});
   free_[free_count_++] = slot;

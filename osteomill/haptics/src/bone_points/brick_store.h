@@ -28,22 +28,23 @@ class BrickStore {
   bool is_stale(const SurfaceLattice& lattice, std::uint32_t slot) const {
     return slots_[slot].changes != lattice.changes_of(slots_[slot].brick);
   }
-  /// Returns whether there is room for one more brick, however many points it has.
-  bool has_room() const;
+  /// Returns whether one more brick fits, however many points it has.
+  bool has_free_space() const;
 
-  /// Makes the points of a brick that has `slot`, or kNoSlot if it has none yet; it then takes one, for which
-  /// there must be room, and gives it back if it has no points. Returns what was found.
-  SurfaceLattice::Found make(const SurfaceLattice& lattice, const VoxelIndex& brick, std::uint32_t& slot);
-  /// Makes room if little is left: forgets bricks that are not `kept(brick)`, slot by slot in turn, and calls
-  /// `forgotten(brick)` for each.
-  template <typename Kept, typename Forgotten>
-  void make_room(const Kept& kept, const Forgotten& forgotten) {
-    for (std::size_t n = 0; n < slots_.size() && is_short_of_room(); ++n) {
-      const auto slot = static_cast<std::uint32_t>(next_to_forget_);
-      next_to_forget_ = (next_to_forget_ + 1) % slots_.size();
+  /// Builds the points of a brick that has `slot`, or kNoSlot if it has none yet; it then takes one, for
+  /// which there must be space, and gives it back if it has no points. Returns the brick's occupancy.
+  SurfaceLattice::Occupancy build(const SurfaceLattice& lattice, const VoxelIndex& brick,
+                                  std::uint32_t& slot);
+  /// Evicts bricks that are not `kept(brick)` if memory runs short, slot by slot in turn, and calls
+  /// `evicted(brick)` for each.
+  template <typename Kept, typename Evicted>
+  void evict_far_bricks(const Kept& kept, const Evicted& evicted) {
+    for (std::size_t n = 0; n < slots_.size() && is_nearly_full(); ++n) {
+      const auto slot = static_cast<std::uint32_t>(next_to_evict_);
+      next_to_evict_ = (next_to_evict_ + 1) % slots_.size();
       if (!is_used(slot) || kept(brick(slot))) continue;
-      forgotten(brick(slot));
-      forget(slot);
+      evicted(brick(slot));
+      evict(slot);
     }
   }
 
@@ -53,19 +54,19 @@ class BrickStore {
   struct Slot {
     VoxelIndex brick;
     std::uint32_t changes = 0;
-    SurfaceLattice::RowBits without_bone{};
+    SurfaceLattice::RowBits empty_rows{};
   };
-  bool is_short_of_room() const;
-  void forget(std::uint32_t slot);
+  bool is_nearly_full() const;
+  void evict(std::uint32_t slot);
 
   BrickPoints fine_;
   BrickPoints coarse_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;
   std::size_t free_count_ = 0;
-  std::size_t next_to_forget_ = 0;
+  std::size_t next_to_evict_ = 0;
   // The surface of the brick that is being made.
-  SurfaceLattice::BrickSurface found_;
+  SurfaceLattice::BrickSurface surface_;
 };
 
 }  // namespace osteomill

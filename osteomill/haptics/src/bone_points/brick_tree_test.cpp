@@ -13,26 +13,26 @@ BrickTree::EightBits everywhere(int, const VoxelIndex&) {
 
 // Gives every place above the bricks a node.
 void open_all(BrickTree& tree) {
-  tree.visit(everywhere, [&](int level, const VoxelIndex&, BrickTree::Place place) {
-    if (level > 0) tree.open(place);
+  tree.visit(everywhere, [&](int level, const VoxelIndex&, BrickTree::EntryIndex entry) {
+    if (level > 0) tree.add_node(entry);
   });
 }
 
 TEST(BrickTree, AVisitSeesUnseenPlacesAndSlotsAloneAndChangesNothing) {
   BrickTree tree({4, 4, 4});
   open_all(tree);
-  tree.put(tree.find({1, 2, 3}).first, 7);
-  tree.put(tree.find({0, 0, 0}).first, BrickTree::kNoBone);
-  tree.put(tree.find({3, 3, 3}).first, BrickTree::kBoneAlone);
+  tree.set_content(tree.find({1, 2, 3}).first, 7);
+  tree.set_content(tree.find({0, 0, 0}).first, BrickTree::kNoBone);
+  tree.set_content(tree.find({3, 3, 3}).first, BrickTree::kAllBone);
   for (int repeat = 0; repeat < 2; ++repeat) {
     int unseen = 0;
     std::vector<VoxelIndex> with_slot;
-    tree.visit(everywhere, [&](int level, const VoxelIndex& brick, BrickTree::Place place) {
+    tree.visit(everywhere, [&](int level, const VoxelIndex& brick, BrickTree::EntryIndex entry) {
       EXPECT_EQ(level, 0);
-      if (tree.held(place) == BrickTree::kUnseen) {
+      if (tree.content(entry) == BrickTree::kUnknown) {
         ++unseen;
       } else {
-        EXPECT_EQ(tree.held(place), 7u);
+        EXPECT_EQ(tree.content(entry), 7u);
         with_slot.push_back(brick);
       }
     });
@@ -44,10 +44,10 @@ TEST(BrickTree, AVisitSeesUnseenPlacesAndSlotsAloneAndChangesNothing) {
 TEST(BrickTree, FindsTheLeastPlaceThatIsThere) {
   BrickTree tree({8, 8, 8});
   EXPECT_EQ(tree.find({5, 6, 7}).second, 2);
-  tree.open(tree.find({5, 6, 7}).first);
+  tree.add_node(tree.find({5, 6, 7}).first);
   EXPECT_EQ(tree.find({5, 6, 7}).second, 1);
   EXPECT_EQ(tree.find({0, 6, 7}).second, 2);
-  tree.open(tree.find({5, 6, 7}).first);
+  tree.add_node(tree.find({5, 6, 7}).first);
   EXPECT_EQ(tree.find({5, 6, 7}).second, 0);
 }
 
@@ -56,17 +56,17 @@ TEST(BrickTree, ForgetsNodesWithoutSlotsOnceFewAreFree) {
   open_all(tree);
   const auto [kept, level] = tree.find({0, 0, 0});
   ASSERT_EQ(level, 0);
-  tree.put(kept, 3);
+  tree.set_content(kept, 3);
   const auto count_unseen_nodes = [&] {
     int unseen = 0;
     tree.visit(everywhere,
-               [&](int of_place, const VoxelIndex&, BrickTree::Place) { unseen += of_place > 0; });
+               [&](int of_place, const VoxelIndex&, BrickTree::EntryIndex) { unseen += of_place > 0; });
     return unseen;
   };
   const int before = count_unseen_nodes();
-  for (int n = 0; n < 100; ++n) tree.forget_nodes();
+  for (int n = 0; n < 100; ++n) tree.evict_nodes();
   EXPECT_GT(count_unseen_nodes(), before);
-  EXPECT_EQ(tree.held(tree.find({0, 0, 0}).first), 3u);
+  EXPECT_EQ(tree.content(tree.find({0, 0, 0}).first), 3u);
 }
 
 }  // namespace

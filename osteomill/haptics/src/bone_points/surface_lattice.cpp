@@ -13,13 +13,13 @@ namespace {
 // Points are merged into one if their mean normal is longer than this: they nearly lie in a plane.
 constexpr float kFlat = 0.98f;
 
-// Voxels that are looked at one by one, if ranges of them are too wide to tell; and ranges, of a large
-// box.
-constexpr std::size_t kMostVoxels = 6 * 6 * 6;
-constexpr std::size_t kMostRanges = 5 * 5 * 5;
+// Largest number of voxels that are sampled one by one if their ranges are too wide to tell, and of ranges
+// that are sampled in a large box.
+constexpr std::size_t kMaxSampledVoxels = 6 * 6 * 6;
+constexpr std::size_t kMaxSampledRanges = 5 * 5 * 5;
 
 // Accumulates whether some densities contain bone, and whether all are bone.
-struct Seen {
+struct Coverage {
   bool any_bone = false;
   bool all_bone = true;
 
@@ -27,9 +27,9 @@ struct Seen {
     any_bone |= any;
     all_bone &= all;
   }
-  SurfaceLattice::Found found() const {
-    if (!any_bone) return SurfaceLattice::Found::no_bone;
-    return all_bone ? SurfaceLattice::Found::bone_alone : SurfaceLattice::Found::surface;
+  SurfaceLattice::Occupancy occupancy() const {
+    if (!any_bone) return SurfaceLattice::Occupancy::no_bone;
+    return all_bone ? SurfaceLattice::Occupancy::all_bone : SurfaceLattice::Occupancy::surface;
   }
 };
 
@@ -75,8 +75,8 @@ SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume
   // A brick of 16 nodes holds two cells of eight a side.
   while (group_ < kMaxGroup && 2 * group_ * voxel_mm <= spacing_mm * (1 + kRounding)) group_ *= 2;
   line_step_ = std::max(1, group_ / 2);
-  on_lines_ = 0;
-  for (int n = 0; n < 32; n += line_step_) on_lines_ |= 1u << n;
+  line_nodes_ = 0;
+  for (int n = 0; n < 32; n += line_step_) line_nodes_ |= 1u << n;
   brick_nodes_ = group_ == 1 ? 8 : kMaxBrickNodes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double& step_mm = step_mm_[static_cast<Eigen::Index>(axis)];
@@ -119,25 +119,26 @@ std::uint32_t SurfaceLattice::changes_of(const VoxelIndex& brick) const {
   return volume_->ranges().changes_in(voxels_of(0, brick, 1).intersected(volume_->geometry().all_voxels()));
 }
 
-SurfaceLattice::Found SurfaceLattice::found_in(int level, const VoxelIndex& node) const {
+SurfaceLattice::Occupancy SurfaceLattice::occupancy_of(int level, const VoxelIndex& node) const {
   const VoxelBox voxels = voxels_of(level, node, 0);
   const VoxelBox inside = voxels.intersected(volume_->geometry().all_voxels());
-  if (inside.empty()) return Found::no_bone;
-  const Seen none{false, inside == voxels};
+  if (inside.empty()) return Occupancy::no_bone;
+  const Coverage none{false, inside == voxels};
   const VoxelBox ranges = inside.bricks(BlockRanges::kBrickVoxels);
-  if (cell_count(ranges.dims()) > kMostRanges) return Found::surface;
-  Seen seen = none;
+  if (cell_count(ranges.dims()) > kMaxSampledRanges) return Occupancy::surface;
+  Coverage coverage = none;
   for_each(ranges, [&](const VoxelIndex& at) {
     const BlockRanges::Range& range = volume_->ranges().at(at);
-    seen.add(range.max > crossings_.isovalue, range.min > crossings_.isovalue);
+    coverage.add(range.max > crossings_.isovalue, range.min > crossings_.isovalue);
   });
-  if (seen.found() != Found::surface || cell_count(inside.dims()) > kMostVoxels) return seen.found();
-  seen = none;
+  if (coverage.occupancy() != Occupancy::surface || cell_count(inside.dims()) > kMaxSampledVoxels)
+    return coverage.occupancy();
+  coverage = none;
   for_each(inside, [&](const VoxelIndex& at) {
     const bool bone = volume_->grid()[at] > crossings_.isovalue;
-    seen.add(bone, bone);
+    coverage.add(bone, bone);
   });
-  return seen.found();
+  return coverage.occupancy();
 }
 
 VoxelBox SurfaceLattice::bricks_touched_by(const VoxelBox& voxels) const {
@@ -198,23 +199,23 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
   const int count = brick_nodes_ + 3;
   const auto& s = steps_per_voxel_;
   const VoxelIndex from{divide_down(first.i, s[0]), divide_down(first.j, s[1]), divide_down(first.k, s[2])};
-  struct Place {
+  struct CellPosition {
     std::size_t cell;
     float fraction;
   };
-  std::array<std::array<Place, kMaxBlockNodes>, 3> places;
+  std::array<std::array<CellPosition, kMaxBlockNodes>, 3> positions;
   const std::array<int, 3> nodes{first.i, first.j, first.k}, voxels{from.i, from.j, from.k};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float per_step = 1.0f / static_cast<float>(s[axis]);
     for (int n = 0; n < count; ++n) {
       const int cell = divide_down(nodes[axis] + n, s[axis]);
-      places[axis][static_cast<std::size_t>(n)] = {
+      positions[axis][static_cast<std::size_t>(n)] = {
           static_cast<std::size_t>(cell - voxels[axis]),
           per_step * static_cast<float>(nodes[axis] + n - s[axis] * cell)};
     }
   }
   const std::size_t n = static_cast<std::size_t>(count);
-  const auto needed = [&](std::size_t axis) { return places[axis][n - 1].cell + 2; };
+  const auto needed = [&](std::size_t axis) { return positions[axis][n - 1].cell + 2; };
   const auto between = [](float a, float b, float fraction) { return a + fraction * (b - a); };
   std::array<float, kSlice> rows;           // one slice of voxels, its rows interpolated
   std::array<float, kSlice * kRow> slices;  // nodes in i and j, voxels in k
@@ -226,12 +227,12 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
             {from.i + static_cast<int>(i), from.j + static_cast<int>(j), from.k + static_cast<int>(k)});
       }
       for (std::size_t i = 0; i < n; ++i) {
-        const Place& p = places[0][i];
+        const CellPosition& p = positions[0][i];
         rows[j * kRow + i] = between(row[p.cell], row[p.cell + 1], p.fraction);
       }
     }
     for (std::size_t j = 0; j < n; ++j) {
-      const Place& p = places[1][j];
+      const CellPosition& p = positions[1][j];
       for (std::size_t i = 0; i < n; ++i) {
         slices[k * kSlice + j * kRow + i] =
             between(rows[p.cell * kRow + i], rows[(p.cell + 1) * kRow + i], p.fraction);
@@ -239,7 +240,7 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
     }
   }
   for (std::size_t k = 0; k < n; ++k) {
-    const Place& p = places[2][k];
+    const CellPosition& p = positions[2][k];
     for (std::size_t j = 0; j < n; ++j) {
       for (std::size_t i = 0; i < n; ++i) {
         const std::size_t at = j * kRow + i;
@@ -250,19 +251,19 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
   }
 }
 
-SurfaceLattice::Found SurfaceLattice::find_surface(const VoxelIndex& brick, RowBits& without_bone,
-                                                   BrickSurface& surface) const {
+SurfaceLattice::Occupancy SurfaceLattice::find_surface(const VoxelIndex& brick, RowBits& empty_rows,
+                                                       BrickSurface& surface) const {
   surface.fine.count = surface.coarse.count = 0;
   Block block;
   const Nodes nodes = nodes_of(brick, block);
   Rows rows{};
-  const Found found = find_bone(nodes, rows_of_bone_alone(brick), without_bone, rows);
-  if (found == Found::surface) mean_crossings(nodes, rows, surface);
-  return found;
+  const Occupancy occupancy = find_bone(nodes, find_solid_rows(brick), empty_rows, rows);
+  if (occupancy == Occupancy::surface) mean_crossings(nodes, rows, surface);
+  return occupancy;
 }
 
-// Those that ranges of densities tell of, if nodes are voxels.
-SurfaceLattice::RowBits SurfaceLattice::rows_of_bone_alone(const VoxelIndex& brick) const {
+// Returns the rows that are bone by the ranges of densities, if nodes are voxels.
+SurfaceLattice::RowBits SurfaceLattice::find_solid_rows(const VoxelIndex& brick) const {
   RowBits rows{};
   const VoxelBox voxels = voxels_of(0, brick, 0);
   if (steps_per_voxel_ != std::array{1, 1, 1} ||
@@ -296,42 +297,42 @@ SurfaceLattice::RowBits SurfaceLattice::rows_of_bone_alone(const VoxelIndex& bri
 
 // In the rows that lines lie in. Memory is what reading them costs, each a cache line or two of its own: all
 // that have to be read are asked for at once.
-SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, const RowBits& bone_alone,
-                                                RowBits& without_bone, Rows& rows) const {
+SurfaceLattice::Occupancy SurfaceLattice::find_bone(const Nodes& nodes, const RowBits& solid_rows,
+                                                    RowBits& empty_rows, Rows& rows) const {
   const std::uint32_t whole = (2u << brick_nodes_) - 1;
   const auto for_each_row = [&](const auto& wanted, const auto& use) {
     for (int k = 0; k <= brick_nodes_; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      const std::uint32_t lines = on_line(k) ? whole : whole & on_lines_;
+      const std::uint32_t lines = is_on_line(k) ? whole : whole & line_nodes_;
       for (std::uint32_t left = lines & wanted(at); left != 0; left &= left - 1)
         use(std::countr_zero(left), k);
     }
   };
-  const auto unknown = [&](std::size_t k) { return ~(bone_alone[k] | without_bone[k]); };
+  const auto unknown = [&](std::size_t k) { return ~(solid_rows[k] | empty_rows[k]); };
   for_each_row(unknown, [&](int j, int k) {
     __builtin_prefetch(nodes.at(0, j, k));
     __builtin_prefetch(nodes.at(brick_nodes_, j, k));
   });
   std::uint32_t any = 0, all = whole;
-  const auto found = [&](int j, int k, std::uint32_t bits) {
+  const auto record_row = [&](int j, int k, std::uint32_t bits) {
     rows[row_index(j, k)] = bits;
     any |= bits;
     all &= bits;
   };
-  for_each_row([&](std::size_t k) { return without_bone[k]; }, [&](int j, int k) { found(j, k, 0); });
-  for_each_row([&](std::size_t k) { return bone_alone[k]; }, [&](int j, int k) { found(j, k, whole); });
+  for_each_row([&](std::size_t k) { return empty_rows[k]; }, [&](int j, int k) { record_row(j, k, 0); });
+  for_each_row([&](std::size_t k) { return solid_rows[k]; }, [&](int j, int k) { record_row(j, k, whole); });
   for_each_row(unknown, [&](int j, int k) {
     const float* row = nodes.at(0, j, k);
     std::uint32_t bits = bits_above(row, brick_nodes_, crossings_.isovalue);
     bits |= static_cast<std::uint32_t>(row[brick_nodes_] > crossings_.isovalue) << brick_nodes_;
-    if (bits == 0) without_bone[static_cast<std::size_t>(k)] |= 1u << j;
-    found(j, k, bits);
+    if (bits == 0) empty_rows[static_cast<std::size_t>(k)] |= 1u << j;
+    record_row(j, k, bits);
   });
-  if (any == 0) return Found::no_bone;
-  return all == whole ? Found::bone_alone : Found::surface;
+  if (any == 0) return Occupancy::no_bone;
+  return all == whole ? Occupancy::all_bone : Occupancy::surface;
 }
 
-// A bit a cell of a row, of bits a node.
+// Converts bits of a row's nodes into bits of its cells.
 std::uint32_t SurfaceLattice::cells_of(std::uint32_t nodes) const {
   if (group_ == 1) return nodes;
   std::uint32_t cells = 0;
@@ -339,7 +340,7 @@ std::uint32_t SurfaceLattice::cells_of(std::uint32_t nodes) const {
   return cells;
 }
 
-// One point for each cell, a row of cells after the other.
+// Makes one point for each cell, a row of cells after the other.
 void SurfaceLattice::mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const {
   const int side = brick_nodes_ / group_;
   CrossingLattice lattice = crossings_;
@@ -350,7 +351,7 @@ void SurfaceLattice::mean_crossings(const Nodes& nodes, const Rows& rows, BrickS
       std::size_t count = 0;
       std::uint32_t crossed = 0;
       for (int k = group_ * cell_k; k < group_ * (cell_k + 1); ++k) {
-        const int step = on_line(k) ? 1 : line_step_;
+        const int step = is_on_line(k) ? 1 : line_step_;
         for (int j = group_ * cell_j; j < group_ * (cell_j + 1); j += step) {
           std::uint32_t edges[3];
           if (!find_crossed(rows, j, k, edges)) continue;

@@ -15,11 +15,11 @@ namespace osteomill {
 /// whole number of steps between two of them. Every crossing stands for A_a |n_a| of surface (A_a the face of
 /// a cell across edges along a, n the surface's unit normal): three regular lattices, whose sum is a
 /// quadrature of the surface whatever its slope. A point is the weighted mean of the crossings in a cell: of
-/// one node, or, in a fine scan, of 2^n nodes a side, of whose lines those are looked at that lie half the
+/// one node, or, in a fine scan, of 2^n nodes a side, of whose lines those are sampled that lie half the
 /// spacing apart. The volume outlives it. Safe in the haptic tick.
 class SurfaceLattice {
  public:
-  static constexpr int kMaxBrickNodes = static_cast<int>(CrossingRow::kMostNodes);
+  static constexpr int kMaxBrickNodes = static_cast<int>(CrossingRow::kMaxNodes);
   static constexpr int kMaxBlockNodes = kMaxBrickNodes + 3;
   static constexpr std::size_t kMaxPointsOfBrick = 8 * 8 * 8;
 
@@ -54,11 +54,11 @@ class SurfaceLattice {
     return static_cast<double>(1 << level) * Vec3(2 * node.i + 1, 2 * node.j + 1, 2 * node.k + 1);
   }
 
-  /// Names what a node holds. A node without bone stays without; bone alone becomes surface as densities
-  /// fall.
-  enum class Found { no_bone, bone_alone, surface };
+  /// Names what a node holds. Milling only removes bone: `no_bone` never changes, and `all_bone` may become
+  /// `surface`.
+  enum class Occupancy { no_bone, all_bone, surface };
   /// Returns what such a node holds; may return `surface` though there is none.
-  Found found_in(int level, const VoxelIndex& node) const;
+  Occupancy occupancy_of(int level, const VoxelIndex& node) const;
   /// Returns a number that differs from what it was earlier if any density that the brick's points are made
   /// from has fallen since.
   std::uint32_t changes_of(const VoxelIndex& brick) const;
@@ -74,9 +74,9 @@ class SurfaceLattice {
   };
   /// A bit for each of a brick's rows of nodes along i: bit j of element k.
   using RowBits = std::array<std::uint32_t, kMaxBrickNodes + 1>;
-  /// Finds fine points alone, and returns what lines meet. `without_bone`: the rows in which no bone was
-  /// found before, so that they need not be looked at again; adds those that it finds.
-  Found find_surface(const VoxelIndex& brick, RowBits& without_bone, BrickSurface& surface) const;
+  /// Finds the fine points, and returns the occupancy of the nodes on lines. `empty_rows` are the rows in
+  /// which no bone was found before, which are skipped; adds those that it finds.
+  Occupancy find_surface(const VoxelIndex& brick, RowBits& empty_rows, BrickSurface& surface) const;
   /// Makes the coarse points of the fine ones: one for all in a cell twice as wide if they lie in a plane;
   /// along edges all stay.
   static void merge_flat_cells(BrickSurface& surface);
@@ -103,17 +103,17 @@ class SurfaceLattice {
   void copy_voxels(const VoxelIndex& first, Block& block) const;
   void interpolate_voxels(const VoxelIndex& first, Block& block) const;
   float density(const VoxelIndex& voxel) const;
-  RowBits rows_of_bone_alone(const VoxelIndex& brick) const;
-  Found find_bone(const Nodes& nodes, const RowBits& bone_alone, RowBits& without_bone, Rows& rows) const;
-  bool on_line(int node) const { return (on_lines_ >> node & 1) != 0; }
+  RowBits find_solid_rows(const VoxelIndex& brick) const;
+  Occupancy find_bone(const Nodes& nodes, const RowBits& solid_rows, RowBits& empty_rows, Rows& rows) const;
+  bool is_on_line(int node) const { return (line_nodes_ >> node & 1) != 0; }
   // The edges along lines from a row's nodes that are crossed; false if none is.
   bool find_crossed(const Rows& rows, int j, int k, std::uint32_t (&crossed)[3]) const {
     const std::uint32_t lower = (1u << brick_nodes_) - 1;
-    const std::uint32_t on_j = on_line(j) ? lower : 0, on_k = on_line(k) ? lower : 0;
+    const std::uint32_t on_j = is_on_line(j) ? lower : 0, on_k = is_on_line(k) ? lower : 0;
     const std::uint32_t here = rows[row_index(j, k)];
     crossed[0] = (here ^ (here >> 1)) & on_j & on_k;
-    crossed[1] = (here ^ rows[row_index(j + 1, k)]) & on_lines_ & on_k;
-    crossed[2] = (here ^ rows[row_index(j, k + 1)]) & on_lines_ & on_j;
+    crossed[1] = (here ^ rows[row_index(j + 1, k)]) & line_nodes_ & on_k;
+    crossed[2] = (here ^ rows[row_index(j, k + 1)]) & line_nodes_ & on_j;
     return (crossed[0] | crossed[1] | crossed[2]) != 0;
   }
   std::uint32_t cells_of(std::uint32_t nodes) const;
@@ -121,12 +121,12 @@ class SurfaceLattice {
 
   const Volume* volume_ = nullptr;
   std::array<int, 3> steps_per_voxel_{1, 1, 1};
-  // Nodes of a cell, and from one line that is looked at to the next, along each axis.
+  // Nodes of a cell, and from one sampled line to the next, along each axis.
   static constexpr int kMaxGroup = 8;
   int group_ = 1;
   int line_step_ = 1;
   // Bit i: whether lines across i go through node i.
-  std::uint32_t on_lines_ = ~0u;
+  std::uint32_t line_nodes_ = ~0u;
   int brick_nodes_ = 8;
   std::array<int, 3> brick_dims_{1, 1, 1};
   Vec3 step_mm_ = Vec3::Ones();

@@ -29,7 +29,7 @@ std::optional<VoxelIndex> UpdateQueue::next() {
 }
 
 std::size_t UpdateQueue::size() const {
-  std::size_t waiting = bearing_owed_;
+  std::size_t waiting = supporting_pending_;
   if (!waiting_.empty()) waiting += cell_count(waiting_.dims());
   if (!walked_.empty()) {
     const VoxelIndex& first = walked_.first;

@@ -25,35 +25,36 @@ TEST(UpdateQueue, EveryBrickOfABoxHasItsTurnAndWhatIsAddedMeanwhileComesAfter) {
 
 TEST(UpdateQueue, BearingBricksTakeTurnsOnceTheyCostMoreThanATickDoes) {
   UpdateQueue queue;
-  for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_bearing(slot);
+  for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot);
   std::vector<int> turns(8);
   const auto take = [&](int cost) {
-    queue.take_bearing_turns([&](std::uint32_t) { return cost; }, [&](std::uint32_t slot) { ++turns[slot]; });
+    queue.update_supporting_in_turns([&](std::uint32_t) { return cost; },
+                                     [&](std::uint32_t slot) { ++turns[slot]; });
   };
-  take(UpdateQueue::kBearingPerTick / 16);
+  take(UpdateQueue::kSupportingPointsPerTick / 16);
   EXPECT_EQ(turns, std::vector<int>(8, 1));
   EXPECT_EQ(queue.size(), 0u);
   for (int tick = 0; tick < 3; ++tick) {
-    take(2 * UpdateQueue::kBearingPerTick / 8);
+    take(2 * UpdateQueue::kSupportingPointsPerTick / 8);
     EXPECT_GE(queue.size(), 5u);
   }
   EXPECT_EQ(turns, std::vector<int>(8, 2));
-  for (std::size_t n = 0; n < 2 * UpdateQueue::kMostBearing; ++n) queue.add_bearing(0);
-  queue.clear_bearing();
+  for (std::size_t n = 0; n < 2 * UpdateQueue::kMaxSupporting; ++n) queue.add_supporting(0);
+  queue.clear_supporting();
   take(1);
   EXPECT_EQ(queue.size(), 0u);
 }
 
 TEST(UpdateQueue, ATickMakesNoMoreThanItsShareAndGoesOnWithWhatWaits) {
   UpdateQueue queue;
-  queue.count_made(1000000);
-  EXPECT_TRUE(queue.may_make());
+  queue.spend_build_budget(1000000);
+  EXPECT_TRUE(queue.has_build_budget());
   EXPECT_FALSE(queue.begin_tick());
-  queue.count_made(UpdateQueue::kMadePerTick);
-  EXPECT_FALSE(queue.may_make());
+  queue.spend_build_budget(UpdateQueue::kBuiltPointsPerTick);
+  EXPECT_FALSE(queue.has_build_budget());
   queue.add({{0, 0, 0}, {1, 0, 0}});
   EXPECT_FALSE(queue.begin_tick());
-  EXPECT_TRUE(queue.may_make());
+  EXPECT_TRUE(queue.has_build_budget());
   EXPECT_TRUE(queue.begin_tick());
 }
 

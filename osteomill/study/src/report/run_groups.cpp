@@ -59,7 +59,7 @@ std::vector<std::string> RunGroup::phases() const {
 std::vector<AlgorithmId> RunGroup::algorithms() const {
   std::vector<AlgorithmId> present;
   for (const MeasuredRun& run : runs) present.push_back(run.algorithm);
-  return each_once(std::move(present));
+  return sorted_unique(std::move(present));
 }
 
 namespace {

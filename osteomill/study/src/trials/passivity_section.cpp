@@ -38,7 +38,7 @@ std::string cell(const PassivityRow& row) {
 std::vector<AlgorithmId> algorithms_of(std::span<const PassivityRow> rows) {
   std::vector<AlgorithmId> present;
   for (const PassivityRow& row : rows) present.push_back(row.algorithm);
-  return each_once(std::move(present));
+  return sorted_unique(std::move(present));
 }
 
 // A line a device, in the order of the first algorithm's rows.

@@ -124,7 +124,7 @@ std::span<const MeasuredRun> Study::rows_of_seed(std::size_t n) const {
 std::vector<AlgorithmId> Study::algorithms() const {
   std::vector<AlgorithmId> tried;
   for (const MeasuredRun& row : rows_) tried.push_back(row.algorithm);
-  return each_once(std::move(tried));
+  return sorted_unique(std::move(tried));
 }
 
 std::vector<std::string_view> Study::phases() const {

@@ -81,7 +81,7 @@ Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::p
   std::vector<std::vector<RateRow>> panels;
   std::vector<AlgorithmId> algorithms;
   for (const RateRow& row : rows) algorithms.push_back(row.algorithm);
-  for (const AlgorithmId& algorithm : each_once(std::move(algorithms))) {
+  for (const AlgorithmId& algorithm : sorted_unique(std::move(algorithms))) {
     panels.push_back(rows_of(rows, algorithm));
   }
   const PanelGrid grid{.height_px = 520,

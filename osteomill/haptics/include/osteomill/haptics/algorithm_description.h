@@ -62,7 +62,7 @@ bool is_usable(const AlgorithmId& algorithm);
 bool is_plain_name(std::string_view name);
 
 /// Returns each algorithm once, in the order of their labels.
-std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms);
+std::vector<AlgorithmId> sorted_unique(std::vector<AlgorithmId> algorithms);
 
 /// A setting of an algorithm. Its name is that in `--set ALGORITHM.NAME=VALUE`, configuration files and
 /// recordings; every algorithm's setting of the same option is set by that option.

@@ -12,7 +12,7 @@ struct Counts {
   /// How many sums over the points were made.
   std::uint64_t passes = 0;
   /// The most points that a sum went through.
-  std::uint64_t most_points = 0;
+  std::uint64_t max_points = 0;
   /// Ticks that ended before the solver was done, at the best certified pose.
   std::uint64_t unfinished = 0;
   /// Ticks at whose start, with the device's pose unchanged, the stored energy was above that at the end of

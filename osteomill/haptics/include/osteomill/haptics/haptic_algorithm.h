@@ -39,7 +39,7 @@ struct HapticStep {
   int contacts = 0;
   /// The number of bricks of bone points that may have shown more bone than there was, because bringing them
   /// up to date was left to later ticks.
-  int owed_bricks = 0;
+  int pending_bricks = 0;
 };
 
 /// One way to turn the device's pose into a wrench. `prepare` comes first and may allocate; `step`,
@@ -52,7 +52,9 @@ class HapticAlgorithm {
   /// Returns a line for each setting with which this tool holds badly, or takes too long, in a scan of this
   /// grid. Throws std::invalid_argument, naming setting and range, if bone could not hold it at all; then
   /// `prepare` throws the same.
-  virtual std::vector<std::string> doubts_about(const MillingTool&, const GridGeometry&) const { return {}; }
+  virtual std::vector<std::string> setting_warnings(const MillingTool&, const GridGeometry&) const {
+    return {};
+  }
   /// Makes the algorithm ready for this bone and tool. Throws std::invalid_argument if a setting or the tool
   /// is out of range.
   virtual void prepare(const Scene& scene) = 0;

@@ -31,17 +31,17 @@ class LineProxy final : public HapticAlgorithm {
   /// Takes settings within their ranges.
   explicit LineProxy(const Settings& settings) : settings_(settings) {}
 
-  std::vector<std::string> doubts_about(const MillingTool& tool, const GridGeometry& scan) const override;
+  std::vector<std::string> setting_warnings(const MillingTool& tool, const GridGeometry& scan) const override;
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   /// Does nothing: every step reads the volume itself.
   void volume_changed(const VolumeChange&) noexcept override {}
-  void reset() noexcept override { memory_ = Memory{}; }
+  void reset() noexcept override { state_ = ContactState{}; }
   int sample_point_count() const override { return static_cast<int>(vertices_T_.size()); }
 
  private:
   // The state that one tick leaves to the next.
-  struct Memory {
+  struct ContactState {
     std::optional<Vec3> device_tip_W;
     std::optional<Vec3> tip_proxy_W;
     // The centreline, laid at the tip's proxy if there is one.
@@ -58,13 +58,13 @@ class LineProxy final : public HapticAlgorithm {
   std::optional<Vec3> first_intersection(const Pose& X_WL) const;
   std::optional<Vec3> next_intersection(const Pose& X_WL) const;
   void turn_reaction(const Pose& X_WL);
-  void forget_what_is_not_finite();
+  void reset_if_not_finite();
   Pose drawn_tool(const Pose& X_WL) const;
 
   Settings settings_;
   Scene scene_;
   std::vector<Vec3> vertices_T_;
-  Memory memory_;
+  ContactState state_;
 };
 
 /// Describes algorithm 1 of the paper (section 4).

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "doubts.h"
+#include "setting_warnings.h"
 
 namespace osteomill::point_shell {
 
@@ -29,25 +29,26 @@ double contact_stiffness_N_per_mm3(const MillingTool& tool) {
   return 1.5 * kMaxForce_N * 27 / (4 * std::numbers::pi * r * r * r);
 }
 
-std::vector<std::string> PointShell::doubts_about(const MillingTool& tool, const GridGeometry& scan) const {
-  std::vector<std::string> doubts;
-  doubt_stiffness(doubts, "point-shell: a translational-stiffness",
-                  settings_.translational_stiffness_N_per_mm);
-  constexpr double kLongest_s = 0.02;
-  if (settings_.damping_time_s > kLongest_s) {
+std::vector<std::string> PointShell::setting_warnings(const MillingTool& tool,
+                                                      const GridGeometry& scan) const {
+  std::vector<std::string> warnings;
+  add_stiffness_warning(warnings, "point-shell: a translational-stiffness",
+                        settings_.translational_stiffness_N_per_mm);
+  constexpr double kMaxTime_s = 0.02;
+  if (settings_.damping_time_s > kMaxTime_s) {
     std::ostringstream line;
     line << "point-shell: a damping-time of " << settings_.damping_time_s
-         << " s lets the force of a hand that stops fade; up to " << kLongest_s << " s it stays";
-    doubts.push_back(line.str());
+         << " s lets the force of a hand that stops fade; up to " << kMaxTime_s << " s it stays";
+    warnings.push_back(line.str());
   }
   const double apart_mm = settings_.scale * scan.spacing_mm.maxCoeff();
   if (apart_mm > tool.burr_radius_mm) {
     std::ostringstream line;
     line << "point-shell: at a scale of " << settings_.scale << " points lie " << apart_mm
          << " mm apart, more than the burr's radius of " << tool.burr_radius_mm << " mm: it passes between";
-    doubts.push_back(line.str());
+    warnings.push_back(line.str());
   }
-  return doubts;
+  return warnings;
 }
 
 void PointShell::prepare(const Scene& scene) {

@@ -6,7 +6,7 @@
 #include "osteomill/haptics/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
-#include "doubts.h"
+#include "setting_warnings.h"
 
 namespace osteomill::surface_points {
 
@@ -18,60 +18,62 @@ Vec3 spring_to_surface(const Volume& volume, const Vec3& vertex_W, const Vec3& c
   return t * (centre_W - vertex_W);
 }
 
-std::vector<std::string> SurfacePoints::doubts_about(const MillingTool& tool, const GridGeometry&) const {
-  constexpr double kLeast_N = 1;
-  std::vector<std::string> doubts;
-  doubt_stiffness(doubts, "surface-points: a stiffness", settings_.stiffness_N_per_mm);
+std::vector<std::string> SurfacePoints::setting_warnings(const MillingTool& tool, const GridGeometry&) const {
+  constexpr double kMinForce_N = 1;
+  std::vector<std::string> warnings;
+  add_stiffness_warning(warnings, "surface-points: a stiffness", settings_.stiffness_N_per_mm);
   // The sum over half a ball's vertices, each half as far from the surface as from the centre.
-  const double most_N = settings_.stiffness_N_per_mm * tool.burr_radius_mm / 8;
-  if (most_N < kLeast_N) {
+  const double max_N = settings_.stiffness_N_per_mm * tool.burr_radius_mm / 8;
+  if (max_N < kMinForce_N) {
     std::ostringstream line;
     line << "surface-points: a stiffness of " << settings_.stiffness_N_per_mm << " N/mm carries about "
-         << most_N << " N on a burr of " << tool.burr_radius_mm << " mm, beyond which it falls through";
-    doubts.push_back(line.str());
+         << max_N << " N on a burr of " << tool.burr_radius_mm << " mm, beyond which it falls through";
+    warnings.push_back(line.str());
   }
-  doubt_reads(doubts, "surface-points: this number of slices and vertices",
-              2 * (settings_.sphere_vertices + settings_.slices * settings_.circle_vertices));
-  return doubts;
+  add_reads_warning(warnings, "surface-points: this number of slices and vertices",
+                    2 * (settings_.sphere_vertices + settings_.slices * settings_.circle_vertices));
+  return warnings;
 }
 
 void SurfacePoints::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("surface-points: a scene without a volume");
   require_valid(scene.tool);
   volume_ = scene.volume;
-  sphere_.arms_T = sphere_vertices(scene.tool, settings_.sphere_vertices);
+  sphere_.vertex_offsets_T = sphere_vertices(scene.tool, settings_.sphere_vertices);
   slices_.clear();
   for (const ShaftSlice& slice : slice_vertices(scene.tool, settings_.slices, settings_.circle_vertices)) {
-    Fan& fan = slices_.emplace_back(Fan{.centre_T = slice.centre_T});
-    for (const Vec3& vertex : slice.vertices_T) fan.arms_T.emplace_back(vertex - slice.centre_T);
+    VertexRing& ring = slices_.emplace_back(VertexRing{.centre_T = slice.centre_T});
+    for (const Vec3& vertex : slice.vertices_T) ring.vertex_offsets_T.emplace_back(vertex - slice.centre_T);
   }
   reset();
 }
 
 void SurfacePoints::reset() noexcept {
   sphere_.force_W_N.setZero();
-  for (Fan& slice : slices_) slice.force_W_N.setZero();
+  for (VertexRing& slice : slices_) slice.force_W_N.setZero();
 }
 
 int SurfacePoints::sample_point_count() const {
-  std::size_t count = sphere_.arms_T.size();
-  for (const Fan& slice : slices_) count += slice.arms_T.size();
+  std::size_t count = sphere_.vertex_offsets_T.size();
+  for (const VertexRing& slice : slices_) count += slice.vertex_offsets_T.size();
   return static_cast<int>(count);
 }
 
-void SurfacePoints::update(Fan& fan, const Pose& X_WD) const {
-  const Vec3 centre_W = X_WD * fan.centre_T;
+void SurfacePoints::update(VertexRing& ring, const Pose& X_WD) const {
+  const Vec3 centre_W = X_WD * ring.centre_T;
   Vec3 reach_mm = Vec3::Zero();
-  fan.contacts = 0;
-  for (const Vec3& arm_T : fan.arms_T) {
-    const Vec3 reach = spring_to_surface(*volume_, centre_W + X_WD.orientation * arm_T, centre_W);  // eq. 15
-    if (!reach.isZero(0)) ++fan.contacts;
+  ring.contacts = 0;
+  for (const Vec3& vertex_offset_T : ring.vertex_offsets_T) {
+    const Vec3 reach =
+        spring_to_surface(*volume_, centre_W + X_WD.orientation * vertex_offset_T, centre_W);  // eq. 15
+    if (!reach.isZero(0)) ++ring.contacts;
     reach_mm += reach;
   }
   // (17), (19): a centre in bone keeps the force of the step before.
   if (is_bone_at(*volume_, centre_W)) return;
   // (14), (16), (18)
-  fan.force_W_N = settings_.stiffness_N_per_mm / static_cast<double>(fan.arms_T.size()) * reach_mm;
+  ring.force_W_N =
+      settings_.stiffness_N_per_mm / static_cast<double>(ring.vertex_offsets_T.size()) * reach_mm;
 }
 
 HapticStep SurfacePoints::step(const Pose& X_WD, double) noexcept {
@@ -82,7 +84,7 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double) noexcept {
   result.wrench.force_N = sphere_.force_W_N;
   result.burr_force_W_N = -sphere_.force_W_N;
   Vec3 torque_Nmm = Vec3::Zero();
-  for (Fan& slice : slices_) {
+  for (VertexRing& slice : slices_) {
     update(slice, X_WD);
     result.contacts += slice.contacts;
     torque_Nmm += (X_WD.orientation * slice.centre_T).cross(slice.force_W_N);

@@ -40,7 +40,7 @@ class SurfacePoints final : public HapticAlgorithm {
   /// Takes settings within their ranges.
   explicit SurfacePoints(const Settings& settings) : settings_(settings) {}
 
-  std::vector<std::string> doubts_about(const MillingTool& tool, const GridGeometry& scan) const override;
+  std::vector<std::string> setting_warnings(const MillingTool& tool, const GridGeometry& scan) const override;
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   /// Does nothing: every step reads the volume itself.
@@ -50,21 +50,21 @@ class SurfacePoints final : public HapticAlgorithm {
 
  private:
   // The vertices that share a centre: the sphere, or a slice of the shaft.
-  struct Fan {
+  struct VertexRing {
     Vec3 centre_T = Vec3::Zero();
     // From the centre to each vertex.
-    std::vector<Vec3> arms_T;
+    std::vector<Vec3> vertex_offsets_T;
     // The force of this step or, if the centre is in bone, of the last step when it was not: (17), (19).
     Vec3 force_W_N = Vec3::Zero();
     // Always of this step.
     int contacts = 0;
   };
-  void update(Fan& fan, const Pose& X_WD) const;
+  void update(VertexRing& ring, const Pose& X_WD) const;
 
   Settings settings_;
   const Volume* volume_ = nullptr;
-  Fan sphere_;
-  std::vector<Fan> slices_;
+  VertexRing sphere_;
+  std::vector<VertexRing> slices_;
 };
 
 /// Describes algorithm 2 of the paper (section 5).

@@ -11,7 +11,7 @@ namespace {
 
 using Fields = std::vector<Field<Settings>>;
 
-// In which all numbers stay finite; what is poor within it is doubted.
+// Range in which all numbers stay finite; poor values within it cause a warning.
 constexpr NumberRange kStiffness{0.001, 1e4};
 
 const Fields& fields() {

@@ -57,9 +57,9 @@ const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>();
 void require_workable(const MillingTool& tool, const GridGeometry& scan);
 
 /// Returns a line for each setting of the algorithm that is poor for this tool in such a scan
-/// (HapticAlgorithm::doubts_about). Throws std::invalid_argument, with one line, as `require_workable` does
-/// and if a setting is out of range or bone could not hold the tool with it: what a session would throw.
-std::vector<std::string> doubts_about(const MillingSetup& setup, const GridGeometry& scan);
+/// (HapticAlgorithm::setting_warnings). Throws std::invalid_argument, with one line, as `require_workable`
+/// does and if a setting is out of range or bone could not hold the tool with it: what a session would throw.
+std::vector<std::string> setting_warnings(const MillingSetup& setup, const GridGeometry& scan);
 
 /// Returns the settings by which a burr mills under this setup. Throws std::invalid_argument if one is out of
 /// range.

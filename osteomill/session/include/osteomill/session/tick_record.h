@@ -37,8 +37,8 @@ struct TickRecord {
   /// The energy given to the hand less what it gave, up to this tick's pose (PassivityObserver), in N mm.
   double energy_given_Nmm = 0;
   int contacts = 0;
-  /// The bricks that were not up to date (HapticStep::owed_bricks).
-  int owed_bricks = 0;
+  /// The bricks that were not up to date (HapticStep::pending_bricks).
+  int pending_bricks = 0;
   /// The force with which the burr pressed on the bone, in W.
   Vec3 burr_force_W_N = Vec3::Zero();
   /// The bone removed since the start, in mm^3 of reference density.

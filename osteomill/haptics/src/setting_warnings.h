@@ -5,12 +5,12 @@
 
 namespace osteomill {
 
-/// These functions append a line to `doubts` for each poor setting of the paper's algorithms. The settings
+/// These functions append a line to `warnings` for each poor setting of the paper's algorithms. The settings
 /// keep ranges in which all numbers are finite, because poor ones may be wanted for a comparison.
 
 /// Appends a line if the spring is so soft that a hand reaches no force, or so stiff that it cannot be held.
-void doubt_stiffness(std::vector<std::string>& doubts, const std::string& setting, double N_per_mm);
+void add_stiffness_warning(std::vector<std::string>& warnings, const std::string& setting, double N_per_mm);
 /// Appends a line if a tick may read enough densities (at most `reads`) to take over a millisecond.
-void doubt_reads(std::vector<std::string>& doubts, const std::string& settings, int reads);
+void add_reads_warning(std::vector<std::string>& warnings, const std::string& settings, int reads);
 
 }  // namespace osteomill

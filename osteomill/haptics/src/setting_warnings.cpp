@@ -1,0 +1,31 @@
+#include "setting_warnings.h"
+
+#include <sstream>
+
+namespace osteomill {
+
+void add_stiffness_warning(std::vector<std::string>& warnings, const std::string& setting, double N_per_mm) {
+  constexpr double kMinStiffness_N_per_mm = 0.05, kMaxStiffness_N_per_mm = 200;
+  std::ostringstream line;
+  line << setting << " of " << N_per_mm << " N/mm is ";
+  if (N_per_mm < kMinStiffness_N_per_mm) {
+    line << "so soft that a newton takes " << 1 / N_per_mm << " mm; from " << kMinStiffness_N_per_mm
+         << " on a hand is held";
+    warnings.push_back(line.str());
+  }
+  if (N_per_mm > kMaxStiffness_N_per_mm) {
+    line << "so stiff that no hand can be held still; up to " << kMaxStiffness_N_per_mm << " a device may";
+    warnings.push_back(line.str());
+  }
+}
+
+void add_reads_warning(std::vector<std::string>& warnings, const std::string& settings, int reads) {
+  constexpr int kMaxReads = 25000;
+  if (reads <= kMaxReads) return;
+  std::ostringstream line;
+  line << settings << " may read " << reads << " densities in a tick; from about " << kMaxReads
+       << " on it takes over a millisecond";
+  warnings.push_back(line.str());
+}
+
+}  // namespace osteomill
