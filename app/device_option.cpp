@@ -58,7 +58,7 @@ WorkspaceSettings workspace_of(const DeviceOption& option, const std::string& de
   if (option.turn_deg.size() == 3)
     settings.turn_V_deg = {option.turn_deg[0], option.turn_deg[1], option.turn_deg[2]};
   require_valid(settings);
-  if (settings != kept.value_or(WorkspaceSettings{}) && !path.empty()) keep_workspace(path, settings);
+  if (settings != kept.value_or(WorkspaceSettings{}) && !path.empty()) save_workspace(path, settings);
   return settings;
 }
 
@@ -66,8 +66,8 @@ std::string degrees_of_freedom(const DeviceCapabilities& device) {
   return fmt::format("{} degrees of freedom sensed, {} driven, up to {:g} N", device.sensed, device.driven,
                      device.limits.force_N) +
          (device.driven == 6 ? fmt::format(" and {:g} N mm", device.limits.torque_Nmm) : "") +
-         (device.lets_go_after_s > 0
-              ? fmt::format(", lets go {:.0f} ms after the last wrench", 1e3 * device.lets_go_after_s)
+         (device.watchdog_s > 0
+              ? fmt::format(", lets go {:.0f} ms after the last wrench", 1e3 * device.watchdog_s)
               : ", no watchdog of its own is known");
 }
 

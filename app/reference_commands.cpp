@@ -16,7 +16,7 @@ namespace osteomill::app {
 namespace {
 
 void print_device(std::string_view name, std::string_view meaning, const FoundDevice& found) {
-  fmt::print("{}\n    {}\n    {}: {}\n", name, meaning, found.there ? "found" : "not found", found.text);
+  fmt::print("{}\n    {}\n    {}: {}\n", name, meaning, found.is_present ? "found" : "not found", found.text);
 }
 
 void list_devices() {

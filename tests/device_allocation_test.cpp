@@ -30,7 +30,7 @@ TEST(DeviceAllocation, NothingThatTheHapticThreadCallsAllocates) {
     const Pose X_WD = device.read_pose();
     device.write_wrench({{0, 0, device.spindle_asked() ? 3.0 : 1.0}, {0, 5, 0}});
     device.tick_done(X_WD, 1e-3);
-    if (n == 2900) device.let_go();
+    if (n == 2900) device.disengage();
     allocations += allocations_of_this_thread() - before;
   }
   EXPECT_EQ(allocations, 0);

@@ -93,15 +93,15 @@ class Soak {
     }
     if (random() % 3 == 0) {
       switch_to(bone_, all_algorithms()[random() % all_algorithms().size()].id.name, session_->removed_mm3(),
-                session_->left());
+                session_->handover());
     } else if (random() % 2 == 0) {
-      switch_to(std::make_shared<Volume>(before), algorithm_, removed_before_mm3, session_->left());
+      switch_to(std::make_shared<Volume>(before), algorithm_, removed_before_mm3, session_->handover());
     }
   }
 
   // Returns the memory that must not grow in an hour: that of one algorithm on the present bone.
   double memory_MiB() {
-    switch_to(bone_, "line-proxy", session_->removed_mm3(), session_->left());
+    switch_to(bone_, "line-proxy", session_->removed_mm3(), session_->handover());
     return resident_MiB();
   }
   // Starts from the scan without any state of the last session.
@@ -110,16 +110,16 @@ class Soak {
   double time_s() const { return time_s_; }
 
  private:
-  void begin(const std::string& algorithm, const TakenOver& before, double removed_mm3) {
+  void begin(const std::string& algorithm, const SessionHandover& before, double removed_mm3) {
     algorithm_ = algorithm;
     settings_.setup.algorithm = algorithm_named(algorithm);
     session_ = std::make_unique<MillingSession>(bone_, settings_.densities, settings_.setup);
     session_->count_removed_from(removed_mm3);
-    session_->take_over(before);
+    session_->resume_from(before);
   }
 
   void switch_to(std::shared_ptr<Volume> bone, const std::string& algorithm, double removed_mm3,
-                 const TakenOver& left) {
+                 const SessionHandover& left) {
     bone_ = std::move(bone);
     begin(algorithm, left, removed_mm3);
     recorder_->begin_session(

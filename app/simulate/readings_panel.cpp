@@ -112,7 +112,7 @@ void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
   device.set_workspace(settings);
   const std::filesystem::path path = workspace_path(can.name);
   view.dialogues.attempt([&] {
-    if (!path.empty()) keep_workspace(path, settings);
+    if (!path.empty()) save_workspace(path, settings);
     view.message = "How the device stands before you is kept in " + path.string();
   });
 }

@@ -22,7 +22,7 @@ void BoneCopy::begin_with(const std::vector<DensityBlock>& milled) {
   }
 }
 
-VoxelBox BoneCopy::take_over(DensityHandover& handover) {
+VoxelBox BoneCopy::drain_queue(DensityHandover& handover) {
   VoxelBox arrived;
   DensityBlock* block = handover.front();
   for (std::size_t n = 0; block != nullptr && n < DensityHandover::kBricksOnTheirWay; ++n) {

@@ -33,7 +33,7 @@ class BoneCopy {
   void begin_with(const std::vector<DensityBlock>& milled);
   /// Puts what has arrived into the copy, at most as many blocks as can be on their way. Returns the voxels
   /// that it changed.
-  VoxelBox take_over(DensityHandover& handover);
+  VoxelBox drain_queue(DensityHandover& handover);
   void begin_cut(double removed_mm3) { history_.begin_cut(removed_mm3); }
 
   /// Sets the copy's isovalue, not the bone's.

@@ -38,8 +38,8 @@ struct BoneFollower::Parts {
   // Last, so that it ends before all that it uses.
   std::jthread thread;
 
-  void take_over() {
-    const VoxelBox changed = copy.take_over(handover);
+  void drain_queue() {
+    const VoxelBox changed = copy.drain_queue(handover);
     if (changed.empty()) return;
     arrived.include(changed.first);
     arrived.include(changed.last);
@@ -49,7 +49,7 @@ struct BoneFollower::Parts {
     VoxelBox where;
     {
       const std::lock_guard lock(mutex);
-      take_over();
+      drain_queue();
       milled = copy.bone();
       where = std::exchange(arrived, {});
     }
@@ -118,7 +118,7 @@ std::uint64_t BoneFollower::version() const {
 
 void BoneFollower::begin_cut(double removed_mm3) {
   const std::lock_guard lock(parts_->mutex);
-  parts_->take_over();
+  parts_->drain_queue();
   parts_->copy.begin_cut(removed_mm3);
 }
 
@@ -160,7 +160,7 @@ std::vector<double> BoneFollower::drops_by_label() const {
 bool BoneFollower::catch_up() {
   const bool all_sent = parts_->handover.waiting() == 0;
   const std::lock_guard lock(parts_->mutex);
-  parts_->take_over();
+  parts_->drain_queue();
   return all_sent && parts_->handover.front() == nullptr;
 }
 

@@ -102,12 +102,12 @@ struct DrivenDevices {
     }
     return all;
   }
-  void let_go() const {
-    wait_for([&] { return all([](DrivenDevice& driven) { return driven.device_.let_go(); }); });
+  void disengage() const {
+    wait_for([&] { return all([](DrivenDevice& driven) { return driven.device_.disengage(); }); });
   }
-  void take_hold() const {
+  void engage() const {
     all([](DrivenDevice& driven) {
-      driven.device_.take_hold();
+      driven.device_.engage();
       return true;
     });
   }
@@ -120,7 +120,7 @@ struct DrivenDevices {
       return all(
           [](const DrivenDevice& driven) { return driven.is_stopped_.load(std::memory_order_acquire); });
     });
-    let_go();
+    disengage();
   }
 };
 
@@ -164,13 +164,13 @@ void handle(int signal, siginfo_t* info, void* context) {
   const int error = errno;
   const struct sigaction& before = taken_of(signal).before;
   if (has_handler(before)) {
-    CrashStop::let_go();
+    CrashStop::disengage();
     pass_to(before, signal, info, context);
-    CrashStop::take_hold();
+    CrashStop::engage();
   } else if (only_stops(signal)) {
-    CrashStop::let_go();
+    CrashStop::disengage();
     raise(SIGSTOP);
-    CrashStop::take_hold();
+    CrashStop::engage();
   } else {
     end_by(signal);
   }
@@ -228,12 +228,12 @@ CrashStop::~CrashStop() {
   if (--objects == 0) std::ranges::for_each(kSignals, give_back);
 }
 
-void CrashStop::let_go() noexcept {
-  DrivenDevices().let_go();
+void CrashStop::disengage() noexcept {
+  DrivenDevices().disengage();
 }
 
-void CrashStop::take_hold() noexcept {
-  DrivenDevices().take_hold();
+void CrashStop::engage() noexcept {
+  DrivenDevices().engage();
 }
 
 DrivenDevice::DrivenDevice(Device& device) : device_(device) {

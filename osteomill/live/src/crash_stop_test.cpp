@@ -51,12 +51,12 @@ class SharedDevice : public testing_support::ComingDown {
     sent_->force_N = is_let_go_ ? 0 : wrench.force_N.norm();
     sent_->max_N = std::max<double>(sent_->max_N, sent_->force_N);
   }
-  bool let_go() noexcept override {
+  bool disengage() noexcept override {
     is_let_go_ = true;
     sent_->force_N = 0;
     return true;
   }
-  void take_hold() noexcept override { is_let_go_ = false; }
+  void engage() noexcept override { is_let_go_ = false; }
 
  private:
   Sent* sent_;

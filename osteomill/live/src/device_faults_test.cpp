@@ -20,7 +20,7 @@ namespace osteomill {
 namespace {
 
 constexpr double kTick_s = 1e-3;
-// kRatesForAHand in a millisecond.
+// kHandWrenchRates in a millisecond.
 constexpr double kMaxStep_N = 4 + 1e-6;
 constexpr double kMaxStep_Nmm = 100 + 1e-6;
 // How long it takes to know (an input or a wrench is old), and to come down.
@@ -237,7 +237,7 @@ TEST_P(DeviceFaults, TicksComeLateBy5ms) {
 }
 
 TEST_P(DeviceFaults, TheProgramIsEnding) {
-  expect_zero_after([this] { device_.let_go(); }, 0);
+  expect_zero_after([this] { device_.disengage(); }, 0);
 }
 
 }  // namespace

@@ -79,13 +79,13 @@ void HapticThread::hold_bone(bool held) {
   between_ticks([&] { bone_held_ = held; });
 }
 
-TakenOver HapticThread::replace(std::unique_ptr<MillingSession> session) {
-  TakenOver left;
+SessionHandover HapticThread::replace(std::unique_ptr<MillingSession> session) {
+  SessionHandover left;
   between_ticks([&] {
     std::swap(session_, session);
-    left = session->left();
-    session_->take_over(left);
-    if (letting_go_) session_->let_go();
+    left = session->handover();
+    session_->resume_from(left);
+    if (fading_out_) session_->fade_out();
     ++session_number_;
   });
   return left;
@@ -96,8 +96,8 @@ void HapticThread::place(const Pose& X_WD) {
   placing_.store(true, std::memory_order_release);
   between_ticks([&] {
     X_WD_place_ = X_WD;
-    letting_go_ = true;
-    session_->let_go();
+    fading_out_ = true;
+    session_->fade_out();
   });
 }
 
@@ -146,21 +146,21 @@ std::optional<TickRecord> HapticThread::next_record() {
 // Again at every tick until one has placed the tool, since the session may be replaced meanwhile and the
 // device may give no pose for a while.
 void HapticThread::place_when_at_rest() {
-  if (!letting_go_ || !session_->guard().is_at_rest()) return;
+  if (!fading_out_ || !session_->guard().is_at_rest()) return;
   device_.put_at(X_WD_place_);
   session_->place();
 }
 
 TickRecord HapticThread::tick(double late_s) {
   place_when_at_rest();
-  const bool spindle_on = !paused_ && !letting_go_ && (spindle_ || device_.spindle_asked());
+  const bool spindle_on = !paused_ && !fading_out_ && (spindle_ || device_.spindle_asked());
   TickRecord record = session_->tick(device_, {.time_s = time_s_,
                                                .dt_s = kTick_s,
                                                .late_s = late_s,
                                                .spindle_on = spindle_on && !bone_held_,
                                                .paused = paused_});
   record.session = session_number_;
-  if (record.placed) letting_go_ = false;
+  if (record.placed) fading_out_ = false;
   if (listener_) listener_(record, session_->volume(), session_->last_change());
   state_.write({record, spindle_on, session_->intersection_W()});
   if (record.placed) placing_.store(false, std::memory_order_release);

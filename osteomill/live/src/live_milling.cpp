@@ -74,11 +74,11 @@ void LiveMilling::start() {
 }
 
 void LiveMilling::update() {
-  if (preparing() && preparation_.wait_for(0s) == std::future_status::ready) take_over();
+  if (preparing() && preparation_.wait_for(0s) == std::future_status::ready) install_prepared();
 }
 
 void LiveMilling::finish_preparing() {
-  if (preparing()) take_over();
+  if (preparing()) install_prepared();
 }
 
 void LiveMilling::set_spindle(bool on) {
@@ -145,12 +145,12 @@ void LiveMilling::catch_up() {
   }
 }
 
-void LiveMilling::take_over() {
+void LiveMilling::install_prepared() {
   std::exception_ptr failure;
   try {
     Prepared prepared = preparation_.get();
     sample_points_ = prepared.session->algorithm().sample_point_count();
-    const TakenOver left = live_.replace(std::move(prepared.session));
+    const SessionHandover left = live_.replace(std::move(prepared.session));
     if (prepared.other_bone) follower_->swap();
     if (recorder_) tell_recorder(left);
   } catch (...) {
@@ -216,10 +216,10 @@ void LiveMilling::set_as_now(RunDescription& run) const {
 }
 
 // While nothing is milled.
-void LiveMilling::tell_recorder(const TakenOver& taken_over) {
+void LiveMilling::tell_recorder(const SessionHandover& handover) {
   RunDescription run = recorded_;
   set_as_now(run);
-  recorder_->begin_session(live_.session_number(), {std::move(run), taken_over, live_.session().removed_mm3(),
+  recorder_->begin_session(live_.session_number(), {std::move(run), handover, live_.session().removed_mm3(),
                                                     follower_->touched_bricks(), ""});
 }
 

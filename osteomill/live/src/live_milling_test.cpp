@@ -301,7 +301,7 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
       // On a busy machine a tick may come so late that zero is sent as fast as a hand may feel it.
       double allowed_step_N = 0.4;
       const auto allow_for_late = [&](const TickRecord& record) {
-        if (record.fault == WrenchFault::tick_late) allowed_step_N = 1e-3 * kRatesForAHand.force_N_s + 1e-9;
+        if (record.fault == WrenchFault::tick_late) allowed_step_N = 1e-3 * kHandWrenchRates.force_N_s + 1e-9;
       };
       while (const auto record = milling_.next_record()) allow_for_late(*record);
       // Asked for before, the burr may mill until this thread has asked for its place.

@@ -14,8 +14,8 @@ void require_whole(bool whole) {
 
 }  // namespace
 
-PipeEnd::PipeEnd(int descriptor, Does does, std::uintmax_t most_bytes)
-    : file_(::fdopen(descriptor, does == Does::take ? "r" : "w")), does_(does), most_bytes_(most_bytes) {
+PipeEnd::PipeEnd(int descriptor, Does does, std::uintmax_t max_bytes)
+    : file_(::fdopen(descriptor, does == Does::take ? "r" : "w")), does_(does), max_bytes_(max_bytes) {
   if (file_ == nullptr) ::close(descriptor);
   require_whole(file_ != nullptr);
 }
@@ -32,7 +32,7 @@ void PipeEnd::pass_bytes(void* data, std::size_t count) {
 
 std::size_t PipeEnd::pass_count(std::size_t count, std::size_t size) {
   pass_bytes(&count, sizeof(count));
-  require_whole(count <= most_bytes_ / size);
+  require_whole(count <= max_bytes_ / size);
   return count;
 }
 

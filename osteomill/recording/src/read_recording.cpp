@@ -40,7 +40,7 @@ static void pass(PipeEnd& pipe, RunDescription& run) {
   pass(pipe, run.labels);
 }
 static auto members_of(SessionStart& start) {
-  return std::tie(start.run, start.taken_over.X_WT, start.taken_over.sent, start.taken_over.held_back,
+  return std::tie(start.run, start.handover.X_WT, start.handover.sent, start.handover.held_back,
                   start.removed_mm3, start.bricks, start.goes_on_from);
 }
 static auto members_of(RecordedSession& session) {
@@ -189,12 +189,12 @@ SessionStart read_session_start(const Hdf5File& recording, hid_t group, const st
   start.run = run != nullptr ? *run : read_description(recording.path, group);
   read.get("goes_on_from", start.goes_on_from);
   read.get("removed_mm3", start.removed_mm3);
-  start.taken_over.sent = {read.get<Vec3>("force_N"), read.get<Vec3>("torque_Nmm")};
-  start.taken_over.held_back = read.has("held_back") && read.get<std::uint64_t>("held_back") != 0;
+  start.handover.sent = {read.get<Vec3>("force_N"), read.get<Vec3>("torque_Nmm")};
+  start.handover.held_back = read.has("held_back") && read.get<std::uint64_t>("held_back") != 0;
   if (read.has("tool_mm")) {
     std::array<double, 4> q{};
     read.get_reals("tool_wxyz", q);
-    start.taken_over.X_WT = Pose{read.get<Vec3>("tool_mm"), Quat(q[0], q[1], q[2], q[3])};
+    start.handover.X_WT = Pose{read.get<Vec3>("tool_mm"), Quat(q[0], q[1], q[2], q[3])};
   }
   start.bricks = read_bricks(recording, place, start.run.dims);
   return start;

@@ -120,7 +120,7 @@ TEST_F(ChangedRecording, OneFromBeforeHandsWereHeldBackIsRead) {
   const Recording read = read_recording(path_);
   ASSERT_EQ(read.records.size(), 1500u);
   for (const TickRecord& record : read.records) ASSERT_TRUE(record.driven);
-  EXPECT_FALSE(read.sessions.front().start.taken_over.held_back);
+  EXPECT_FALSE(read.sessions.front().start.handover.held_back);
 }
 
 TEST_F(ChangedRecording, UnequalLengthsAreRefused) {

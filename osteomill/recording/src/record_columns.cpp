@@ -88,14 +88,14 @@ Fields record_fields() {
   add_real(all, "energy_given_Nmm", "N mm", &R::energy_given_Nmm,
            "energy given to the hand less what it gave, since the session began", kInLog);
   add_switch(all, "paused", &R::paused, "1 in a pause: zero is sent and nothing computed");
-  add_switch(all, "let_go", &R::let_go, "1 if from this tick on nothing is felt until the tool is placed");
+  add_switch(all, "let_go", &R::fade_out, "1 if from this tick on nothing is felt until the tool is placed");
   add_switch(all, "placed", &R::placed,
              "1 if the tool was placed at the device before the tick, contacts forgotten");
   all.push_back(
       field<R>({"owed_bricks", "", NumberRange::count(0),
                 "bricks of bone points that may have shown more bone than there was, left to later ticks"},
                &R::pending_bricks));
-  add_real(all, "given_share", "", &R::given_share,
+  add_real(all, "given_share", "", &R::delivered_fraction,
            "how much of the force that was asked for the device had sent by then");
   add_vector(
       all, "cutting_torque", "N mm", [](auto& r) -> auto& { return r.cutting_torque_W_Nmm; },

@@ -232,10 +232,10 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   write.put("row", row);
   write.put("goes_on_from", start.goes_on_from);
   write.put("removed_mm3", start.removed_mm3);
-  write.put("force_N", start.taken_over.sent.force_N);
-  write.put("torque_Nmm", start.taken_over.sent.torque_Nmm);
-  write.put("held_back", std::uint64_t{start.taken_over.held_back});
-  if (const auto& X_WT = start.taken_over.X_WT) {
+  write.put("force_N", start.handover.sent.force_N);
+  write.put("torque_Nmm", start.handover.sent.torque_Nmm);
+  write.put("held_back", std::uint64_t{start.handover.held_back});
+  if (const auto& X_WT = start.handover.X_WT) {
     const Quat& q = X_WT->orientation;
     write.put("tool_mm", X_WT->position_mm);
     write.put_reals("tool_wxyz", std::array{q.w(), q.x(), q.y(), q.z()});

@@ -70,15 +70,15 @@ std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStar
     begin_at(start, *bone);
     auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
     session->count_removed_from(start.removed_mm3);
-    session->take_over(start.taken_over);
+    session->resume_from(start.handover);
     return session;
   });
 }
 
 TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
   PosedDevice device;
-  device.put(recorded.X_WD, recorded.given_share, recorded.driven);
-  if (recorded.let_go) session.let_go();
+  device.put(recorded.X_WD, recorded.delivered_fraction, recorded.driven);
+  if (recorded.fade_out) session.fade_out();
   if (recorded.placed) session.place();
   return session.tick(device, {.time_s = recorded.time_s,
                                .dt_s = recorded.dt_s,

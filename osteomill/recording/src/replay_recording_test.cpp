@@ -67,7 +67,7 @@ class Hand {
     if (n == 320) pose.position_mm.y() = std::numeric_limits<double>::quiet_NaN();
     // Now and then it gives the hand less.
     device_.put(pose, n % 50 < 40 ? 1 : 0.4, n < 560 || n > 565);
-    if (n == 450) session.let_go();
+    if (n == 450) session.fade_out();
     if (n == 500) {
       placed_ = true;
       device_.put({{6.5, 0, 0}, Quat::Identity()});
@@ -147,8 +147,8 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
     EditableVolume(*now).set_isovalue(step.isovalue);
     auto next = make(now, algorithm);
     next->count_removed_from(removed_mm3);
-    const TakenOver before = session->left();
-    next->take_over(before);
+    const SessionHandover before = session->handover();
+    next->resume_from(before);
     RunDescription run = description_of(scan, algorithm);
     run.isovalue = step.isovalue;
     recorder.begin_session(

@@ -95,17 +95,17 @@ TickRecord MillingSession::begin_record(Device& device, const TickInput& input) 
   record.time_s = input.time_s;
   record.dt_s = input.dt_s + input.late_s;
   record.paused = input.paused;
-  record.let_go = std::exchange(let_go_asked_, false);
-  if (record.let_go) guard_.let_go();
+  record.fade_out = std::exchange(fade_out_requested_, false);
+  if (record.fade_out) guard_.fade_out();
   record.X_WD = device.read_pose();
   // No device reaches so far, and indices of voxels would overflow there.
   if (!is_reachable(record.X_WD)) record.X_WD = kNoPose;
-  record.given_share = device.given_share();
-  record.driven = device.is_driven() && !std::exchange(hold_back_asked_, false);
+  record.delivered_fraction = device.delivered_fraction();
+  record.driven = device.is_driven() && !std::exchange(hold_back_requested_, false);
   if (!record.driven) guard_.hold_back();
   record.spindle_on = !input.paused && input.spindle_on.value_or(device.spindle_asked());
-  if (place_asked_ && is_finite(record.X_WD)) {
-    place_asked_ = false;
+  if (place_requested_ && is_finite(record.X_WD)) {
+    place_requested_ = false;
     record.placed = true;
     begin_at(record.X_WD);
   }
@@ -132,7 +132,7 @@ void MillingSession::work(Device& device, TickRecord& record) {
   auto [step, safe, cutting_torque_W_Nmm] =
       step_safely(record.X_WD, record.dt_s, record.spindle_on, record.driven);
   // The bone that goes is paid with what the hand gives.
-  step.burr_force_W_N *= record.given_share;
+  step.burr_force_W_N *= record.delivered_fraction;
   record.compute_us = microseconds_since(start);
   device.write_wrench(safe.wrench);
 
@@ -153,19 +153,19 @@ void MillingSession::work(Device& device, TickRecord& record) {
 
 void MillingSession::pause(Device& device, TickRecord& record) {
   record.X_WT = last_X_WT_.value_or(Pose{});
-  record.wrench = guard_.pass_zero(record.X_WD, record.dt_s).wrench;
+  record.wrench = guard_.filter_zero(record.X_WD, record.dt_s).wrench;
   device.write_wrench(record.wrench);
   reaction_.reset();
   intersection_W_.reset();
 }
 
-void MillingSession::take_over(const TakenOver& before) noexcept {
+void MillingSession::resume_from(const SessionHandover& before) noexcept {
   guard_.begin_from(before.sent, before.held_back);
   if (before.X_WT && is_finite(*before.X_WT)) begin_at(*before.X_WT);
 }
 
 void MillingSession::begin_at(const Pose& X_WT) noexcept {
-  guard_.begin_anew();
+  guard_.restart();
   last_X_WT_ = X_WT;
   forget_contacts(X_WT);
 }
@@ -191,24 +191,24 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
   HapticStep nothing;
   nothing.X_WT = last_X_WT_.value_or(Pose{});
   if (!is_finite(X_WD)) {
-    return {nothing, {guard_.pass_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite}};
+    return {nothing, {guard_.filter_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite}};
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
   if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
   if (milling_.reaction_share > 0) step.wrench = step.wrench + reaction_.wrench();
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
   const bool may_be_let = is_driven && (!guard_.is_held_back() || is_free(X_WD));
-  const SafeWrench safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, may_be_let);
+  const SafeWrench safe = guard_.filter(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, may_be_let);
   if (safe.fault == WrenchFault::not_finite) {
     // Whatever led there is still in the algorithm's memory of contacts. The tool itself is still outside the
     // bone, where the device may have sunk into it.
     forget_contacts(last_X_WT_);
     return {nothing, safe};
   }
-  step.burr_force_W_N *= share_sent(step.wrench.force_N, safe.wrench.force_N);
+  step.burr_force_W_N *= sent_fraction(step.wrench.force_N, safe.wrench.force_N);
   last_X_WT_ = step.X_WT;
   return {step, safe,
-          share_sent(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm};
+          sent_fraction(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm};
 }
 
 void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept {

@@ -137,7 +137,7 @@ TEST_F(MillingSessionTest, ASpindleThatStandsStillForgetsWhatItWasPressedFor) {
 }
 
 TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {
-  session_->take_over({Pose{{0, 0, 1.5}, Quat::Identity()}, {}});
+  session_->resume_from({Pose{{0, 0, 1.5}, Quat::Identity()}, {}});
   tick();
   ASSERT_EQ(algorithm_->steps.size(), 2u);
   EXPECT_EQ(algorithm_->steps[0].position_mm, Vec3(0, 0, 1.5));
@@ -234,7 +234,7 @@ TEST_F(MillingSessionTest, ADeviceWithoutAPoseGetsNothing) {
 }
 
 TEST_F(MillingSessionTest, NoAlgorithmIsGivenAPoseFartherThanAnyWorkspace) {
-  for (const double far_mm : {1e308, -1e308, 1.01 * kFarthestPose_mm}) {
+  for (const double far_mm : {1e308, -1e308, 1.01 * kMaxPose_mm}) {
     device_.put({{0, far_mm, 0}, Quat::Identity()});
     const TickRecord record = tick();
     EXPECT_EQ(record.fault, WrenchFault::pose_not_finite);

@@ -15,15 +15,15 @@ T& a() noexcept;
 static_assert(noexcept(a<HapticAlgorithm>().step(a<const Pose>(), 1e-3)));
 static_assert(noexcept(a<HapticAlgorithm>().volume_changed(a<const VolumeChange>())));
 static_assert(noexcept(a<HapticAlgorithm>().reset()));
-static_assert(noexcept(a<Device>().given_share()) && noexcept(a<Device>().spindle_asked()) && noexcept(
+static_assert(noexcept(a<Device>().delivered_fraction()) && noexcept(a<Device>().spindle_asked()) && noexcept(
     a<Device>().is_driven()));
 static_assert(noexcept(a<Device>().tick_done(a<const Pose>(),
                                              1e-3)) && noexcept(a<Device>().put_at(a<const Pose>())));
-static_assert(noexcept(a<Device>().let_go()) && noexcept(a<Device>().take_hold()));
+static_assert(noexcept(a<Device>().disengage()) && noexcept(a<Device>().engage()));
 static_assert(!noexcept(a<Device>().read_pose()) && !noexcept(a<MillingSession>().tick(a<Device>(), {})));
 static_assert(noexcept(a<BurrMill>().step(a<const Vec3>(), a<const Vec3>(), 1e-3)));
-static_assert(noexcept(a<WrenchGuard>().pass(a<const Wrench>(), a<const Pose>(), 1e-3)));
-static_assert(noexcept(a<MillingSession>().take_over(a<const TakenOver>())));
+static_assert(noexcept(a<WrenchGuard>().filter(a<const Wrench>(), a<const Pose>(), 1e-3)));
+static_assert(noexcept(a<MillingSession>().resume_from(a<const SessionHandover>())));
 
 // A copy of what is used through its interface would be a part of it.
 static_assert(!std::is_copy_assignable_v<Device> && !std::is_copy_assignable_v<HapticAlgorithm>);
@@ -36,7 +36,7 @@ class FailedDevice final : public Device {
 };
 
 TEST(Device, LettingGoOfOneThatThrowsHasSentNothing) {
-  EXPECT_FALSE(FailedDevice().let_go());
+  EXPECT_FALSE(FailedDevice().disengage());
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ class TrajectoryReader {
     point.time_s = row[0];
     point.X_WD.position_mm = {row[1], row[2], row[3]};
     if (!is_reachable(point.X_WD))
-      fail(fmt::format("x_mm,y_mm,z_mm is farther than {:g} mm from the origin", kFarthestPose_mm));
+      fail(fmt::format("x_mm,y_mm,z_mm is farther than {:g} mm from the origin", kMaxPose_mm));
     const Quat orientation(row[4], row[5], row[6], row[7]);
     if (!(std::abs(orientation.norm() - 1.0) <= kUnitTolerance)) {
       fail(fmt::format("qw,qx,qy,qz is not a unit quaternion (its length is {:.6g})", orientation.norm()));

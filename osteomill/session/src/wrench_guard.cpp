@@ -14,7 +14,7 @@ double usual_tick_s(double dt_s) {
 
 // Largest damping with which a handle of 0.1 kg that is read once a millisecond does not shake: a third of m
 // / T.
-constexpr double kMostDamping_Ns_per_mm = 0.03;
+constexpr double kMaxDamping_Ns_per_mm = 0.03;
 // How far the hand holds the handle from the burr: by this a turn counts as a motion.
 constexpr double kLever_mm = 30;
 
@@ -38,7 +38,7 @@ Wrench PassivityObserver::damping(double dt_s) const noexcept {
   constexpr double kLever2_mm2 = kLever_mm * kLever_mm;
   const double way2_mm2 = moved_mm_.squaredNorm() + kLever2_mm2 * turned_rad_.squaredNorm();
   if (energy_given_Nmm_ <= 0 || way2_mm2 == 0 || dt_s <= 0) return {};
-  const double stiffness_N_per_mm = std::min(energy_given_Nmm_ / way2_mm2, kMostDamping_Ns_per_mm / dt_s);
+  const double stiffness_N_per_mm = std::min(energy_given_Nmm_ / way2_mm2, kMaxDamping_Ns_per_mm / dt_s);
   return {-stiffness_N_per_mm * moved_mm_, -stiffness_N_per_mm * kLever2_mm2 * turned_rad_};
 }
 
@@ -46,10 +46,10 @@ GuardSettings GuardSettings::for_simulation(const WrenchLimits& limits, bool pas
   return {limits, WrenchRates{}, 0, kAny, kAny, kAny, passivity_controller};
 }
 
-void WrenchGuard::begin_anew() noexcept {
+void WrenchGuard::restart() noexcept {
   from_ = sent_;
   blended_ = 0;
-  let_go_ = false;
+  fading_out_ = false;
   X_WD_.reset();
 }
 
@@ -57,8 +57,8 @@ void WrenchGuard::begin_from(const Wrench& sent, bool held_back) noexcept {
   held_back_ = false;
   if (held_back) hold_back();
   sent_ = sent;
-  observer_.begin_anew(sent);
-  begin_anew();
+  observer_.restart(sent);
+  restart();
 }
 
 void WrenchGuard::hold_back() noexcept {
@@ -68,19 +68,19 @@ void WrenchGuard::hold_back() noexcept {
   observer_.send(sent_);
 }
 
-void WrenchGuard::let_go() noexcept {
-  begin_anew();
-  let_go_ = true;
+void WrenchGuard::fade_out() noexcept {
+  restart();
+  fading_out_ = true;
 }
 
 SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) noexcept {
   sent_ = osteomill::approach(sent_, target, settings_.rates, usual_tick_s(dt_s));
   const bool short_of_it = sent_.force_N != target.force_N || sent_.torque_Nmm != target.torque_Nmm;
   observer_.send(sent_);
-  return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::eased : fault};
+  return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::rate_limited : fault};
 }
 
-SafeWrench WrenchGuard::pass_zero(const Pose& X_WD, double dt_s) noexcept {
+SafeWrench WrenchGuard::filter_zero(const Pose& X_WD, double dt_s) noexcept {
   observer_.move_to(X_WD);
   return send_zero(dt_s);
 }
@@ -93,14 +93,14 @@ SafeWrench WrenchGuard::send_zero(double dt_s) noexcept {
   return safe;
 }
 
-SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s, bool is_free) noexcept {
+SafeWrench WrenchGuard::filter(const Wrench& asked, const Pose& X_WD, double dt_s, bool is_free) noexcept {
   observer_.move_to(X_WD);
   const Wrench damping =
       settings_.passivity_controller && !is_zero(asked) ? observer_.damping(dt_s) : Wrench{};
   const bool is_damped = !is_zero(damping);
   const SafeWrench within = make_safe(is_damped ? asked + damping : asked, settings_.limits);
   WrenchFault fault = within.fault;
-  if (fault == WrenchFault::none && is_damped) fault = WrenchFault::eased;
+  if (fault == WrenchFault::none && is_damped) fault = WrenchFault::rate_limited;
   if (X_WD_ && ((X_WD.position_mm - X_WD_->position_mm).norm() > settings_.max_move_mm ||
                 X_WD.orientation.angularDistance(X_WD_->orientation) > settings_.max_turn_rad)) {
     fault = WrenchFault::pose_jumped;
@@ -123,13 +123,13 @@ SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s,
     blended_ = 0;
     return approach({}, is_zero(within.wrench) ? fault : WrenchFault::held_back, dt_s);
   }
-  const Wrench wanted = let_go_ ? Wrench{} : within.wrench;
+  const Wrench wanted = fading_out_ ? Wrench{} : within.wrench;
   blended_ = settings_.blend_s > 0 ? std::min(1.0, blended_ + usual_tick_s(dt_s) / settings_.blend_s) : 1;
   // In free space there is nothing to come up slowly.
   if (is_zero(wanted) && is_zero(from_)) blended_ = 1;
   if (blended_ == 1) return approach(wanted, fault, dt_s);
   const Wrench target = (1 - blended_) * from_ + blended_ * wanted;
-  return approach(target, fault == WrenchFault::none ? WrenchFault::eased : fault, dt_s);
+  return approach(target, fault == WrenchFault::none ? WrenchFault::rate_limited : fault, dt_s);
 }
 
 }  // namespace osteomill

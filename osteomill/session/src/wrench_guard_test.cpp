@@ -29,15 +29,15 @@ Wrench down(double force_N) {
 // A hand that has felt nothing, and then this for long enough.
 WrenchGuard holding(double force_N) {
   WrenchGuard guard;
-  guard.pass({}, kHere, kTick_s);
-  for (int n = 0; n < 10; ++n) guard.pass(down(force_N), kHere, kTick_s);
+  guard.filter({}, kHere, kTick_s);
+  for (int n = 0; n < 10; ++n) guard.filter(down(force_N), kHere, kTick_s);
   return guard;
 }
 
 TEST(WrenchGuard, FromFreeSpaceAContactIsFeltAtOnce) {
   WrenchGuard guard;
-  guard.pass({}, kHere, kTick_s);
-  const SafeWrench safe = guard.pass(down(3), kHere, kTick_s);
+  guard.filter({}, kHere, kTick_s);
+  const SafeWrench safe = guard.filter(down(3), kHere, kTick_s);
   EXPECT_EQ(safe.wrench.force_N, down(3).force_N);
   EXPECT_EQ(safe.fault, WrenchFault::none);
 }
@@ -46,26 +46,26 @@ TEST(WrenchGuard, ATickOfNoLengthGivesNumbers) {
   WrenchGuard simulated(GuardSettings::for_simulation());
   WrenchGuard guarded = holding(3);
   for (const double force_N : {3.0, 3.0, 5.0}) {
-    EXPECT_EQ(simulated.pass(down(force_N), kHere, 0).wrench.force_N, down(force_N).force_N);
-    EXPECT_EQ(guarded.pass(down(force_N), kHere, 0).wrench.force_N, down(3).force_N);
+    EXPECT_EQ(simulated.filter(down(force_N), kHere, 0).wrench.force_N, down(force_N).force_N);
+    EXPECT_EQ(guarded.filter(down(force_N), kHere, 0).wrench.force_N, down(3).force_N);
   }
 }
 
 TEST(WrenchGuard, WhereTheHandMayHaveSunkItComesUpSlowly) {
   WrenchGuard guard = holding(0);
-  guard.begin_anew();
+  guard.restart();
   for (int n = 1; n <= 99; ++n) {
-    const SafeWrench safe = guard.pass(down(6), kHere, kTick_s);
+    const SafeWrench safe = guard.filter(down(6), kHere, kTick_s);
     ASSERT_NEAR(safe.wrench.force_N.norm(), 6 * 0.01 * n, 1e-9) << n;
-    ASSERT_EQ(safe.fault, WrenchFault::eased);
+    ASSERT_EQ(safe.fault, WrenchFault::rate_limited);
   }
-  guard.pass(down(6), kHere, kTick_s);
-  EXPECT_EQ(guard.pass(down(6), kHere, kTick_s).fault, WrenchFault::none);
+  guard.filter(down(6), kHere, kTick_s);
+  EXPECT_EQ(guard.filter(down(6), kHere, kTick_s).fault, WrenchFault::none);
 }
 
 TEST(WrenchGuard, AHandThatBeginsToBeDrivenFeelsNothingUntilItIsOutOfBone) {
   const auto held = [](WrenchGuard& guard, const Wrench& asked, bool is_free) {
-    const SafeWrench safe = guard.pass(asked, kHere, kTick_s, is_free);
+    const SafeWrench safe = guard.filter(asked, kHere, kTick_s, is_free);
     return is_zero(safe.wrench) && safe.fault == WrenchFault::held_back;
   };
   WrenchGuard begun;
@@ -80,23 +80,23 @@ TEST(WrenchGuard, AHandThatBeginsToBeDrivenFeelsNothingUntilItIsOutOfBone) {
       ASSERT_TRUE(held(*guard, down(0.4), false)) << "in bone some algorithms find nothing to push against";
     }
     EXPECT_EQ(guard->energy_given_Nmm(), 0);
-    EXPECT_NEAR(guard->pass(down(0.4), kHere, kTick_s).wrench.force_N.norm(), 0.004, 1e-9);
-    EXPECT_LT(guard->pass(down(6), kHere, kTick_s).wrench.force_N.norm(), 0.13);
+    EXPECT_NEAR(guard->filter(down(0.4), kHere, kTick_s).wrench.force_N.norm(), 0.004, 1e-9);
+    EXPECT_LT(guard->filter(down(6), kHere, kTick_s).wrench.force_N.norm(), 0.13);
   }
 }
 
 TEST(WrenchGuard, WhatNoHandFeelsIsNotHeldBack) {
   WrenchGuard guard(GuardSettings::for_simulation());
   guard.hold_back();
-  EXPECT_EQ(guard.pass(down(6), kHere, kTick_s, false).wrench.force_N, down(6).force_N);
+  EXPECT_EQ(guard.filter(down(6), kHere, kTick_s, false).wrench.force_N, down(6).force_N);
 }
 
 TEST(WrenchGuard, LateTicksComeUpInNoLargerSteps) {
   WrenchGuard guard = holding(0);
-  guard.begin_anew();
+  guard.restart();
   double before_N = 0;
   for (int n = 0; n < 50; ++n) {
-    const double sent_N = guard.pass(down(6), kHere, n % 2 ? kTick_s : 4 * kTick_s).wrench.force_N.norm();
+    const double sent_N = guard.filter(down(6), kHere, n % 2 ? kTick_s : 4 * kTick_s).wrench.force_N.norm();
     ASSERT_NEAR(sent_N - before_N, 0.06, 1e-9) << n;
     before_N = sent_N;
   }
@@ -107,7 +107,7 @@ TEST(WrenchGuard, NoStepIsLargerThanAHandMayFeel) {
   Vec3 before_N = Vec3::Zero();
   for (const double force_N : {15.0, -15.0, 3.0, 20.0, -20.0, 0.0}) {
     for (int n = 0; n < 3; ++n) {
-      const Vec3 sent_N = guard.pass(down(force_N), kHere, kTick_s).wrench.force_N;
+      const Vec3 sent_N = guard.filter(down(force_N), kHere, kTick_s).wrench.force_N;
       ASSERT_LE((sent_N - before_N).norm(), kMaxStep_N);
       before_N = sent_N;
     }
@@ -141,21 +141,21 @@ TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
         X_WD = kHere;
       else
         X_WD = fault.X_WD;
-      const SafeWrench safe = guard.pass(fault.asked, X_WD, fault.dt_s);
+      const SafeWrench safe = guard.filter(fault.asked, X_WD, fault.dt_s);
       ASSERT_EQ(safe.fault, fault.name);
       ASSERT_LE(std::abs(sent_N - safe.wrench.force_N.norm()), kMaxStep_N);
       sent_N = safe.wrench.force_N.norm();
     }
     EXPECT_NEAR(sent_N, 0, 1e-9);
-    EXPECT_LT(guard.pass(down(20), X_WD, kTick_s).wrench.force_N.norm(), 0.3);
+    EXPECT_LT(guard.filter(down(20), X_WD, kTick_s).wrench.force_N.norm(), 0.3);
   }
 }
 
 TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
   WrenchGuard guard = holding(6);
-  for (int n = 0; n < 5; ++n) guard.pass_zero(kHere, kTick_s);
+  for (int n = 0; n < 5; ++n) guard.filter_zero(kHere, kTick_s);
   EXPECT_TRUE(guard.is_at_rest());
-  EXPECT_LT(guard.pass(down(10), kHere, kTick_s).wrench.force_N.norm(), 0.2);
+  EXPECT_LT(guard.filter(down(10), kHere, kTick_s).wrench.force_N.norm(), 0.2);
 }
 
 TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
@@ -163,7 +163,7 @@ TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
   after.begin_from(holding(2).sent(), false);
   double before_N = 2;
   for (int n = 0; n < 200; ++n) {
-    const double sent_N = after.pass(down(14), kHere, kTick_s).wrench.force_N.norm();
+    const double sent_N = after.filter(down(14), kHere, kTick_s).wrench.force_N.norm();
     ASSERT_GE(sent_N, before_N - 1e-9);
     ASSERT_LE(sent_N, before_N + 0.1);
     before_N = sent_N;
@@ -173,10 +173,10 @@ TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
 
 TEST(WrenchGuard, LetGoItComesDownToRest) {
   WrenchGuard guard = holding(6);
-  guard.let_go();
+  guard.fade_out();
   double before_N = 6;
   for (int n = 0; n < 101; ++n) {
-    const double sent_N = guard.pass(down(6), kHere, kTick_s).wrench.force_N.norm();
+    const double sent_N = guard.filter(down(6), kHere, kTick_s).wrench.force_N.norm();
     ASSERT_LE(std::abs(sent_N - before_N), 0.1);
     before_N = sent_N;
   }
@@ -304,7 +304,7 @@ TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
     press(0.3);
     auto next = make(other);
     std::swap(session_, next);
-    session_->take_over({Pose{{0, 0, 1.2}, Quat::Identity()}, next->left().sent, false});
+    session_->resume_from({Pose{{0, 0, 1.2}, Quat::Identity()}, next->handover().sent, false});
     tick(200);
     // One of the paper's may step from tick to tick by itself, as far as the guard lets it.
     if (other == default_algorithm().id.name) {

@@ -32,7 +32,7 @@ std::string request_real_time() {
   return refused;
 }
 
-SignalsForOthers::SignalsForOthers() {
+BlockedSignals::BlockedSignals() {
   sigset_t of_others;
   sigfillset(&of_others);
   for (const int own : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS})
@@ -40,7 +40,7 @@ SignalsForOthers::SignalsForOthers() {
   pthread_sigmask(SIG_BLOCK, &of_others, &before_);
 }
 
-SignalsForOthers::~SignalsForOthers() {
+BlockedSignals::~BlockedSignals() {
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 

@@ -33,12 +33,12 @@ constexpr double kReopen_s = 0.5;
 // However long ago the last wrench went out, the next makes no larger a step than in this time.
 constexpr double kRound_s = 1e-3;
 constexpr double kUnitTolerance = 1e-3;
-constexpr int kWaitsForPose = 500;
+constexpr int kMaxWaitsForPose = 500;
 // More rounds than it takes to come down from any wrench.
-constexpr int kMostRoundsAtTheEnd = 50;
+constexpr int kMaxFinalRounds = 50;
 // Time that a maker's function may take before a message names it, and time that closing waits for it.
 constexpr double kHangs_s = 0.1;
-constexpr int kWaitsForTheEnd = 800;
+constexpr int kMaxWaitsForEnd = 800;
 
 double steady_now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -81,10 +81,10 @@ class ConnectedDevice::Exchange {
         connection_(open_()),
         opened_(connection_->capabilities()),
         sent_s_(now_s_()),
-        to_say_{.state = State::silent, .since_s = sent_s_},
-        said_(to_say_) {}
+        pending_report_{.state = State::silent, .since_s = sent_s_},
+        published_report_(pending_report_) {}
 
-  // The thread's, until `ends`; and one round of it.
+  // The thread's, until `end_requested`; and one round of it.
   void run();
   void round();
 
@@ -92,52 +92,52 @@ class ConnectedDevice::Exchange {
   double now_s() const { return now_s_(); }
   DeviceReport report();
 
-  struct Heard {
+  struct ReceivedInput {
     DeviceInput input;
     double at_s = -std::numeric_limits<double>::infinity();
     bool is_pose = false;
     // How often it was gone before.
-    std::uint64_t returns = 0;
+    std::uint64_t reconnects = 0;
   };
-  struct Asked {
+  struct RequestedWrench {
     Wrench wrench_D;
     double at_s = -std::numeric_limits<double>::infinity();
   };
-  LatestValue<Heard> heard;
-  LatestValue<Asked> asked;
-  std::atomic<double> given_share{0};
+  LatestValue<ReceivedInput> latest_input;
+  LatestValue<RequestedWrench> requested_wrench;
+  std::atomic<double> delivered_fraction{0};
   // How often it began or ceased to be a device that may be driven: odd while it is.
   std::atomic<std::uint64_t> gate{0};
-  std::atomic<bool> is_let_go{false};
+  std::atomic<bool> is_disengaged{false};
   // How often it was let go of.
-  std::atomic<std::uint64_t> stops{0};
+  std::atomic<std::uint64_t> disengage_count{0};
   std::atomic<bool> at_rest{true};
-  std::atomic<bool> ends{false};
+  std::atomic<bool> end_requested{false};
   std::atomic<bool> has_ended{false};
 
  private:
-  void hear(const DeviceInput& input);
+  void store_input(const DeviceInput& input);
   void set_gate(bool is_open);
-  bool may_be_driven(double now_s);
+  bool check_drivable(double now_s);
   ConnectionStatus send(double now_s, bool driven);
-  void come_down();
-  void lose(const std::string& reason);
+  void ramp_to_zero();
+  void drop_connection(const std::string& reason);
   void reopen();
-  void judge();
-  void tell(State state, double now_s);
+  void update_report();
+  void publish_report(State state, double now_s);
 
   OpenConnection open_;
   std::function<double()> now_s_;
   std::unique_ptr<Connection> connection_;
   // The capabilities at the first opening.
   DeviceCapabilities opened_;
-  Heard newest_;
+  ReceivedInput newest_;
   // The last that went out, and when.
   Wrench sent_D_;
   double sent_s_;
   // How far it has come up, 0 to 1.
   double blended_ = 0;
-  double posed_s_ = -std::numeric_limits<double>::infinity();
+  double last_pose_s_ = -std::numeric_limits<double>::infinity();
   double lost_s_ = 0;
   bool wrench_was_late_ = false;
   RecentRate inputs_;
@@ -146,10 +146,10 @@ class ConnectedDevice::Exchange {
   std::atomic<double> round_s_{std::numeric_limits<double>::infinity()};
   std::atomic<const char*> call_{nullptr};
   // The report in the making; `since_s` holds the time of the clock here.
-  DeviceReport to_say_;
+  DeviceReport pending_report_;
   // And what others may read of that, under the lock, for which the device's thread does not wait.
-  std::mutex said_mutex_;
-  DeviceReport said_;
+  std::mutex report_mutex_;
+  DeviceReport published_report_;
 };
 
 ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> now_s)
@@ -162,10 +162,10 @@ ConnectedDevice::~ConnectedDevice() {
 }
 
 std::string ConnectedDevice::close() {
-  let_go();
-  exchange_->ends.store(true, std::memory_order_release);
+  disengage();
+  exchange_->end_requested.store(true, std::memory_order_release);
   if (!thread_.joinable()) return {};
-  for (int n = 0; n < kWaitsForTheEnd && !exchange_->has_ended.load(std::memory_order_acquire); ++n)
+  for (int n = 0; n < kMaxWaitsForEnd && !exchange_->has_ended.load(std::memory_order_acquire); ++n)
     std::this_thread::sleep_for(1ms);
   if (exchange_->has_ended.load(std::memory_order_acquire)) {
     thread_.join();
@@ -178,7 +178,7 @@ std::string ConnectedDevice::close() {
 void ConnectedDevice::start() {
   thread_ = std::thread([exchange = exchange_] { exchange->run(); });
   DeviceReport now = report();
-  for (int n = 0; n < kWaitsForPose && !now.gives_poses(); ++n, now = report())
+  for (int n = 0; n < kMaxWaitsForPose && !now.gives_poses(); ++n, now = report())
     std::this_thread::sleep_for(1ms);
   if (!now.gives_poses()) throw InputError(capabilities_.name, now.complaint());
 }
@@ -188,16 +188,16 @@ void ConnectedDevice::exchange() {
 }
 
 void ConnectedDevice::Exchange::run() {
-  const SignalsForOthers none_here;
-  const VendorCallsNamed named(call_);
+  const BlockedSignals none_here;
+  const VendorCallTracker named(call_);
   request_real_time();
-  while (!ends.load(std::memory_order_acquire)) {
+  while (!end_requested.load(std::memory_order_acquire)) {
     round_s_.store(now_s_(), std::memory_order_relaxed);
     round();
     if (!connection_) std::this_thread::sleep_for(1ms);
   }
   round_s_.store(now_s_(), std::memory_order_relaxed);
-  if (connection_) come_down();
+  if (connection_) ramp_to_zero();
   connection_.reset();
   at_rest.store(true, std::memory_order_release);
   has_ended.store(true, std::memory_order_release);
@@ -211,30 +211,30 @@ void ConnectedDevice::Exchange::round() {
     } else {
       DeviceInput input;
       const ConnectionStatus status = connection_->read(input);
-      if (status == ConnectionStatus::fresh) hear(input);
+      if (status == ConnectionStatus::fresh) store_input(input);
       const double now_s = now_s_();
-      if (status == ConnectionStatus::lost || send(now_s, may_be_driven(now_s)) == ConnectionStatus::lost)
-        lose("the connection was closed");
+      if (status == ConnectionStatus::lost || send(now_s, check_drivable(now_s)) == ConnectionStatus::lost)
+        drop_connection("the connection was closed");
     }
   } catch (const std::exception& error) {
     // A back end that throws breaks its contract.
-    lose(error.what());
+    drop_connection(error.what());
   }
-  judge();
+  update_report();
 }
 
-void ConnectedDevice::Exchange::hear(const DeviceInput& input) {
+void ConnectedDevice::Exchange::store_input(const DeviceInput& input) {
   const double now_s = now_s_();
   newest_.input = input;
   newest_.at_s = now_s;
   newest_.is_pose = is_pose(input.X_DH);
   if (newest_.is_pose) {
-    if (now_s - posed_s_ > kGone_s) ++newest_.returns;
-    posed_s_ = now_s;
+    if (now_s - last_pose_s_ > kGone_s) ++newest_.reconnects;
+    last_pose_s_ = now_s;
   }
   // Before the pose, so that none from behind a closed gate is taken for one that is driven.
-  set_gate(input.not_driven == nullptr && !is_let_go.load(std::memory_order_acquire));
-  heard.write(newest_);
+  set_gate(input.not_driven == nullptr && !is_disengaged.load(std::memory_order_acquire));
+  latest_input.write(newest_);
   inputs_.count();
 }
 
@@ -243,43 +243,44 @@ void ConnectedDevice::Exchange::set_gate(bool is_open) {
   if (is_open != (number % 2 == 1)) gate.store(number + 1, std::memory_order_release);
 }
 
-bool ConnectedDevice::Exchange::may_be_driven(double now_s) {
-  const Asked& newest_asked = asked.read();
-  const bool late = now_s - newest_asked.at_s > kMaxAge_s;
-  if (late && !wrench_was_late_ && !is_zero(newest_asked.wrench_D)) ++to_say_.late_wrenches;
+bool ConnectedDevice::Exchange::check_drivable(double now_s) {
+  const RequestedWrench& newest_wrench = requested_wrench.read();
+  const bool late = now_s - newest_wrench.at_s > kMaxAge_s;
+  if (late && !wrench_was_late_ && !is_zero(newest_wrench.wrench_D)) ++pending_report_.late_wrenches;
   wrench_was_late_ = late;
-  if (is_let_go.load(std::memory_order_acquire)) set_gate(false);
+  if (is_disengaged.load(std::memory_order_acquire)) set_gate(false);
   return !late && gate.load(std::memory_order_relaxed) % 2 == 1;
 }
 
 // The only way by which a wrench goes out.
 ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
-  const double lapse_s = connection_->capabilities().lets_go_after_s;
+  const double lapse_s = connection_->capabilities().watchdog_s;
   if (lapse_s > 0 && now_s - sent_s_ > lapse_s) {
     sent_D_ = {};
     blended_ = 0;
   }
   const double passed_s = std::clamp(now_s - sent_s_, 0.0, kMaxAge_s);
   const double share = driven ? std::min(1.0, blended_ + passed_s / kBlend_s) : 0;
-  const Wrench wanted = make_safe(asked.read().wrench_D, opened_.limits).wrench;
+  const Wrench wanted = make_safe(requested_wrench.read().wrench_D, opened_.limits).wrench;
   const Wrench target = share * wanted;
-  const Wrench next = approach(sent_D_, target, kRatesForAHand, std::min(passed_s, kRound_s));
+  const Wrench next = approach(sent_D_, target, kHandWrenchRates, std::min(passed_s, kRound_s));
   const ConnectionStatus status = connection_->write(next);
   if (status == ConnectionStatus::fresh) {
     sent_D_ = next;
     sent_s_ = now_s;
   }
   if (status == ConnectionStatus::fresh || share == 0) blended_ = share;
-  given_share.store(driven ? share_sent(wanted.force_N, sent_D_.force_N) : 0, std::memory_order_relaxed);
+  delivered_fraction.store(driven ? sent_fraction(wanted.force_N, sent_D_.force_N) : 0,
+                           std::memory_order_relaxed);
   at_rest.store(is_zero(sent_D_), std::memory_order_release);
   return status;
 }
 
 // A round a millisecond, until zero has gone out; what cannot be sent any more is left to the device itself.
-void ConnectedDevice::Exchange::come_down() {
+void ConnectedDevice::Exchange::ramp_to_zero() {
   double now_s = sent_s_;
   try {
-    for (int n = 0; n < kMostRoundsAtTheEnd && !is_zero(sent_D_); ++n) {
+    for (int n = 0; n < kMaxFinalRounds && !is_zero(sent_D_); ++n) {
       const ConnectionStatus status = send(now_s += kRound_s, false);
       if (status == ConnectionStatus::lost) return;
       std::this_thread::sleep_for(1ms);
@@ -290,17 +291,17 @@ void ConnectedDevice::Exchange::come_down() {
   }
 }
 
-void ConnectedDevice::Exchange::lose(const std::string& reason) {
-  if (connection_) come_down();
+void ConnectedDevice::Exchange::drop_connection(const std::string& reason) {
+  if (connection_) ramp_to_zero();
   connection_.reset();
   set_gate(false);
   // Its own remarks go with it.
   newest_.input.not_driven = newest_.input.remark = nullptr;
   sent_D_ = {};
   blended_ = 0;
-  given_share.store(0, std::memory_order_relaxed);
+  delivered_fraction.store(0, std::memory_order_relaxed);
   lost_s_ = now_s_();
-  to_say_.reason = reason;
+  pending_report_.reason = reason;
 }
 
 void ConnectedDevice::Exchange::reopen() {
@@ -308,17 +309,17 @@ void ConnectedDevice::Exchange::reopen() {
   connection_ = open_();
   const DeviceCapabilities& now = connection_->capabilities();
   if (now.name != opened_.name || now.driven != opened_.driven || now.sensed != opened_.sensed) {
-    lose("another device is there: " + now.name);
+    drop_connection("another device is there: " + now.name);
     return;
   }
   sent_s_ = now_s_();
-  ++to_say_.reopened;
+  ++pending_report_.reopened;
 }
 
-void ConnectedDevice::Exchange::judge() {
+void ConnectedDevice::Exchange::update_report() {
   const double now_s = now_s_();
   const DeviceInput& input = newest_.input;
-  to_say_.inputs_per_s = inputs_.per_s(now_s);
+  pending_report_.inputs_per_s = inputs_.per_s(now_s);
   State state = State::ok;
   const char* says = "";
   const double age_s = now_s - newest_.at_s;
@@ -337,32 +338,32 @@ void ConnectedDevice::Exchange::judge() {
     state = State::remark;
     says = input.remark;
   }
-  if (connection_) to_say_.reason = says;
-  tell(state, now_s);
+  if (connection_) pending_report_.reason = says;
+  publish_report(state, now_s);
 }
 
-void ConnectedDevice::Exchange::tell(State state, double now_s) {
-  if (state != to_say_.state) {
-    if (to_say_.state == State::ok) ++to_say_.faults;
-    to_say_.state = state;
-    to_say_.since_s = now_s;
+void ConnectedDevice::Exchange::publish_report(State state, double now_s) {
+  if (state != pending_report_.state) {
+    if (pending_report_.state == State::ok) ++pending_report_.faults;
+    pending_report_.state = state;
+    pending_report_.since_s = now_s;
   }
-  to_say_.handle_D_mm = newest_.input.X_DH.position_mm;
-  if (const std::unique_lock lock(said_mutex_, std::try_to_lock); lock) said_ = to_say_;
+  pending_report_.handle_D_mm = newest_.input.X_DH.position_mm;
+  if (const std::unique_lock lock(report_mutex_, std::try_to_lock); lock) published_report_ = pending_report_;
 }
 
 void ConnectedDevice::set_workspace(const WorkspaceSettings& settings) {
   require_valid(settings);
-  way_set_.settings = settings;
-  ++way_set_.number;
-  way_.write(way_set_);
+  requested_mapping_.settings = settings;
+  ++requested_mapping_.number;
+  mapping_.write(requested_mapping_);
 }
 
 void ConnectedDevice::set_view(const Quat& R_WV) {
-  if (way_set_.R_WV.coeffs() == R_WV.coeffs()) return;
-  way_set_.R_WV = R_WV;
-  ++way_set_.number;
-  way_.write(way_set_);
+  if (requested_mapping_.R_WV.coeffs() == R_WV.coeffs()) return;
+  requested_mapping_.R_WV = R_WV;
+  ++requested_mapping_.number;
+  mapping_.write(requested_mapping_);
 }
 
 DeviceReport ConnectedDevice::report() const {
@@ -370,8 +371,8 @@ DeviceReport ConnectedDevice::report() const {
 }
 
 DeviceReport ConnectedDevice::Exchange::report() {
-  const std::lock_guard lock(said_mutex_);
-  DeviceReport report = said_;
+  const std::lock_guard lock(report_mutex_);
+  DeviceReport report = published_report_;
   const double now_s = now_s_();
   const double round_s = round_s_.load(std::memory_order_relaxed);
   const char* const call = call_.load(std::memory_order_acquire);
@@ -385,34 +386,36 @@ DeviceReport ConnectedDevice::Exchange::report() {
 }
 
 Pose ConnectedDevice::read_pose() noexcept {
-  const Exchange::Heard& heard = exchange_->heard.read();
+  const Exchange::ReceivedInput& latest_input = exchange_->latest_input.read();
   const std::uint64_t gate = exchange_->gate.load(std::memory_order_acquire);
-  const std::uint64_t stops = exchange_->stops.load(std::memory_order_acquire);
+  const std::uint64_t disengage_count = exchange_->disengage_count.load(std::memory_order_acquire);
   // False for a tick also if it was not driven between this one and the last.
-  is_driven_ = gate % 2 == 1 && gate == gate_ && stops == stops_ &&
-               !exchange_->is_let_go.load(std::memory_order_acquire);
+  is_driven_ = gate % 2 == 1 && gate == gate_ && disengage_count == disengage_count_ &&
+               !exchange_->is_disengaged.load(std::memory_order_acquire);
   gate_ = gate;
-  stops_ = stops;
-  const DeviceInput& input = heard.input;
-  const bool there = heard.is_pose && exchange_->now_s() - heard.at_s <= kMaxAge_s;
+  disengage_count_ = disengage_count;
+  const DeviceInput& input = latest_input.input;
+  const bool has_fresh_pose = latest_input.is_pose && exchange_->now_s() - latest_input.at_s <= kMaxAge_s;
   const bool clutched =
-      clutched_.load(std::memory_order_relaxed) || (there && (input.buttons & kClutchButton) != 0);
-  has_pose_ = there && !clutched;
+      clutched_.load(std::memory_order_relaxed) || (has_fresh_pose && (input.buttons & kClutchButton) != 0);
+  has_pose_ = has_fresh_pose && !clutched;
   buttons_ = has_pose_ ? input.buttons : 0;
-  if (clutched) anchor_anew_ = true;
+  if (clutched) needs_anchor_ = true;
   if (!has_pose_) return kNoPose;
-  if (std::exchange(returns_, heard.returns) != heard.returns) anchor_anew_ = true;
-  if (const Way& way = way_.read(); std::exchange(way_taken_, way.number) != way.number) {
-    workspace_.set(way.settings, way.R_WV);
+  if (std::exchange(reconnects_, latest_input.reconnects) != latest_input.reconnects) needs_anchor_ = true;
+  if (const Mapping& mapping = mapping_.read();
+      std::exchange(mapping_number_, mapping.number) != mapping.number) {
+    workspace_.set(mapping.settings, mapping.R_WV);
     workspace_.anchor(X_WD_, input.X_DH);
   }
-  if (std::exchange(anchor_anew_, false)) workspace_.anchor(X_WT_, input.X_DH);
+  if (std::exchange(needs_anchor_, false)) workspace_.anchor(X_WT_, input.X_DH);
   X_WD_ = workspace_.tool_pose(input.X_DH);
   return X_WD_;
 }
 
 void ConnectedDevice::write_wrench(const Wrench& wrench) noexcept {
-  exchange_->asked.write({workspace_.wrench_D(wrench, shaft_direction(X_WD_)), exchange_->now_s()});
+  exchange_->requested_wrench.write(
+      {workspace_.wrench_D(wrench, shaft_direction(X_WD_)), exchange_->now_s()});
 }
 
 void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) noexcept {
@@ -421,24 +424,24 @@ void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) noexcept {
 
 void ConnectedDevice::put_at(const Pose& X_WD) noexcept {
   X_WT_ = X_WD;
-  anchor_anew_ = true;
+  needs_anchor_ = true;
 }
 
-double ConnectedDevice::given_share() const noexcept {
-  return exchange_->given_share.load(std::memory_order_relaxed);
+double ConnectedDevice::delivered_fraction() const noexcept {
+  return exchange_->delivered_fraction.load(std::memory_order_relaxed);
 }
 
-bool ConnectedDevice::let_go() noexcept {
+bool ConnectedDevice::disengage() noexcept {
   // The wrench that is being sent right now may not be zero yet.
-  if (!exchange_->is_let_go.exchange(true, std::memory_order_acq_rel)) {
-    exchange_->stops.fetch_add(1, std::memory_order_release);
+  if (!exchange_->is_disengaged.exchange(true, std::memory_order_acq_rel)) {
+    exchange_->disengage_count.fetch_add(1, std::memory_order_release);
     exchange_->at_rest.store(false, std::memory_order_release);
   }
   return exchange_->at_rest.load(std::memory_order_acquire);
 }
 
-void ConnectedDevice::take_hold() noexcept {
-  exchange_->is_let_go.store(false, std::memory_order_release);
+void ConnectedDevice::engage() noexcept {
+  exchange_->is_disengaged.store(false, std::memory_order_release);
 }
 
 }  // namespace osteomill

@@ -18,7 +18,7 @@ namespace {
 using State = DeviceReport::State;
 constexpr double kTick_s = 1e-3;
 constexpr int kBlend = 110;
-// kRatesForAHand in a tick.
+// kHandWrenchRates in a tick.
 constexpr double kMaxStep_N = 4 + 1e-6;
 const Pose kStart{{5, 6, 7}, quaternion_from_rotation_vector({0, 0.3, 0})};
 
@@ -133,10 +133,10 @@ TEST_F(ConnectedDeviceTest, AHandleThatIsHeldStillIsFelt) {
 
 // In the tick that meets bone, milling is paid with the share that was given before.
 TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesNothingInTheAirEither) {
-  EXPECT_EQ(device_.given_share(), 1);
+  EXPECT_EQ(device_.delivered_fraction(), 1);
   hardware_.input.not_driven = "is not calibrated";
   run(2);
-  EXPECT_EQ(device_.given_share(), 0);
+  EXPECT_EQ(device_.delivered_fraction(), 0);
 }
 
 TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesPosesAndGetsZeroUntilItMay) {
@@ -146,7 +146,7 @@ TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesPosesAndGetsZeroUntilItMay) {
   run(10);
   EXPECT_TRUE(is_finite(pose_));
   EXPECT_EQ(felt_N(), 0);
-  EXPECT_EQ(device_.given_share(), 0);
+  EXPECT_EQ(device_.delivered_fraction(), 0);
   EXPECT_EQ(device_.report().complaint(), "is not driven: it is not calibrated");
   hardware_.input.not_driven = nullptr;
   run(10);
@@ -178,8 +178,8 @@ TEST_F(ConnectedDeviceTest, WhetherItIsDrivenIsToldEveryTick) {
   hardware_.input.not_driven = nullptr;
   device_.exchange();
   EXPECT_EQ(ticks_not_driven(20), 1);
-  device_.let_go();
-  device_.take_hold();
+  device_.disengage();
+  device_.engage();
   EXPECT_EQ(ticks_not_driven(20), 1);
   // A clutch leaves the tool where it is.
   device_.set_clutched(true);
@@ -203,7 +203,7 @@ TEST_F(ConnectedDeviceTest, WhatItSaysOfItselfIsSaidThoughItIsALittleSlow) {
 
 // Such a device lets go by itself.
 TEST_F(ConnectedDeviceTest, AfterALapseOfItsOwnTheForceComesUpSlowly) {
-  hardware_.can.lets_go_after_s = 5e-3;
+  hardware_.can.watchdog_s = 5e-3;
   asked_.force_N = {0, 0, 10};
   run(200);
   EXPECT_NEAR(felt_N(), 10, 1e-9);
@@ -247,7 +247,7 @@ TEST_F(ConnectedDeviceTest, ADeviceThatIsBusyFeelsNoLargerSteps) {
     asked_.force_N = {0, 0, n % 60 < 30 ? 19.0 : -19.0};
     tick();
     const Vec3 asked_D(0, asked_.force_N.z(), 0);
-    EXPECT_EQ(device_.given_share(), share_sent(asked_D, hardware_.last().force_N)) << n;
+    EXPECT_EQ(device_.delivered_fraction(), sent_fraction(asked_D, hardware_.last().force_N)) << n;
   }
   EXPECT_EQ(hardware_.got.size(), 100u);
   expect_no_step();
@@ -343,15 +343,15 @@ TEST_F(ConnectedDeviceTest, NothingPassesTheDevicesLimits) {
 TEST_F(ConnectedDeviceTest, LetGoOfItGetsZeroForGood) {
   asked_.force_N = {0, 0, 10};
   run(20);
-  EXPECT_FALSE(device_.let_go());
+  EXPECT_FALSE(device_.disengage());
   tick();
-  EXPECT_FALSE(device_.let_go());
+  EXPECT_FALSE(device_.disengage());
   run(4);
-  EXPECT_TRUE(device_.let_go());
+  EXPECT_TRUE(device_.disengage());
   run(20);
   EXPECT_EQ(felt_N(), 0);
   // Unless the program goes on after all.
-  device_.take_hold();
+  device_.engage();
   run(10);
   EXPECT_GT(felt_N(), 0);
   EXPECT_LT(felt_N(), 1.1);

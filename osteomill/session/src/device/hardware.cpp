@@ -10,21 +10,20 @@ namespace osteomill {
 namespace {
 
 constexpr std::array kKinds{
-    HardwareKind{"dhd", "NUMBER", "Force Dimension and Falcon, by the maker's libdhd",
-                 &look_for_force_dimension, &open_force_dimension},
-    HardwareKind{"haply", "HOST:PORT", "Haply Inverse3, by the maker's service", &look_for_haply,
-                 &open_haply},
-    HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, by the maker's libHD", &look_for_touch,
+    HardwareKind{"dhd", "NUMBER", "Force Dimension and Falcon, by the maker's libdhd", &probe_force_dimension,
+                 &open_force_dimension},
+    HardwareKind{"haply", "HOST:PORT", "Haply Inverse3, by the maker's service", &probe_haply, &open_haply},
+    HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, by the maker's libHD", &probe_touch,
                  &open_touch},
     HardwareKind{"udp", "HOST:PORT", "a laboratory's own device, by datagrams (docs/udp-device.md)",
-                 &look_for_udp, &open_udp},
+                 &probe_udp, &open_udp},
 };
 
 }  // namespace
 
 FoundDevice HardwareKind::find(const std::string& at) const {
   try {
-    return {true, look_for(at)};
+    return {true, probe(at)};
   } catch (const InputError& error) {
     return {false, error.what()};
   }

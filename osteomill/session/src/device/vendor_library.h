@@ -11,20 +11,21 @@ namespace osteomill {
 /// While it lives, the calling thread's calls of makers' functions leave their names in a place that other
 /// threads may read: null while there is none under way. A caller that waits for the thread then knows for
 /// which call.
-class VendorCallsNamed {
+class VendorCallTracker {
  public:
-  explicit VendorCallsNamed(std::atomic<const char*>& place) : before_(std::exchange(place_, &place)) {}
-  ~VendorCallsNamed() { place_ = before_; }
-  VendorCallsNamed(const VendorCallsNamed&) = delete;
-  VendorCallsNamed& operator=(const VendorCallsNamed&) = delete;
+  explicit VendorCallTracker(std::atomic<const char*>& place)
+      : before_(std::exchange(current_call_, &place)) {}
+  ~VendorCallTracker() { current_call_ = before_; }
+  VendorCallTracker(const VendorCallTracker&) = delete;
+  VendorCallTracker& operator=(const VendorCallTracker&) = delete;
 
  private:
   template <typename Signature>
   friend class VendorFunction;
   static void name(const char* function) noexcept {
-    if (place_ != nullptr) place_->store(function, std::memory_order_release);
+    if (current_call_ != nullptr) current_call_->store(function, std::memory_order_release);
   }
-  static inline thread_local std::atomic<const char*>* place_ = nullptr;
+  static inline thread_local std::atomic<const char*>* current_call_ = nullptr;
   std::atomic<const char*>* before_;
 };
 
@@ -61,8 +62,8 @@ class VendorFunction<Result(Arguments...)> {
 
   Result operator()(Arguments... arguments) const {
     struct Named {
-      explicit Named(const char* name) { VendorCallsNamed::name(name); }
-      ~Named() { VendorCallsNamed::name(nullptr); }
+      explicit Named(const char* name) { VendorCallTracker::name(name); }
+      ~Named() { VendorCallTracker::name(nullptr); }
     };
     const Named named(name_);
     return function_(arguments...);

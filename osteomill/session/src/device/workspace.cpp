@@ -26,11 +26,11 @@ void require_valid(const WorkspaceSettings& settings) {
 std::optional<Vec3> turn_by_moves_deg(const DeviceCapabilities& device, const Vec3& right_D_mm,
                                       const Vec3& up_D_mm) {
   constexpr double kShortest_mm = 10;
-  constexpr double kMostAlong = 0.5;
+  constexpr double kMaxCosine = 0.5;
   if (!(right_D_mm.norm() >= kShortest_mm && up_D_mm.norm() >= kShortest_mm)) return std::nullopt;
   const Vec3 right = right_D_mm.normalized();
   const Vec3 up = up_D_mm.normalized();
-  if (std::abs(right.dot(up)) > kMostAlong) return std::nullopt;
+  if (std::abs(right.dot(up)) > kMaxCosine) return std::nullopt;
   Mat3 R_DV;
   R_DV.col(0) = right;
   R_DV.col(2) = right.cross(up).normalized();
@@ -89,7 +89,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLongestName = 100;
+constexpr std::size_t kMaxNameLength = 100;
 
 double number_of(const toml::node& value, const std::string& key, const fs::path& path) {
   const auto number = value.value<double>();
@@ -125,7 +125,7 @@ void take(WorkspaceSettings& settings, const std::string& key, const toml::node&
 fs::path workspace_path(const std::string& device_name) {
   const fs::path folder = config_folder();
   if (folder.empty()) return {};
-  std::string name = device_name.substr(0, kLongestName);
+  std::string name = device_name.substr(0, kMaxNameLength);
   for (char& letter : name) {
     if (std::isalnum(static_cast<unsigned char>(letter)) == 0) letter = '-';
   }
@@ -148,7 +148,7 @@ std::optional<WorkspaceSettings> read_workspace(const fs::path& path) {
   }
 }
 
-void keep_workspace(const fs::path& path, const WorkspaceSettings& settings) {
+void save_workspace(const fs::path& path, const WorkspaceSettings& settings) {
   create_folder(path.parent_path());
   write_text_atomically(path, [&](std::ostream& text) {
     const Vec3& turn = settings.turn_V_deg;

@@ -144,14 +144,14 @@ TEST_F(WorkspaceFile, IsKeptForEachDeviceByItsName) {
   EXPECT_EQ(path.filename(), "Lab-stylus-.toml");
   EXPECT_FALSE(read_workspace(path));
   const WorkspaceSettings kept{0.25, 4, {0, 90, 0.1}, 30};
-  keep_workspace(path, kept);
+  save_workspace(path, kept);
   EXPECT_EQ(read_workspace(path), kept);
   EXPECT_FALSE(read_workspace(workspace_path("another")));
 }
 
 TEST_F(WorkspaceFile, FaultsNameTheFile) {
   const std::filesystem::path path = workspace_path("lab");
-  keep_workspace(path, {});
+  save_workspace(path, {});
   for (const char* text :
        {"scale = -1\n", "scale = \"large\"\n", "turn_deg = [1, 2]\n", "size = 3\n", "scale ="}) {
     std::ofstream(path) << text;

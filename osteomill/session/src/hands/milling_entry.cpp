@@ -69,23 +69,25 @@ struct Lattice {
   Vec3 second_W;
   double step_mm;
   int side;
-  std::vector<std::optional<Vec3>> met_W;
+  std::vector<std::optional<Vec3>> first_bone_W;
 
-  const std::optional<Vec3>& at(int a, int b) const { return met_W[static_cast<std::size_t>(b * side + a)]; }
+  const std::optional<Vec3>& at(int a, int b) const {
+    return first_bone_W[static_cast<std::size_t>(b * side + a)];
+  }
 };
 
-Lattice look_along(const Volume& volume, const MillingTool& tool, const Vec3& direction_W) {
-  constexpr int kMostLines = 96;
+Lattice sample_along(const Volume& volume, const MillingTool& tool, const Vec3& direction_W) {
+  constexpr int kMaxLines = 96;
   const BoundingBall ball = ball_around(volume.geometry());
   Lattice lattice;
   std::tie(lattice.first_W, lattice.second_W) = across(direction_W);
-  lattice.step_mm = std::max(tool.burr_radius_mm, 2 * ball.radius_mm / kMostLines);
+  lattice.step_mm = std::max(tool.burr_radius_mm, 2 * ball.radius_mm / kMaxLines);
   lattice.side = 1 + static_cast<int>(2 * ball.radius_mm / lattice.step_mm);
   lattice.corner_W = ball.centre_W - ball.radius_mm * (direction_W + lattice.first_W + lattice.second_W);
   for (int b = 0; b < lattice.side; ++b) {
     for (int a = 0; a < lattice.side; ++a) {
       const Vec3 from_W = lattice.corner_W + lattice.step_mm * (a * lattice.first_W + b * lattice.second_W);
-      lattice.met_W.push_back(surface_along(volume, from_W, direction_W));
+      lattice.first_bone_W.push_back(surface_along(volume, from_W, direction_W));
     }
   }
   return lattice;
@@ -111,9 +113,9 @@ bool is_pit(const Lattice& lattice, int a, int b, const Vec3& direction_W) {
 
 constexpr double kBefore_mm = 3.0;
 // Further than this from a body's bone there is none.
-constexpr double kFarthest_mm = 1e4;
+constexpr double kMaxDistance_mm = 1e4;
 // Distance from bone within which an algorithm may feel it, mm.
-constexpr double kRoom_mm = 1.0;
+constexpr double kClearance_mm = 1.0;
 
 struct Tilt {
   double aside_rad;
@@ -134,7 +136,7 @@ bool is_on_cut_edge(const GridGeometry& geometry, const Vec3& point_W) {
 // Returns whether a tool can enter here and stay in bone: it is free above; bone fills most of where the burr
 // goes in the first millimetres; and it does not come near the border of the volume meanwhile.
 bool can_stay(const Volume& volume, const MillingTool& tool, const MillingEntry& entry) {
-  constexpr double kMostOfIt = 0.6;
+  constexpr double kMinBoneShare = 0.6;
   constexpr int kLayers = 6, kLines = 12;
   if (is_on_cut_edge(volume.geometry(), entry.point_W)) return false;
   if (!tool_is_free(volume, tool, pose_above(entry, tool, kStartAbove_mm))) return false;
@@ -153,26 +155,27 @@ bool can_stay(const Volume& volume, const MillingTool& tool, const MillingEntry&
       }
     }
   }
-  return bone >= kMostOfIt * all;
+  return bone >= kMinBoneShare * all;
 }
 
 // The highest place, seen against the direction, at which a tool can enter a face that looks at it and stay,
 // and which is no pit. Nothing if there is none.
 std::optional<MillingEntry> find_entry(const Volume& volume, const MillingTool& tool,
                                        const Vec3& direction_W) {
-  constexpr double kLooksAtIt = 0.7;
-  const Lattice lattice = look_along(volume, tool, direction_W);
+  constexpr double kMinFacing = 0.7;
+  const Lattice lattice = sample_along(volume, tool, direction_W);
   std::vector<std::pair<double, std::pair<int, int>>> places;
   for (int b = 0; b < lattice.side; ++b) {
     for (int a = 0; a < lattice.side; ++a) {
-      if (const auto& met_W = lattice.at(a, b)) places.push_back({direction_W.dot(*met_W), {a, b}});
+      if (const auto& first_bone_W = lattice.at(a, b))
+        places.push_back({direction_W.dot(*first_bone_W), {a, b}});
     }
   }
   std::sort(places.begin(), places.end());
   for (const auto& [depth_mm, place] : places) {
     const Vec3& point_W = *lattice.at(place.first, place.second);
     const auto outward_W = outward_normal(volume, point_W);
-    if (!outward_W || outward_W->dot(-direction_W) < kLooksAtIt) continue;
+    if (!outward_W || outward_W->dot(-direction_W) < kMinFacing) continue;
     if (is_pit(lattice, place.first, place.second, direction_W)) continue;
     const MillingEntry entry{point_W, direction_W};
     if (can_stay(volume, tool, entry)) return entry;
@@ -235,8 +238,8 @@ double rim_height_mm(const Volume& volume, const MillingTool& tool, const Millin
   for (double radii : {1.0, 1.5, 2.0}) {
     const Vec3 base_W = entry.point_W + radii * tool.burr_radius_mm * side_W;
     const Vec3 from_W = base_W - kAbove_mm * entry.direction_W;
-    const auto met_W = first_crossing(volume, from_W, base_W + kBelow_mm * entry.direction_W);
-    sum_mm += met_W ? kAbove_mm - entry.direction_W.dot(*met_W - from_W) : -kBelow_mm;
+    const auto first_bone_W = first_crossing(volume, from_W, base_W + kBelow_mm * entry.direction_W);
+    sum_mm += first_bone_W ? kAbove_mm - entry.direction_W.dot(*first_bone_W - from_W) : -kBelow_mm;
   }
   return sum_mm / 3;
 }
@@ -330,12 +333,13 @@ bool tool_is_free(const Volume& volume, const MillingTool& tool, const Pose& X_W
 Pose free_pose_before(const Volume& volume, const MillingTool& tool, const Vec3& point_W,
                       const Vec3& towards_viewer_W, const Vec3& up_W) {
   const Vec3 right_W = up_W.cross(towards_viewer_W);
-  const double room_mm = std::max(kRoom_mm, 2 * volume.geometry().spacing_mm.maxCoeff());
+  const double room_mm = std::max(kClearance_mm, 2 * volume.geometry().spacing_mm.maxCoeff());
   MillingTool with_room = tool;
   with_room.burr_radius_mm += room_mm;
   with_room.shaft_radius_mm += room_mm;
   Pose X_WT;
-  for (double before_mm = std::max(kBefore_mm, 1.5 * room_mm); before_mm < kFarthest_mm; before_mm *= 1.5) {
+  for (double before_mm = std::max(kBefore_mm, 1.5 * room_mm); before_mm < kMaxDistance_mm;
+       before_mm *= 1.5) {
     X_WT.position_mm = point_W + (tool.burr_radius_mm + before_mm) * towards_viewer_W;
     for (const Tilt& tilt : kTilts) {
       const Vec3 aside_W = std::cos(tilt.towards_rad) * right_W + std::sin(tilt.towards_rad) * up_W;

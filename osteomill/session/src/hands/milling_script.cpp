@@ -33,8 +33,8 @@ constexpr double kLeanLimit_rad = 0.61;
 // It leans, however deep the hole is, when this share of the (longest) milling is over; for this share of the
 // milling at the most; and settles for this share of the holding at the most.
 constexpr double kLatestLeanShare = 0.6;
-constexpr double kLongestLeanShare = 0.4;
-constexpr double kLongestSettleShare = 0.5;
+constexpr double kMaxLeanShare = 0.4;
+constexpr double kMaxSettleShare = 0.5;
 // How fast the hand corrects what it feels, as a rate of the spring's stretch and of its twist: slow against
 // the swing of hand and handle (41 rad/s), so that the script neither damps nor drives it.
 constexpr double kPushCorrection_per_s = 4.0;
@@ -50,7 +50,7 @@ constexpr double kWallGone_s = 0.2;
 // A little more than the time after which a recording counts as without contact to its end.
 constexpr double kLost_s = 1.01;
 
-constexpr double kLongestMilling = 3;
+constexpr double kMaxMillingFactor = 3;
 // Times are sums of ticks; this keeps a stage from beginning a tick late by a rounding.
 constexpr double kRounding_s = 1e-6;
 
@@ -107,26 +107,25 @@ void MillingScript::feel(double dt_s, const Pose& X_WD, const Wrench& felt) {
   if (shaft_free_s_ >= kWallGone_s) wall_rad_.reset();
 }
 
-double MillingScript::longest_milling_s() const {
-  return settings_.until_leant ? kLongestMilling * settings_.milling_s : settings_.milling_s;
+double MillingScript::max_milling_s() const {
+  return settings_.until_leant ? kMaxMillingFactor * settings_.milling_s : settings_.milling_s;
 }
 
 bool MillingScript::is_milled(double now_s) const {
-  if (now_s >= longest_milling_s()) return true;
+  if (now_s >= max_milling_s()) return true;
   return settings_.until_leant && intent_.stage == ScriptStage::lean &&
-         (shortfall_.lost || has_leant() ||
-          now_s - stage_began_s_ >= kLongestLeanShare * settings_.milling_s);
+         (shortfall_.lost || has_leant() || now_s - stage_began_s_ >= kMaxLeanShare * settings_.milling_s);
 }
 
 bool MillingScript::is_settled(double now_s, const Pose& X_WD) const {
   const double settling_s = now_s - stage_began_s_;
   if (settling_s < std::min(settings_.settle_s, settings_.holding_s)) return false;
-  if (!settings_.until_leant || shortfall_.lost || settling_s >= kLongestSettleShare * settings_.holding_s)
+  if (!settings_.until_leant || shortfall_.lost || settling_s >= kMaxSettleShare * settings_.holding_s)
     return true;
-  return feels_what_it_holds(X_WD);
+  return is_push_felt(X_WD);
 }
 
-bool MillingScript::feels_what_it_holds(const Pose& X_WD) const {
+bool MillingScript::is_push_felt(const Pose& X_WD) const {
   return felt_push_share(X_WD) >= kFelt * kHoldPush && wall_rad_;
 }
 
@@ -145,7 +144,7 @@ void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, c
     begin(ScriptStage::settle, now_s);
   }
   if (intent_.stage == ScriptStage::settle && is_settled(now_s, X_WD)) {
-    shortfall_.unsettled = settings_.until_leant && !shortfall_.lost && !feels_what_it_holds(X_WD);
+    shortfall_.unsettled = settings_.until_leant && !shortfall_.lost && !is_push_felt(X_WD);
     begin(ScriptStage::hold, now_s);
   }
   if (intent_.stage == ScriptStage::hold &&
@@ -153,7 +152,7 @@ void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, c
     begin(ScriptStage::done, now_s);
   }
   if (intent_.stage >= ScriptStage::settle) return;
-  const double latest_s = kLatestLeanShare * longest_milling_s();
+  const double latest_s = kLatestLeanShare * max_milling_s();
   if (intent_.stage == ScriptStage::lean) {
     if (shaft_free_s_ == 0) leant_s_ += dt_s;
   } else if (shown_depth_mm(X_WT) >= settings_.depth_mm || now_s >= latest_s) {

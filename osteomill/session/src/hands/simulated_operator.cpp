@@ -8,7 +8,7 @@ namespace osteomill {
 
 namespace {
 
-constexpr double kLongestTick_s = 1.0;
+constexpr double kMaxTick_s = 1.0;
 // Makes the random signal of a hand's rotation differ from that of its displacement.
 constexpr std::uint64_t kTurning = 0x9e3779b97f4a7c15;
 
@@ -45,7 +45,7 @@ Pose SimulatedOperator::trembling(const Pose& X_W_intended) const {
 }
 
 void SimulatedOperator::tick_done(const Pose& X_WT, double dt_s) noexcept {
-  if (!(dt_s > 0 && dt_s <= kLongestTick_s)) return;
+  if (!(dt_s > 0 && dt_s <= kMaxTick_s)) return;
   const double substep_s = handle_.settings().substep_s;
   const double owed_s = time_left_over_s_ + dt_s;
   // A rounding must not cost a substep.

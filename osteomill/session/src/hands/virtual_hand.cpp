@@ -29,20 +29,20 @@ VirtualHand::VirtualHand(const HandleSettings& handle, const HandSettings& hand,
 }
 
 void VirtualHand::pull_to(const Pose& X_W_target) noexcept {
-  if (is_finite(X_W_target)) asked_.write({X_W_target, ++pulls_});
+  if (is_finite(X_W_target)) pull_target_.write({X_W_target, ++pull_count_});
 }
 
 void VirtualHand::put_at(const Pose& X_WD) noexcept {
   if (!is_finite(X_WD)) return;
   handle_.reset(X_WD);
   X_W_target_ = X_WD;
-  over_ = asked_.read().number;
+  ignored_pulls_ = pull_target_.read().number;
 }
 
 void VirtualHand::tick_done(const Pose& /*X_WT*/, double dt_s) noexcept {
   const double passed_s = std::clamp(dt_s, 0.0, kMaxTick_s);
-  const Asked& asked = asked_.read();
-  const Pose& X_W_asked = asked.number > over_ ? asked.X_W : X_W_target_;
+  const PullTarget& asked = pull_target_.read();
+  const Pose& X_W_asked = asked.number > ignored_pulls_ ? asked.X_W : X_W_target_;
   const double share = 1 - std::exp(-kFollow_per_s * passed_s);
   X_W_target_.position_mm += share * (X_W_asked.position_mm - X_W_target_.position_mm);
   X_W_target_.orientation = X_W_target_.orientation.slerp(share, X_W_asked.orientation).normalized();

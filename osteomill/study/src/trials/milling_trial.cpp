@@ -27,7 +27,7 @@ MillingTrial::MillingTrial(const MillingTrial& milled, const TrialSettings& othe
       operator_(milled.operator_),
       tick_s_(milled.tick_s_),
       spindle_(milled.spindle_) {
-  session_.take_over(milled.session_.left());
+  session_.resume_from(milled.session_.handover());
 }
 
 MillingTrial::Tick MillingTrial::tick() {

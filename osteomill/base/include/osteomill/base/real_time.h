@@ -12,12 +12,12 @@ std::string request_real_time();
 
 /// While one lives, the calling thread and any that it starts receive no signals except those of their own
 /// faults: the code that handles one (CrashStop) waits for the threads that drive a device.
-class SignalsForOthers {
+class BlockedSignals {
  public:
-  SignalsForOthers();
-  ~SignalsForOthers();
-  SignalsForOthers(const SignalsForOthers&) = delete;
-  SignalsForOthers& operator=(const SignalsForOthers&) = delete;
+  BlockedSignals();
+  ~BlockedSignals();
+  BlockedSignals(const BlockedSignals&) = delete;
+  BlockedSignals& operator=(const BlockedSignals&) = delete;
 
  private:
   sigset_t before_;

@@ -41,7 +41,7 @@ enum class WrenchFault : unsigned char {
   tick_late = 7,
   /// Something else than what was asked for was sent: the wrench is being faded in, was changing too fast, or
   /// is damped.
-  eased = 8,
+  rate_limited = 8,
   /// Zero was sent, since nothing that is sent reaches the hand (Device::is_driven), or since the tool was in
   /// bone when it began to and has not left it yet.
   held_back = 9,
@@ -64,7 +64,7 @@ struct WrenchRates {
 };
 
 /// For a person's hand: 20 N and 500 N mm are gone within 5 ms.
-inline constexpr WrenchRates kRatesForAHand{4000, 1e5};
+inline constexpr WrenchRates kHandWrenchRates{4000, 1e5};
 
 /// Returns `to`, or the wrench as far from `from` towards it as the rates allow in `dt_s`. Safe in the haptic
 /// tick.

@@ -16,7 +16,7 @@ namespace osteomill {
 /// Signals that the program ignores or handles, before or later, are left to it. Only
 /// a fault (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS) that had a handler before is passed to that one
 /// with the devices at zero, and if it returns, the sessions go on; a program that handles a fault in any
-/// other way calls `let_go` and `take_hold` in its own handler.
+/// other way calls `disengage` and `engage` in its own handler.
 ///
 /// When the process ends, the haptic threads are asked to stop and given 50 ms to send zero themselves (one
 /// of them may have crashed); then the devices are let go of from the signal's handler, and given 50 ms to
@@ -37,11 +37,11 @@ class CrashStop {
   /// overflows, no zero is sent.
   static void give_this_thread_a_stack();
 
-  /// Has all live devices sent zero until `take_hold`, and waits up to 50 ms until it has gone out. For a
+  /// Has all live devices sent zero until `engage`, and waits up to 50 ms until it has gone out. For a
   /// signal handler of the program's own; any thread, with or without an object of this class.
-  static void let_go() noexcept;
-  /// After `let_go`: what the sessions ask for is sent again, coming up slowly. As safe.
-  static void take_hold() noexcept;
+  static void disengage() noexcept;
+  /// After `disengage`: what the sessions ask for is sent again, coming up slowly. As safe.
+  static void engage() noexcept;
 };
 
 /// A device that a haptic thread drives, known to CrashStop as long as this object lives.

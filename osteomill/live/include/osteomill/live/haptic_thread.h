@@ -60,7 +60,7 @@ class HapticThread {
   void hold_bone(bool held);
   /// Goes on with another algorithm, tool, setting or bone, prepared beforehand. Returns the state in which
   /// that began.
-  TakenOver replace(std::unique_ptr<MillingSession> session);
+  SessionHandover replace(std::unique_ptr<MillingSession> session);
   /// Brings the tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which
   /// nothing is milled, so that the hand feels no step; then the device is put there (Device::put_at), and
   /// the algorithm begins again. One at a time: does nothing while `placing`.
@@ -111,7 +111,7 @@ class HapticThread {
   double time_s_ = 0;
   std::uint32_t session_number_ = 0;
   Pose X_WD_place_;
-  bool letting_go_ = false;
+  bool fading_out_ = false;
   std::atomic<bool> placing_{false};
 
   // Set by the commanding thread, which waits until the haptic one has done it and made it null.

@@ -126,10 +126,10 @@ class LiveMilling {
   void listen();
   bool prepare(const MillingSetup& setup, MakeBone make_bone);
   void catch_up();
-  void take_over();
+  void install_prepared();
   void forget_recorder_without_session();
   void set_as_now(RunDescription& run) const;
-  void tell_recorder(const TakenOver& taken_over);
+  void tell_recorder(const SessionHandover& handover);
 
   // The number as the algorithm was prepared: the points in use belong to the haptic thread, and change.
   int sample_points_;

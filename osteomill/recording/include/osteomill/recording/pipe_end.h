@@ -24,7 +24,7 @@ class PipeEnd {
   enum class Does : unsigned char { put, take };
 
   /// Owns the descriptor. No text or list of more bytes is taken.
-  PipeEnd(int descriptor, Does does, std::uintmax_t most_bytes);
+  PipeEnd(int descriptor, Does does, std::uintmax_t max_bytes);
   ~PipeEnd();
   PipeEnd(const PipeEnd&) = delete;
   PipeEnd& operator=(const PipeEnd&) = delete;
@@ -40,7 +40,7 @@ class PipeEnd {
  private:
   std::FILE* file_;
   Does does_;
-  std::uintmax_t most_bytes_;
+  std::uintmax_t max_bytes_;
 };
 
 /// True for types whose values are passed as the bytes that they have in memory.

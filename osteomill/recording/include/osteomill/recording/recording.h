@@ -17,7 +17,7 @@ namespace osteomill {
 /// it is all that it takes to run them again.
 struct SessionStart {
   RunDescription run;
-  TakenOver taken_over;
+  SessionHandover handover;
   double removed_mm3 = 0;
   /// Every brick in which the bone may differ from the scan, as it is at the beginning.
   std::vector<DensityBlock> bricks;

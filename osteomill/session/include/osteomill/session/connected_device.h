@@ -56,12 +56,12 @@ struct DeviceReport {
 /// Haptic hardware as a session's device, whichever its back end is. A thread of its own reads the connection
 /// and writes to it, so that nothing the hardware does makes a tick wait, and watches over both sides. What
 /// is sent is within the device's limits, and from one wrench that has gone out to the next changes by no
-/// more than kRatesForAHand in a millisecond; it comes down to zero if the wrench is over 5 ms old, if the
+/// more than kHandWrenchRates in a millisecond; it comes down to zero if the wrench is over 5 ms old, if the
 /// device may not be driven, is lost or let go of, and at the end, and comes up again over 0.1 s. A device
 /// that is lost is opened again until it is there.
 ///
 /// It is driven (`is_driven`) while the newest input says that it may be, it is not lost, and it has not been
-/// let go of (`let_go`). A clutch leaves it driven, because the tool stays in its place.
+/// let go of (`disengage`). A clutch leaves it driven, because the tool stays in its place.
 ///
 /// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
 /// without the tool: the device gives no pose and the hand feels nothing. Then it goes on from where the tool
@@ -94,7 +94,7 @@ class ConnectedDevice final : public Device {
   /// one other thread (the window's). The tool stays where it is. Throws std::invalid_argument as Workspace.
   void set_workspace(const WorkspaceSettings& settings);
   void set_view(const Quat& R_WV);
-  const WorkspaceSettings& workspace() const { return way_set_.settings; }
+  const WorkspaceSettings& workspace() const { return requested_mapping_.settings; }
   /// Returns the most that the device gives and `limits` allow, in W (Workspace::limits_W).
   WrenchLimits limits_W(const WrenchLimits& limits) const {
     return Workspace(capabilities_, workspace()).limits_W(limits);
@@ -104,18 +104,18 @@ class ConnectedDevice final : public Device {
 
   Pose read_pose() noexcept override;
   void write_wrench(const Wrench& wrench) noexcept override;
-  double given_share() const noexcept override;
+  double delivered_fraction() const noexcept override;
   bool is_driven() const noexcept override { return is_driven_; }
   bool spindle_asked() const noexcept override { return (buttons_ & kSpindleButton) != 0; }
   void tick_done(const Pose& X_WT, double dt_s) noexcept override;
   void put_at(const Pose& X_WD) noexcept override;
-  bool let_go() noexcept override;
-  void take_hold() noexcept override;
+  bool disengage() noexcept override;
+  void engage() noexcept override;
 
  private:
   // Belongs to the device's thread, which keeps it if it is left to itself.
   class Exchange;
-  struct Way {
+  struct Mapping {
     WorkspaceSettings settings;
     Quat R_WV = view_from_the_front();
     std::uint64_t number = 0;
@@ -123,8 +123,8 @@ class ConnectedDevice final : public Device {
 
   std::shared_ptr<Exchange> exchange_;
   std::thread thread_;
-  Way way_set_;
-  LatestValue<Way> way_;
+  Mapping requested_mapping_;
+  LatestValue<Mapping> mapping_;
   std::atomic<bool> clutched_{false};
 
   // The haptic thread's.
@@ -133,12 +133,12 @@ class ConnectedDevice final : public Device {
   Pose X_WD_;
   Pose X_WT_;
   bool has_pose_ = false;
-  bool anchor_anew_ = true;
-  std::uint64_t returns_ = 0;
+  bool needs_anchor_ = true;
+  std::uint64_t reconnects_ = 0;
   std::uint64_t gate_ = 0;
-  std::uint64_t stops_ = 0;
+  std::uint64_t disengage_count_ = 0;
   bool is_driven_ = false;
-  std::uint64_t way_taken_ = 0;
+  std::uint64_t mapping_number_ = 0;
   unsigned buttons_ = 0;
 };
 

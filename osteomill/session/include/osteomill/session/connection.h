@@ -20,7 +20,7 @@ struct DeviceCapabilities {
   /// The most that its motors give.
   WrenchLimits limits;
   /// The time without a wrench after which it lets go of the hand by itself; 0 if that is not known.
-  double lets_go_after_s = 0;
+  double watchdog_s = 0;
 };
 
 /// One input of a device: the pose X_DH of its handle H in its base frame D (mm), and what else it reports.

@@ -10,13 +10,13 @@ namespace osteomill {
 
 /// Which share of a force that was asked for the one that was sent gives in its direction, 0 to 1. Safe in
 /// the haptic tick.
-inline double share_sent(const Vec3& asked, const Vec3& sent) noexcept {
+inline double sent_fraction(const Vec3& asked, const Vec3& sent) noexcept {
   return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
 }
 
 /// The source of poses and the receiver of wrenches: hardware behind its thread (ConnectedDevice), a
 /// simulated operator, a virtual hand, a recorded trajectory. All calls come from the haptic thread, once a
-/// tick, and none allocates, locks or logs; only `let_go` and `take_hold` may come from anywhere. A device
+/// tick, and none allocates, locks or logs; only `disengage` and `engage` may come from anywhere. A device
 /// that has failed for good may throw from `read_pose` and `write_wrench`: that ends the loop that runs it.
 class Device {
  public:
@@ -25,9 +25,9 @@ class Device {
   virtual Pose read_pose() OSTEOMILL_NONBLOCKING = 0;
   /// Sends a wrench that is already safe (finite, within the limits).
   virtual void write_wrench(const Wrench& wrench) OSTEOMILL_NONBLOCKING = 0;
-  /// Which share of the force that was written has reached the hand (share_sent). Milling removes bone for
+  /// Which share of the force that was written has reached the hand (sent_fraction). Milling removes bone for
   /// that share alone.
-  virtual double given_share() const noexcept OSTEOMILL_NONBLOCKING { return 1; }
+  virtual double delivered_fraction() const noexcept OSTEOMILL_NONBLOCKING { return 1; }
   /// Returns whether what is written from now on reaches a hand; asked after `read_pose`. A device that was
   /// not driven since the last tick, however shortly, returns false once: its hand may have sunk into bone,
   /// and feels nothing until it is out (WrenchGuard::hold_back).
@@ -44,7 +44,7 @@ class Device {
   virtual void put_at(const Pose& /*X_WD*/) noexcept OSTEOMILL_NONBLOCKING {}
   /// Sends zero from now on, whatever is written later, because the program is ending. Called from any
   /// thread, and from a signal's handler. Returns true once zero has gone out; it is called again until then.
-  virtual bool let_go() noexcept {
+  virtual bool disengage() noexcept {
     try {
       write_wrench(Wrench{});
       return true;
@@ -52,9 +52,9 @@ class Device {
       return false;
     }
   }
-  /// Takes `let_go` back, because the program goes on after all (it was only stopped): what is written is
+  /// Takes `disengage` back, because the program goes on after all (it was only stopped): what is written is
   /// sent again, and comes up slowly.
-  virtual void take_hold() noexcept {}
+  virtual void engage() noexcept {}
 
  protected:
   Device() = default;

@@ -11,7 +11,7 @@ namespace osteomill {
 
 /// The result of looking for a device.
 struct FoundDevice {
-  bool there = false;
+  bool is_present = false;
   /// The device that was found, or why none was, in half a sentence.
   std::string text;
 };
@@ -25,7 +25,7 @@ struct HardwareKind {
   std::string_view meaning;
   /// Looks for the device and returns what is there, after a second at most. Commands nothing: motors stay as
   /// they are, whichever program drives them. Throws InputError as `open` does.
-  std::string (*look_for)(const std::string& address);
+  std::string (*probe)(const std::string& address);
   /// Opens the device. Throws InputError naming it and why it cannot be opened.
   std::unique_ptr<Connection> (*open)(const std::string& address);
 
@@ -37,27 +37,27 @@ struct HardwareKind {
 /// empty. It is driven once it is calibrated, by the maker's tool. Its base D: x towards the operator, y to
 /// the right, z up. Throws InputError if the library or the device cannot be had.
 std::unique_ptr<Connection> open_force_dimension(const std::string& address);
-std::string look_for_force_dimension(const std::string& address);
+std::string probe_force_dimension(const std::string& address);
 
 /// A Haply Inverse3 by the maker's Inverse service, at HOST:PORT (127.0.0.1:10001 if empty): versions 3.1
 /// to 3.5 of its simulation channel (docs/devices.md). The first Inverse3 it names, and the first Verse Grip,
 /// wireless before wired, without which position alone is sensed. Its base D: x to the right, y away from the
 /// operator, z up. Throws InputError if no service or no Inverse3 is there.
 std::unique_ptr<Connection> open_haply(const std::string& address);
-std::string look_for_haply(const std::string& address);
+std::string probe_haply(const std::string& address);
 
 /// A device of 3D Systems (Touch, Touch X, Phantom) by the maker's libHD, opened at run time
 /// (docs/devices.md). `address` is the name that it has in the maker's setup, the default device if empty.
 /// It is driven once it is calibrated. Its base D: x to the right, y up, z towards the operator. Throws
 /// InputError if the library or the device cannot be had. One at a time.
 std::unique_ptr<Connection> open_touch(const std::string& address);
-std::string look_for_touch(const std::string& address);
+std::string probe_touch(const std::string& address);
 
 /// A device that speaks the datagrams of docs/udp-device.md, at HOST:PORT (127.0.0.1:47117 if empty).
 /// Throws InputError naming the address if that is none, nothing answers within half a second, or what
 /// answers does not keep to the protocol.
 std::unique_ptr<Connection> open_udp(const std::string& address);
-std::string look_for_udp(const std::string& address);
+std::string probe_udp(const std::string& address);
 
 /// Returns every kind that there is a back end for.
 std::span<const HardwareKind> hardware_kinds();

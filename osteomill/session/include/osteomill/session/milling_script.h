@@ -74,11 +74,11 @@ class MillingScript {
 
  private:
   bool has_leant() const { return leant_s_ >= settings_.leant_share * settings_.milling_s; }
-  bool feels_what_it_holds(const Pose& X_WD) const;
+  bool is_push_felt(const Pose& X_WD) const;
   void feel(double dt_s, const Pose& X_WD, const Wrench& felt);
   void advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT);
   void begin(ScriptStage stage, double now_s);
-  double longest_milling_s() const;
+  double max_milling_s() const;
   bool is_milled(double now_s) const;
   bool is_settled(double now_s, const Pose& X_WD) const;
   double shown_depth_mm(const Pose& X_WT) const;

@@ -38,7 +38,7 @@ class Vibration {
 /// The state that a session leaves to the one that goes on from it: the pose of its simulated tool, which is
 /// outside the bone, the wrench that the hand feels, and whether it was held back (WrenchGuard). There is no
 /// tool's pose if the next session is to begin at the device, which may have sunk into the bone.
-struct TakenOver {
+struct SessionHandover {
   std::optional<Pose> X_WT;
   Wrench sent;
   bool held_back = true;
@@ -77,19 +77,19 @@ class MillingSession {
 
   /// Begins where another session is left, whose wrench the hand feels. Before the first tick; as safe as
   /// `tick`.
-  void take_over(const TakenOver& before) noexcept;
+  void resume_from(const SessionHandover& before) noexcept;
   /// Returns what another session takes over, after the last tick.
-  TakenOver left() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back()}; }
+  SessionHandover handover() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back()}; }
   /// Lets the next tick count as one that reaches no hand (Device::is_driven), as after a time without ticks.
   /// The call is as safe as `tick`.
-  void hold_back() noexcept { hold_back_asked_ = true; }
+  void hold_back() noexcept { hold_back_requested_ = true; }
 
   /// Brings the wrench down to zero slowly, from the next tick on, and keeps it there until the tool is
   /// placed. As safe as `tick`.
-  void let_go() noexcept { let_go_asked_ = true; }
+  void fade_out() noexcept { fade_out_requested_ = true; }
   /// Lets the algorithm begin again, in the next tick, at the pose that the device then has, whatever was
   /// touched before; the device is free of bone. As safe as `tick`.
-  void place() noexcept { place_asked_ = true; }
+  void place() noexcept { place_requested_ = true; }
 
   /// Returns what the last tick changed of the volume.
   const VolumeChange& last_change() const { return last_change_; }
@@ -139,9 +139,9 @@ class MillingSession {
   std::optional<Vec3> intersection_W_;
   // Nothing before the first tick.
   std::optional<Pose> last_X_WT_;
-  bool let_go_asked_ = false;
-  bool place_asked_ = false;
-  bool hold_back_asked_ = false;
+  bool fade_out_requested_ = false;
+  bool place_requested_ = false;
+  bool hold_back_requested_ = false;
 };
 
 /// Runs the session along the trajectory, a tick a row, each as long as the time since the row before (the

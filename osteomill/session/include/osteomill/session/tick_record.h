@@ -16,13 +16,13 @@ struct TickRecord {
   double dt_s = 0;
   bool spindle_on = false;
   /// The session's other inputs beside the device's pose. The share of the force that the hand had so far
-  /// (Device::given_share); whether what was sent reached a hand (Device::is_driven); whether the tick is one
-  /// of a pause; whether from this tick on nothing is felt until the tool is placed; whether before this tick
-  /// the tool was placed where the device is, and its contacts were forgotten.
-  double given_share = 1;
+  /// (Device::delivered_fraction); whether what was sent reached a hand (Device::is_driven); whether the tick
+  /// is one of a pause; whether from this tick on nothing is felt until the tool is placed; whether before
+  /// this tick the tool was placed where the device is, and its contacts were forgotten.
+  double delivered_fraction = 1;
   bool driven = true;
   bool paused = false;
-  bool let_go = false;
+  bool fade_out = false;
   bool placed = false;
   /// The number of its session, if several follow each other on a bone.
   std::uint32_t session = 0;

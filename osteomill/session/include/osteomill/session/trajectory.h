@@ -16,10 +16,10 @@ struct TrajectoryPoint {
 };
 
 /// The greatest distance of a pose from the origin of W, along each axis: beyond any scanner and any device.
-inline constexpr double kFarthestPose_mm = 3e5;
+inline constexpr double kMaxPose_mm = 3e5;
 /// Returns whether the pose is finite and not farther than that. Safe in the haptic tick.
 inline bool is_reachable(const Pose& pose) {
-  return is_finite(pose) && pose.position_mm.cwiseAbs().maxCoeff() <= kFarthestPose_mm;
+  return is_finite(pose) && pose.position_mm.cwiseAbs().maxCoeff() <= kMaxPose_mm;
 }
 
 /// Reads CSV with the columns time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling (in any order; others are passed
@@ -32,21 +32,21 @@ std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
 /// A device that gives the pose it was put at, and remembers the wrench it was sent: for replays and tests.
 class PosedDevice : public Device {
  public:
-  void put(const Pose& X_WD, double given_share = 1, bool is_driven = true) noexcept {
+  void put(const Pose& X_WD, double delivered_fraction = 1, bool is_driven = true) noexcept {
     pose_ = X_WD;
-    given_share_ = given_share;
+    delivered_fraction_ = delivered_fraction;
     is_driven_ = is_driven;
   }
   const Wrench& sent() const noexcept { return sent_; }
 
   Pose read_pose() noexcept override { return pose_; }
   void write_wrench(const Wrench& wrench) noexcept override { sent_ = wrench; }
-  double given_share() const noexcept override { return given_share_; }
+  double delivered_fraction() const noexcept override { return delivered_fraction_; }
   bool is_driven() const noexcept override { return is_driven_; }
 
  private:
   Pose pose_;
-  double given_share_ = 1;
+  double delivered_fraction_ = 1;
   bool is_driven_ = true;
   Wrench sent_;
 };

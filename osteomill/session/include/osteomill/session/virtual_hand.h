@@ -32,14 +32,14 @@ class VirtualHand final : public Device {
  private:
   HandSettings hand_;
   SimulatedHandle handle_;
-  struct Asked {
+  struct PullTarget {
     Pose X_W;
     std::uint64_t number = 0;
   };
-  LatestValue<Asked> asked_;
-  std::uint64_t pulls_ = 0;
+  LatestValue<PullTarget> pull_target_;
+  std::uint64_t pull_count_ = 0;
   // The last pull that does not count any more.
-  std::uint64_t over_ = 0;
+  std::uint64_t ignored_pulls_ = 0;
   // The pose that the hand pulls to now. It follows smoothly what is asked for, which comes only with every
   // picture.
   Pose X_W_target_;

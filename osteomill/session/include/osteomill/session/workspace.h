@@ -79,6 +79,6 @@ std::filesystem::path workspace_path(const std::string& device_name);
 /// at fault.
 std::optional<WorkspaceSettings> read_workspace(const std::filesystem::path& path);
 /// Writes the settings. Throws InputError if the file cannot be written.
-void keep_workspace(const std::filesystem::path& path, const WorkspaceSettings& settings);
+void save_workspace(const std::filesystem::path& path, const WorkspaceSettings& settings);
 
 }  // namespace osteomill

@@ -13,7 +13,7 @@ struct GuardSettings {
   static constexpr double kAny = WrenchRates::kAny;
 
   WrenchLimits limits;
-  WrenchRates rates = kRatesForAHand;
+  WrenchRates rates = kHandWrenchRates;
   /// The time of a blend from the wrench sent before to the one asked for, when they need not agree.
   double blend_s = 0.1;
   /// The furthest that a device may move and turn in a tick, and the longest tick; beyond them zero is sent.
@@ -37,7 +37,7 @@ struct GuardSettings {
 class PassivityObserver {
  public:
   /// Counts from zero, for a device that may be anywhere and is sent `sent`.
-  void begin_anew(const Wrench& sent) noexcept {
+  void restart(const Wrench& sent) noexcept {
     energy_given_Nmm_ = 0;
     sent_ = sent;
     X_WD_.reset();
@@ -82,8 +82,8 @@ class WrenchGuard {
   /// Returns the energy given to the hand less what it gave, in N mm, up to the last pose.
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// Lets the wrench rise slowly from now on, from the one that was last sent.
-  void begin_anew() noexcept;
-  /// Begins as begin_anew does, in the place of another guard whose hand feels `sent` or was held back;
+  void restart() noexcept;
+  /// Begins as restart does, in the place of another guard whose hand feels `sent` or was held back;
   /// energy is counted from now on.
   void begin_from(const Wrench& sent, bool held_back) noexcept;
   /// Sends zero from now on, because nothing that is sent reaches the hand, until the algorithm asks for next
@@ -93,8 +93,8 @@ class WrenchGuard {
   bool is_held_back() const { return held_back_; }
   static constexpr double kFreeForce_N = 0.5;
   static constexpr double kFreeTorque_Nmm = 12.5;
-  /// Brings the wrench down to zero slowly, from now on, and keeps it there until `begin_anew`.
-  void let_go() noexcept;
+  /// Brings the wrench down to zero slowly, from now on, and keeps it there until `restart`.
+  void fade_out() noexcept;
   const Wrench& sent() const { return sent_; }
   /// Returns whether zero was sent last.
   bool is_at_rest() const { return is_zero(sent_); }
@@ -102,11 +102,11 @@ class WrenchGuard {
   /// Returns what to send for a wrench in a tick of `dt_s`, with the reason if that is not what was asked
   /// for. A wrench that is not finite becomes zero, and the next ones come up slowly again. A tool that is in
   /// bone (`is_free` false) stays held back.
-  SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s,
-                  bool is_free = true) noexcept OSTEOMILL_NONBLOCKING;
+  SafeWrench filter(const Wrench& asked, const Pose& X_WD, double dt_s,
+                    bool is_free = true) noexcept OSTEOMILL_NONBLOCKING;
   /// Returns what to send in a tick in which nothing may be felt, because of a pause or because there is no
   /// finite pose.
-  SafeWrench pass_zero(const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING;
+  SafeWrench filter_zero(const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING;
 
  private:
   SafeWrench send_zero(double dt_s) noexcept;
@@ -117,7 +117,7 @@ class WrenchGuard {
   // The wrench from which a blend began, and how much of it is over.
   Wrench from_;
   double blended_ = 0;
-  bool let_go_ = false;
+  bool fading_out_ = false;
   bool held_back_ = false;
   std::optional<Pose> X_WD_;
   PassivityObserver observer_;

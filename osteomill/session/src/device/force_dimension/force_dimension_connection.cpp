@@ -196,7 +196,7 @@ class ForceDimensionConnection final : public Connection {
     dhd_.enable_expert_mode();
     dhd_.set_watchdog(kWatchdog, id_);
     unsigned char is_set = 0;
-    if (dhd_.get_watchdog(&is_set, id_) >= 0) capabilities_.lets_go_after_s = kWatchdogStep_s * is_set;
+    if (dhd_.get_watchdog(&is_set, id_) >= 0) capabilities_.watchdog_s = kWatchdogStep_s * is_set;
     dhd_.disable_expert_mode();
   }
 
@@ -241,7 +241,7 @@ std::unique_ptr<Connection> open_force_dimension(const std::string& address) {
 }
 
 // Does not open the device, because that would take it from another program.
-std::string look_for_force_dimension(const std::string& address) {
+std::string probe_force_dimension(const std::string& address) {
   const Dhd dhd;
   require_device(dhd, number_of(address));
   const int count = dhd.device_count();

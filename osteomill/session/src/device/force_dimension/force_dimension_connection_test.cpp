@@ -60,7 +60,7 @@ TEST_F(ForceDimension, SaysWhatItCan) {
   // The longest that there is, 255 steps of 125 us; only an expert may set it.
   EXPECT_EQ(device_->watchdog, 255);
   EXPECT_FALSE(device_->is_expert);
-  EXPECT_NEAR(can.lets_go_after_s, 0.032, 1e-3);
+  EXPECT_NEAR(can.watchdog_s, 0.032, 1e-3);
   EXPECT_TRUE(device_->emulates_button);
   // Its x points to the operator, its y to the right, its z up.
   EXPECT_TRUE((can.R_VD * Vec3::UnitX()).isApprox(Vec3::UnitZ()));
@@ -69,7 +69,7 @@ TEST_F(ForceDimension, SaysWhatItCan) {
 
 TEST_F(ForceDimension, WhereItHasNoWatchdogNoneIsSaid) {
   device_->longest_watchdog = 0;
-  EXPECT_EQ(open_force_dimension("")->capabilities().lets_go_after_s, 0);
+  EXPECT_EQ(open_force_dimension("")->capabilities().watchdog_s, 0);
 }
 
 TEST_F(ForceDimension, EveryModelHasLimits) {
@@ -246,7 +246,7 @@ TEST_F(ForceDimension, WhyThereIsNoneIsSaid) {
   device_->fails_in = "dhdEnableForce";
   EXPECT_EQ(refusal(), "dhd: the stand-in fails");
   EXPECT_EQ(device_->opened, -1);
-  EXPECT_TRUE(hardware_named("dhd")->find("").there);
+  EXPECT_TRUE(hardware_named("dhd")->find("").is_present);
   EXPECT_EQ(hardware_named("dhd")->find("").text, "a device connected");
   device_->devices = 0;
   EXPECT_EQ(hardware_named("dhd")->find("").text, "dhd: no device is connected");

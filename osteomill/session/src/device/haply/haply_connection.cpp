@@ -25,7 +25,7 @@ constexpr const char* kUsualAddress = "127.0.0.1:10001";
 // The service speaks of m.
 constexpr double kMmPerM = 1000;
 // The first text names every device with its settings; later ones are a few kB.
-constexpr std::size_t kMostBytes = 1 << 18;
+constexpr std::size_t kMaxBytes = 1 << 18;
 constexpr auto kInventoryWithin = 100ms;
 constexpr auto kWait = 1500us;
 constexpr auto kBetweenReadings = 500us;
@@ -128,7 +128,7 @@ bool take_grip(const Json* grip, DeviceInput& input) {
 
 // A service that has said which devices it has, and was told nothing.
 struct OpenedService {
-  explicit OpenedService(const HostAndPort& at) : socket(name_of(at), at.host, at.port, kMostBytes) {
+  explicit OpenedService(const HostAndPort& at) : socket(name_of(at), at.host, at.port, kMaxBytes) {
     const auto text = socket.receive(kInventoryWithin);
     if (!text) throw InputError(name_of(at), "the service does not say which devices it has");
     inventory = Json::parse(*text, nullptr, false);
@@ -275,7 +275,7 @@ std::unique_ptr<Connection> open_haply(const std::string& address) {
   return std::make_unique<HaplyConnection>(place_of(address));
 }
 
-std::string look_for_haply(const std::string& address) {
+std::string probe_haply(const std::string& address) {
   const OpenedService service(place_of(address));
   return service.name() + (service.is_in_use() ? ", in use by another program" : "");
 }

@@ -21,7 +21,7 @@ constexpr std::chrono::milliseconds kConnectWithin{400};
 }  // namespace
 
 struct WebSocket::Impl {
-  explicit Impl(std::size_t most) : most_bytes(most) {
+  explicit Impl(std::size_t most) : max_bytes(most) {
     lws_set_log_level(0, nullptr);
     lws_context_creation_info info{};
     info.port = CONTEXT_PORT_NO_LISTEN;
@@ -56,7 +56,7 @@ struct WebSocket::Impl {
   }
 
   bool take(const char* data, std::size_t length) {
-    if (coming.size() + length > most_bytes) return false;
+    if (coming.size() + length > max_bytes) return false;
     coming.append(data, length);
     if (lws_is_final_fragment(socket) != 0 && lws_remaining_packet_payload(socket) == 0)
       newest = std::exchange(coming, {});
@@ -85,7 +85,7 @@ struct WebSocket::Impl {
 
   const std::array<lws_protocols, 2> protocols{
       {{"", &on_event, 0, 64 * 1024, 0, nullptr, 0}, {nullptr, nullptr, 0, 0, 0, nullptr, 0}}};
-  std::size_t most_bytes;
+  std::size_t max_bytes;
   lws_context* context = nullptr;
   lws* socket = nullptr;
   bool is_open = false;
@@ -94,8 +94,8 @@ struct WebSocket::Impl {
   std::optional<std::string> going;
 };
 
-WebSocket::WebSocket(const std::string& device, const std::string& host, int port, std::size_t most_bytes)
-    : impl_(std::make_unique<Impl>(most_bytes)) {
+WebSocket::WebSocket(const std::string& device, const std::string& host, int port, std::size_t max_bytes)
+    : impl_(std::make_unique<Impl>(max_bytes)) {
   if (impl_->context == nullptr) throw InputError(device, "no WebSocket can be had");
   lws_client_connect_info to{};
   to.context = impl_->context;

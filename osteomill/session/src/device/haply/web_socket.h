@@ -12,8 +12,8 @@ namespace osteomill {
 class WebSocket {
  public:
   /// Connects to HOST:PORT. Throws InputError about `device` if nothing answers within 400 ms. Texts of
-  /// more than `most_bytes` break the connection off.
-  WebSocket(const std::string& device, const std::string& host, int port, std::size_t most_bytes);
+  /// more than `max_bytes` break the connection off.
+  WebSocket(const std::string& device, const std::string& host, int port, std::size_t max_bytes);
   ~WebSocket();
   WebSocket(const WebSocket&) = delete;
   WebSocket& operator=(const WebSocket&) = delete;

@@ -127,7 +127,7 @@ class TouchConnection final : public Connection {
                            kDefaultPriority);
     {
       // The library's thread is to go on while another handles a signal.
-      const SignalsForOthers start_with_none;
+      const BlockedSignals start_with_none;
       hd_.start_scheduler();
     }
     if (const unsigned code = hd_.get_error().code; code != 0) {
@@ -205,7 +205,7 @@ class TouchConnection final : public Connection {
 
     const SentWrench& sent = sent_.read();
     const bool is_driven = input.not_driven == nullptr && Clock::now() - sent.time < kLapse;
-    driven_ = approach(driven_, is_driven ? sent.wrench : Wrench{}, kRatesForAHand, kFrame_s);
+    driven_ = approach(driven_, is_driven ? sent.wrench : Wrench{}, kHandWrenchRates, kFrame_s);
     hd_.set_doubles(kCurrentForce, driven_.force_N.data());
     if (capabilities_.driven == 6) hd_.set_doubles(kCurrentTorque, driven_.torque_Nmm.data());
     hd_.end_frame(device_.handle);
@@ -265,7 +265,7 @@ std::unique_ptr<Connection> open_touch(const std::string& address) {
   return std::make_unique<TouchConnection>(address);
 }
 
-std::string look_for_touch(const std::string& address) {
+std::string probe_touch(const std::string& address) {
   return OpenedDevice(address).name();
 }
 

@@ -78,7 +78,7 @@ TEST_F(Touch, SaysWhatItCan) {
   EXPECT_EQ(can.sensed, 6);
   EXPECT_EQ(can.driven, 3);
   EXPECT_EQ(can.limits.force_N, 3.3);
-  EXPECT_EQ(can.lets_go_after_s, 0);
+  EXPECT_EQ(can.watchdog_s, 0);
 }
 
 TEST_F(Touch, ListingItGivesItsMotorsNoPower) {
@@ -206,7 +206,7 @@ TEST_F(Touch, ClosingSendsZero) {
 TEST_F(Touch, WhyThereIsNoneIsSaid) {
   EXPECT_EQ(refusal("Right"), "hd: the stand-in fails");
   device_->is_there = false;
-  EXPECT_FALSE(hardware_named("hd")->find("").there);
+  EXPECT_FALSE(hardware_named("hd")->find("").is_present);
   unsetenv("OSTEOMILL_HD_LIBRARY");
   EXPECT_EQ(refusal(),
             "hd: libHD.so of the maker's software is not installed; OSTEOMILL_HD_LIBRARY may name it");

@@ -32,7 +32,7 @@ constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
                                                    "is not calibrated: calibrate it as its maker says",
                                                    "has its force off: switch it on as its maker says"};
 // Limit of datagrams at once, so that a flood does not block the thread.
-constexpr int kMostAtOnce = 64;
+constexpr int kMaxDatagrams = 64;
 
 struct Question {
   static constexpr Kind kKind = Kind::question;
@@ -50,7 +50,7 @@ bool send(Socket& socket, Datagram datagram, std::uint32_t sequence) {
 // One that has come and is of this kind.
 template <typename Datagram>
 std::optional<Datagram> receive(Socket& socket) {
-  for (int n = 0; n < kMostAtOnce; ++n) {
+  for (int n = 0; n < kMaxDatagrams; ++n) {
     // A longer one is cut off, and then told by its length.
     std::array<unsigned char, 256> bytes;
     const std::optional<std::size_t> length = socket.receive(bytes);
@@ -80,7 +80,7 @@ DeviceCapabilities capabilities_of(const Answer& answer, const std::string& devi
   can.sensed = static_cast<int>(answer.sensed);
   can.driven = static_cast<int>(answer.driven);
   can.limits = {answer.max_force_N, answer.max_torque_Nmm};
-  can.lets_go_after_s = kLapse_s;
+  can.watchdog_s = kLapse_s;
   if (!is_not_negative(can.limits.force_N) || !is_not_negative(can.limits.torque_Nmm))
     throw InputError(device, "the device says limits that are not numbers from 0");
   return can;
@@ -126,7 +126,7 @@ class UdpConnection final : public Connection {
   ConnectionStatus read(DeviceInput& input) override {
     partner_.socket.wait_to_receive(kWait);
     bool fresh = false;
-    for (int n = 0; n < kMostAtOnce; ++n) {
+    for (int n = 0; n < kMaxDatagrams; ++n) {
       const auto state = receive<State>(partner_.socket);
       if (!state) break;
       if (!is_newer(state->head.sequence)) continue;
@@ -178,7 +178,7 @@ std::unique_ptr<Connection> open_udp(const std::string& address) {
   return std::make_unique<UdpConnection>(or_default(address));
 }
 
-std::string look_for_udp(const std::string& address) {
+std::string probe_udp(const std::string& address) {
   const std::string at = or_default(address);
   const Partner partner(at);
   return fmt::format("{} at {}{}", partner.capabilities.name, at,

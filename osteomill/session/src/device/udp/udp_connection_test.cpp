@@ -111,7 +111,7 @@ TEST(UdpDevice, SaysWhatItIsTakesStatesAndSendsWrenches) {
   const auto connection = lab.open();
   EXPECT_EQ(connection->capabilities().name, "Lab one");
   EXPECT_EQ(connection->capabilities().limits.force_N, 8);
-  EXPECT_EQ(connection->capabilities().lets_go_after_s, kLapse_s);
+  EXPECT_EQ(connection->capabilities().watchdog_s, kLapse_s);
   lab.send_state(1, 7);
   DeviceInput input;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
@@ -242,7 +242,7 @@ TEST(UdpDevice, WithoutOneItSaysWhy) {
     const Lab lab;
     address = lab.address;
     const FoundDevice silent = hardware_named("udp")->find(address);
-    EXPECT_FALSE(silent.there);
+    EXPECT_FALSE(silent.is_present);
     EXPECT_EQ(silent.text, "udp:" + address + ": nothing answers there");
   }
   EXPECT_EQ(hardware_named("udp")->find(address).text, "udp:" + address + ": nothing listens there");
