@@ -64,7 +64,7 @@ struct Seen {
   LabelCount labels;
   FaultCount faults = {};
   std::size_t bricks = 0;
-  bool recording_failed = false;
+  bool has_recording_failed = false;
 };
 
 // A full disk ends the recording, not the session.
@@ -73,7 +73,7 @@ void end_recording(LiveMilling& milling, Seen& seen) {
     milling.stop_recording();
   } catch (const InputError& error) {
     warn_though_quiet(error.what());
-    seen.recording_failed = true;
+    seen.has_recording_failed = true;
   }
 }
 
@@ -161,9 +161,9 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
       if (const auto touched = seen.labels.add(*record)) warn_though_quiet(*touched);
     }
     seen.bricks += milling.take_changed_bricks().size();
-    if (milling.recording_failed()) end_recording(milling, seen);
+    if (milling.has_recording_failed()) end_recording(milling, seen);
   };
-  while (passed_s < seconds && milling.running()) {
+  while (passed_s < seconds && milling.is_running()) {
     std::this_thread::sleep_for(std::chrono::duration<double>(kEvery_s));
     passed_s = std::chrono::duration<double>(Clock::now() - start).count();
     take();
@@ -210,7 +210,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
   Seen seen = run_for(milling, options.seconds, labels, holder, sender.get());
-  if (milling.recording()) end_recording(milling, seen);
+  if (milling.is_recording()) end_recording(milling, seen);
   if (sender && !sender->is_connected())
     warn("--send-bone " + options.send.address + ": the receiver has gone");
   if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
@@ -222,7 +222,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   for (const std::string& line : label_lines(seen.labels)) fmt::print("label        {}\n", line);
   if (const std::exception_ptr failure = milling.failure())
     throw InputError("--device " + options.device.device, "has failed: " + reason_of(failure));
-  if (seen.recording_failed) throw CLI::RuntimeError(EXIT_FAILURE);
+  if (seen.has_recording_failed) throw CLI::RuntimeError(EXIT_FAILURE);
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ void verify(const Volume& scan, const Recording& recording) {
                                  difference->time_s, difference->what));
   }
   fmt::print("same: {} ticks (wrenches, tool, milling), the bone after {} of them\n", verified.ticks,
-             verified.bones);
+             verified.compared_bones);
 }
 
 // The settings of the command line, each under this algorithm's own name, so that they come after the
@@ -159,8 +159,10 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
   std::optional<Recorder> recorder;
   std::uint32_t session_number = 0;
   Replay replay;
-  replay.as = [&](const RunDescription& run) { return run_as(options, run, scan.geometry()); };
-  replay.begun = [&](SessionStart start, const MillingSession& session) {
+  replay.transform_description = [&](const RunDescription& run) {
+    return run_as(options, run, scan.geometry());
+  };
+  replay.on_session = [&](SessionStart start, const MillingSession& session) {
     if (options.record.empty()) return;
     for (RunSetting& setting : start.run.settings) {
       if (setting.key == kCommandLineKey) setting.value = command_line;
@@ -168,12 +170,13 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
         setting.value = static_cast<double>(session.algorithm().sample_point_count());
     }
     if (!recorder) {
-      recorder.emplace(options.record, start.run, Recorder::Begins::when_told, Recorder::Unfinished::removed);
-      if (const std::string kept = recorder->kept(); !kept.empty()) warn_though_quiet(kept);
+      recorder.emplace(options.record, start.run, Recorder::FirstSession::begins_when_announced,
+                       Recorder::UnfinishedFile::remove);
+      if (const std::string kept = recorder->leftover_note(); !kept.empty()) warn_though_quiet(kept);
     }
     recorder->begin_session(session_number++, std::move(start));
   };
-  replay.tick = [&](const TickRecord&, const TickRecord& now) {
+  replay.on_tick = [&](const TickRecord&, const TickRecord& now) {
     log.add(now);
     if (recorder) recorder->push_waiting(now);
     return true;
@@ -195,7 +198,7 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
   }
   if (!options.verify && options.out.empty() && options.record.empty())
     throw CLI::RequiredError("--verify, --out or --record");
-  const Recording recording = read_with_what_came_before(options.input);
+  const Recording recording = read_recording_chain(options.input);
   const Volume scan = scan_of(options, recording);
   if (options.verify) verify(scan, recording);
   if (!options.out.empty() || !options.record.empty())

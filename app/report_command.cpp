@@ -36,7 +36,7 @@ void write_into(const std::filesystem::path& folder, const ReportOptions& option
       const std::filesystem::path name = recording.path.filename().replace_extension(".csv");
       write_csv(folder / name, recording.records);
     }
-    for (Recording& stretch : in_stretches(std::move(recording))) recordings.push_back(std::move(stretch));
+    for (Recording& stretch : split_by_setup(std::move(recording))) recordings.push_back(std::move(stretch));
   }
   end_progress();
   if (are_of_comparison(recordings)) {

@@ -69,7 +69,7 @@ void add_write_options(CLI::App& command, WriteOptions& options, const std::stri
 // The isovalue is the one given, else the recording's, else a suggested one.
 LoadedBone load_milled_bone(const WriteOptions& options) {
   if (options.recording.empty()) return load_bone(options.scan);
-  const Recording recording = read_with_what_came_before(options.recording);
+  const Recording recording = read_recording_chain(options.recording);
   ScanOptions scan = options.scan;
   if (!scan.isovalue) scan.isovalue = recording.description.isovalue;
   scan.made_into = recording.description.scan_hash;

@@ -123,7 +123,7 @@ TEST(TickAllocation, NoTickOfAHapticThreadAllocates) {
   std::atomic<long> allocations{-1};
   long before = 0;
   live.set_spindle(true);
-  live.listen([&](const TickRecord&, const Volume& volume, const VolumeChange& change) {
+  live.set_listener([&](const TickRecord&, const Volume& volume, const VolumeChange& change) {
     follower.bone_changed(volume, change);
     const int tick = ticks.fetch_add(1);
     if (tick == 5) before = allocations_of_this_thread();

@@ -63,7 +63,7 @@ class Autosave {
   void saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
   /// Returns whether bone was milled that is not saved.
   bool unsaved(const LiveMilling& milling) const {
-    return milling.follower().touched() && milling.follower().version() != saved_version_;
+    return milling.follower().is_touched() && milling.follower().version() != saved_version_;
   }
   /// Removes the file: the user does not want what was milled.
   void discard();

@@ -111,12 +111,12 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
       view.holding_tool = !view.holding_tool;
     }
   }
-  const bool free = !milling.preparing();
+  const bool free = !milling.is_preparing();
   if (ui::button("Undo cut", free && milling.follower().cuts() > 0)) view.undo_asked = true;
   ui::hint(
       "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are kept)");
   ImGui::SameLine();
-  if (ui::button("Reset bone", free && milling.follower().touched())) view.reset_asked = true;
+  if (ui::button("Reset bone", free && milling.follower().is_touched())) view.reset_asked = true;
   ImGui::SameLine();
   const auto cuts = static_cast<int>(milling.follower().cuts());
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
@@ -132,7 +132,7 @@ void draw_boundaries(ViewState& view, Simulation& simulation) {
     const std::string label = fmt::format("{:.4g}", boundary.density);
     const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
-    if (ui::button(label.c_str(), !simulation.milling.preparing())) view.isovalue_asked = boundary.density;
+    if (ui::button(label.c_str(), !simulation.milling.is_preparing())) view.isovalue_asked = boundary.density;
     ui::hint(
         fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above));
   }
@@ -151,7 +151,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
   draw_boundaries(view, simulation);
-  ImGui::BeginDisabled(milling.preparing());
+  ImGui::BeginDisabled(milling.is_preparing());
   const std::string format = "%.4g" + simulation.scan.unit;
   if (ui::slider("isovalue", &isovalue, histogram.min, histogram.max, format.c_str(),
                  ImGuiSliderFlags_AlwaysClamp)) {
@@ -163,7 +163,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
     view.isovalue_asked = static_cast<double>(*view.isovalue);
   ui::hint("What is denser than this is bone. Drag, or hold Ctrl and click to type a number");
   ImGui::EndDisabled();
-  if (!moved && !milling.preparing() && !view.isovalue_asked) view.isovalue.reset();
+  if (!moved && !milling.is_preparing() && !view.isovalue_asked) view.isovalue.reset();
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
   for (const std::string& warning : simulation.warnings) ui::warning(warning);
 }
@@ -256,7 +256,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   files.draw(view, simulation);
   view.wanted_is_new = view.wanted_is_new || changed;
   view.changes += changed ? 1 : 0;
-  if (view.wanted_is_new && !simulation.milling.preparing()) {
+  if (view.wanted_is_new && !simulation.milling.is_preparing()) {
     view.wanted_is_new = false;
     if (const std::string fault = tool_fault(view.wanted.tool, view.box); !fault.empty()) {
       view.dialogues.complain(fault);

@@ -54,7 +54,7 @@ fs::path FilesPanel::name(const std::string& what) const {
 void FilesPanel::record(ViewState& view, Simulation& simulation) {
   view.dialogues.attempt([&] {
     create_folder(folder_);
-    if (simulation.milling.recording()) {
+    if (simulation.milling.is_recording()) {
       last_recording_ = simulation.milling.stop_recording();
       view.message = "Recorded " + last_recording_.string();
       view.result = last_recording_;
@@ -71,7 +71,7 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
 }
 
 void FilesPanel::end_recording(ViewState& view, Simulation& simulation) {
-  if (simulation.milling.recording()) record(view, simulation);
+  if (simulation.milling.is_recording()) record(view, simulation);
 }
 
 void FilesPanel::close(ViewState& view, Simulation& simulation) {
@@ -92,7 +92,7 @@ void FilesPanel::begin(const fs::path& path, Write write) {
 void FilesPanel::make_report() {
   written_ = false;
   work_ = std::async(std::launch::async, [recording = last_recording_, folder = name("report")] {
-    const fs::path page = write_report(in_stretches(read_recording(recording)), folder);
+    const fs::path page = write_report(split_by_setup(read_recording(recording)), folder);
     return Done{"Report in " + page.string(), page, recording};
   });
 }
@@ -132,12 +132,12 @@ void FilesPanel::take_result(ViewState& view, Simulation& simulation) {
 }
 
 std::optional<double> FilesPanel::recording_s(const Simulation& simulation) const {
-  if (!simulation.milling.recording()) return std::nullopt;
+  if (!simulation.milling.is_recording()) return std::nullopt;
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - recording_since_).count();
 }
 
 float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, const PixelSize& size) {
-  const bool preparing = simulation.milling.preparing();
+  const bool preparing = simulation.milling.is_preparing();
   const float bottom_px = static_cast<float>(size.height) - ui::px(8);
   if (view.message.empty() && !busy() && !preparing) return bottom_px;
   ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), bottom_px},
@@ -174,12 +174,12 @@ float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, co
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   // After a failure, as on a full disk, the ticks recorded so far stay in the unfinished file.
-  if (simulation.milling.recording_failed()) {
+  if (simulation.milling.has_recording_failed()) {
     view.dialogues.attempt([&] { simulation.milling.stop_recording(); });
     view.message.clear();
   }
   if (!ui::header("Record and save", true)) return;
-  if (ui::button(simulation.milling.recording() ? "Stop recording##r" : "Record##r"))
+  if (ui::button(simulation.milling.is_recording() ? "Stop recording##r" : "Record##r"))
     record(view, simulation);
   ImGui::SameLine();
   const bool free = !busy();

@@ -37,7 +37,7 @@ class FilesPanel {
   bool written() const { return written_; }
   /// Returns whether there is a recording without a report.
   bool unreported(const Simulation& simulation) const {
-    return simulation.milling.recording() || last_recording_ != reported_;
+    return simulation.milling.is_recording() || last_recording_ != reported_;
   }
   /// Ends a recording that goes on and begins the report of the last one. Not while busy.
   void end_with_report(ViewState& view, Simulation& simulation);

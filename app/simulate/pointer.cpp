@@ -157,7 +157,7 @@ void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
 
 void pull_tool(ViewState& view, Simulation& simulation, const ToolInput& input, const PixelSize& size) {
   if (view.X_W_brought) {
-    if (simulation.milling.placing()) return;
+    if (simulation.milling.is_placing()) return;
     view.X_W_target = *std::exchange(view.X_W_brought, std::nullopt);
   }
   if (!simulation.holder.is_pointer()) return;
@@ -211,7 +211,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
   }
   take_keys(view, milling, simulation.holder.is_pointer());
   const bool by_key = !io.WantTextInput && ui::pressed(GLFW_KEY_B);
-  if ((std::exchange(view.bring_asked, false) || by_key) && !milling.placing()) {
+  if ((std::exchange(view.bring_asked, false) || by_key) && !milling.is_placing()) {
     std::optional<Eigen::Vector2d> pointer;
     if (by_key && !io.WantCaptureMouse)
       pointer = {static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y)};

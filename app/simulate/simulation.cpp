@@ -62,7 +62,7 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder
       label_count(scan.labels) {
   milling.start();
   // Drawing and dragging begin at the tool, so wait for its first tick.
-  while (history.empty() && milling.running()) {
+  while (history.empty() && milling.is_running()) {
     std::this_thread::sleep_for(std::chrono::microseconds(200));
     if (const auto record = milling.next_record()) history.push_back(*record);
   }

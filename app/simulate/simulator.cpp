@@ -249,8 +249,8 @@ class Simulator {
 
   void begin() {
     window_.begin_frame();
-    const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.preparing() &&
-                         !simulation_->milling.placing() && !view_.X_W_brought && !view_.wanted_is_new &&
+    const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.is_preparing() &&
+                         !simulation_->milling.is_placing() && !view_.X_W_brought && !view_.wanted_is_new &&
                          !view_.undo_asked && !view_.reset_confirmed && !view_.isovalue_asked &&
                          !files_.busy() && (!opening() || view_.dialogues.shown() != nullptr);
     if (is_driven()) options_.driver->give_input(seconds_since(last_picture_), settled, window_);
@@ -437,10 +437,10 @@ class Simulator {
     }
     begin_what_is_asked();
     const bool updated = view_.dialogues.attempt([&] {
-      const bool prepared = simulation_->milling.preparing();
+      const bool prepared = simulation_->milling.is_preparing();
       simulation_->update();
       if (sender_) sender_->show_tool(simulation_->milling.state().record);
-      if (prepared && !simulation_->milling.preparing()) free_tool(view_, *simulation_, size);
+      if (prepared && !simulation_->milling.is_preparing()) free_tool(view_, *simulation_, size);
     });
     if (!updated) view_.wanted = simulation_->milling.setup();
     complain_of_device();

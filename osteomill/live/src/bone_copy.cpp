@@ -14,20 +14,20 @@ BoneCopy::BoneCopy(std::shared_ptr<Volume> bone, std::size_t undo_bytes,
       changed_(std::move(changed)),
       history_(undo_bytes) {}
 
-void BoneCopy::begin_with(const std::vector<DensityBlock>& milled) {
+void BoneCopy::load_milled(const std::vector<DensityBlock>& milled) {
   for (DensityBlock block : milled) {
     DensityBlock same = block;
     EditableVolume(*bone_).swap(same);
-    if (put(block)) history_.keep(block);
+    if (put(block)) history_.save(block);
   }
 }
 
 VoxelBox BoneCopy::drain_queue(DensityHandover& handover) {
   VoxelBox arrived;
   DensityBlock* block = handover.front();
-  for (std::size_t n = 0; block != nullptr && n < DensityHandover::kBricksOnTheirWay; ++n) {
+  for (std::size_t n = 0; block != nullptr && n < DensityHandover::kMaxBricksInFlight; ++n) {
     if (put(*block)) {
-      history_.keep(*block);
+      history_.save(*block);
       arrived.include(block->first);
       arrived.include(block->last());
     }
@@ -53,34 +53,34 @@ void BoneCopy::set_isovalue(double isovalue) {
   EditableVolume(*copy_).set_isovalue(isovalue);
 }
 
-BoneCopy::NextBone BoneCopy::without(const CutHistory::Before& cuts, Undone undone) {
-  undone_ = undone;
+BoneCopy::NextBone BoneCopy::without(const CutHistory::PriorState& cuts, UndoScope undo_scope) {
+  undo_scope_ = undo_scope;
   for (const auto& [place, block] : cuts.bricks) differing_.push_back(block);
   put_differing();
   return {copy_, cuts.removed_mm3, {}};
 }
 
 BoneCopy::NextBone BoneCopy::without_last_cut() {
-  return without(history_.before_last(), Undone::last_cut);
+  return without(history_.state_before_last_cut(), UndoScope::last_cut);
 }
 
-BoneCopy::NextBone BoneCopy::as_at_the_beginning() {
-  return without(history_.before_all(), Undone::all);
+BoneCopy::NextBone BoneCopy::without_all_cuts() {
+  return without(history_.state_before_all_cuts(), UndoScope::all);
 }
 
 BoneCopy::NextBone BoneCopy::with_emptied(double surroundings, double removed_mm3,
                                           const BoneDensities& densities) {
   emptied_ = std::max(emptied_, static_cast<float>(surroundings));
-  differing_ = history_.keep_emptied(copy_->grid(), emptied_, copy_->isovalue(),
-                                     static_cast<float>(densities.surroundings));
+  differing_ = history_.lower_emptied_bricks(copy_->grid(), emptied_, copy_->isovalue(),
+                                             static_cast<float>(densities.surroundings));
   put_differing();
   return {copy_, removed_mm3, densities};
 }
 
 void BoneCopy::exchange() {
-  if (undone_ == Undone::last_cut) history_.drop_last();
-  if (undone_ == Undone::all) history_.drop_all();
-  undone_ = Undone::nothing;
+  if (undo_scope_ == UndoScope::last_cut) history_.drop_last();
+  if (undo_scope_ == UndoScope::all) history_.drop_all();
+  undo_scope_ = UndoScope::nothing;
   std::swap(bone_, copy_);
   const Volume& bone = *bone_;
   EditableVolume copy(*copy_);
@@ -92,10 +92,10 @@ void BoneCopy::exchange() {
   differing_.clear();
 }
 
-void BoneCopy::give_up() {
+void BoneCopy::discard_next() {
   put_differing();
   differing_.clear();
-  undone_ = Undone::nothing;
+  undo_scope_ = UndoScope::nothing;
   set_isovalue(bone_->isovalue());
 }
 

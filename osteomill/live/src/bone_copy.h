@@ -30,7 +30,7 @@ class BoneCopy {
   const std::shared_ptr<Volume>& bone() const { return bone_; }
 
   /// Puts blocks that were milled at another time into bone and copy, as one cut. Before the first tick.
-  void begin_with(const std::vector<DensityBlock>& milled);
+  void load_milled(const std::vector<DensityBlock>& milled);
   /// Puts what has arrived into the copy, at most as many blocks as can be on their way. Returns the voxels
   /// that it changed.
   VoxelBox drain_queue(DensityHandover& handover);
@@ -38,21 +38,21 @@ class BoneCopy {
 
   /// Sets the copy's isovalue, not the bone's.
   void set_isovalue(double isovalue);
-  /// Makes the copy the bone that is to be next; `exchange` or `give_up` ends that. Each is as the function
-  /// of the same name of BoneFollower (`exchange` as its `swap`); the last one lowers what milling had
-  /// emptied once the copy has its isovalue, at which `densities` were estimated.
+  /// Makes the copy the bone that is to be next; `exchange` or `discard_next` ends that. Each is as the
+  /// function of the same name of BoneFollower (`exchange` as its `swap`); the last one lowers what milling
+  /// had emptied once the copy has its isovalue, at which `densities` were estimated.
   NextBone without_last_cut();
-  NextBone as_at_the_beginning();
+  NextBone without_all_cuts();
   NextBone with_emptied(double surroundings, double removed_mm3, const BoneDensities& densities);
   void exchange();
-  void give_up();
+  void discard_next();
 
  private:
-  enum class Undone { nothing, last_cut, all };
+  enum class UndoScope { nothing, last_cut, all };
 
   bool put(DensityBlock& block);
   void put_differing();
-  NextBone without(const CutHistory::Before& cuts, Undone undone);
+  NextBone without(const CutHistory::PriorState& cuts, UndoScope undo_scope);
 
   std::shared_ptr<Volume> bone_;
   std::shared_ptr<Volume> copy_;
@@ -60,7 +60,7 @@ class BoneCopy {
   CutHistory history_;
   // While the copy is to become the bone: how the two differ, and what of the history is then over.
   std::vector<DensityBlock> differing_;
-  Undone undone_ = Undone::nothing;
+  UndoScope undo_scope_ = UndoScope::nothing;
   // The highest density that a voxel milled empty may have kept, at this isovalue or one before.
   float emptied_ = std::numeric_limits<float>::lowest();
 };

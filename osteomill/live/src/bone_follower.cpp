@@ -18,7 +18,7 @@ namespace osteomill {
 struct BoneFollower::Parts {
   Parts(std::shared_ptr<Volume> bone, std::size_t undo_bytes)
       : layout(bone->geometry().dims),
-        handover(bone->geometry(), DensityHandover::kBricksOnTheirWay),
+        handover(bone->geometry(), DensityHandover::kMaxBricksInFlight),
         surface(layout, bone->isovalue()),
         copy(std::move(bone), undo_bytes, [this](const VoxelBox& changed) {
           surface.mark(changed);
@@ -60,7 +60,7 @@ struct BoneFollower::Parts {
     const std::shared_lock lock(mutex);
     surface.mesh(copy.volume());
   }
-  void keep_up(const std::stop_token& stop) {
+  void run(const std::stop_token& stop) {
     const WorkProgress meshing([&](double) {
       if (stop.stop_requested()) throw WorkStopped();
     });
@@ -79,15 +79,14 @@ struct BoneFollower::Parts {
 BoneFollower::BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes)
     : parts_(std::make_unique<Parts>(std::move(bone), undo_bytes)) {
   parts_->mesh();
-  parts_->thread =
-      std::jthread([parts = parts_.get()](const std::stop_token& stop) { parts->keep_up(stop); });
+  parts_->thread = std::jthread([parts = parts_.get()](const std::stop_token& stop) { parts->run(stop); });
 }
 
 BoneFollower::~BoneFollower() = default;
 
-void BoneFollower::begin_with(const std::vector<DensityBlock>& milled) {
+void BoneFollower::load_milled(const std::vector<DensityBlock>& milled) {
   const std::lock_guard lock(parts_->mutex);
-  parts_->copy.begin_with(milled);
+  parts_->copy.load_milled(milled);
 }
 
 void BoneFollower::bone_changed(const Volume& bone, const VolumeChange& change) noexcept {
@@ -127,14 +126,14 @@ std::size_t BoneFollower::cuts() const {
   return parts_->copy.history().cuts();
 }
 
-bool BoneFollower::touched() const {
+bool BoneFollower::is_touched() const {
   const std::shared_lock lock(parts_->mutex);
-  return parts_->copy.history().touched();
+  return parts_->copy.history().is_touched();
 }
 
 std::vector<DensityBlock> BoneFollower::touched_bricks() const {
   const std::shared_lock lock(parts_->mutex);
-  const CutHistory::Bricks& touched = parts_->copy.history().first();
+  const CutHistory::Bricks& touched = parts_->copy.history().original_bricks();
   std::vector<DensityBlock> bricks;
   bricks.reserve(touched.size());
   for (const auto& [place, first] : touched) bricks.emplace_back(parts_->copy.volume().grid(), first.first);
@@ -146,7 +145,7 @@ std::vector<double> BoneFollower::drops_by_label() const {
   const Volume& bone = parts_->copy.volume();
   if (!bone.labels()) return {};
   std::vector<double> drops(bone.labels()->labels().size() + 1);
-  for (const auto& [place, first] : parts_->copy.history().first()) {
+  for (const auto& [place, first] : parts_->copy.history().original_bricks()) {
     const float* before = first.densities.data();
     for_each({first.first, first.last()}, [&](const VoxelIndex& v) {
       const LabelMap::Place label = bone.labels()->at(v);
@@ -158,7 +157,7 @@ std::vector<double> BoneFollower::drops_by_label() const {
 }
 
 bool BoneFollower::catch_up() {
-  const bool all_sent = parts_->handover.waiting() == 0;
+  const bool all_sent = parts_->handover.waiting_count() == 0;
   const std::lock_guard lock(parts_->mutex);
   parts_->drain_queue();
   return all_sent && parts_->handover.front() == nullptr;
@@ -169,9 +168,9 @@ BoneFollower::NextBone BoneFollower::without_last_cut() {
   return parts_->copy.without_last_cut();
 }
 
-BoneFollower::NextBone BoneFollower::as_at_the_beginning() {
+BoneFollower::NextBone BoneFollower::without_all_cuts() {
   const std::lock_guard lock(parts_->mutex);
-  return parts_->copy.as_at_the_beginning();
+  return parts_->copy.without_all_cuts();
 }
 
 BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double surroundings, double removed_mm3) {
@@ -191,9 +190,9 @@ void BoneFollower::swap() {
   parts_->copy.exchange();
 }
 
-void BoneFollower::give_up() {
+void BoneFollower::discard_next() {
   const std::lock_guard lock(parts_->mutex);
-  parts_->copy.give_up();
+  parts_->copy.discard_next();
   show_isovalue(parts_->copy.volume().isovalue());
 }
 

@@ -172,11 +172,11 @@ TEST_F(BoneFollowerTest, TakesCutsBackInBothCopies) {
   catch_up();
   EXPECT_EQ(densities_of(follower_), now());
   EXPECT_NE(now(), after_first);
-  EXPECT_TRUE(follower_.touched());
-  swap(follower_.as_at_the_beginning());
+  EXPECT_TRUE(follower_.is_touched());
+  swap(follower_.without_all_cuts());
   EXPECT_EQ(now(), untouched);
   EXPECT_EQ(densities_of(follower_), untouched);
-  EXPECT_FALSE(follower_.touched());
+  EXPECT_FALSE(follower_.is_touched());
   EXPECT_TRUE(ranges_hold(follower_));
   EXPECT_TRUE(settles(follower_, collected_, *bone_, 500));
 }
@@ -187,18 +187,18 @@ TEST_F(BoneFollowerTest, WhatIsGivenUpIsAsItWas) {
   catch_up();
   for (const bool all : {false, true}) {
     if (all) {
-      follower_.as_at_the_beginning();
+      follower_.without_all_cuts();
     } else {
       follower_.without_last_cut();
     }
     EXPECT_NE(densities_of(follower_), now());
-    follower_.give_up();
+    follower_.discard_next();
     EXPECT_EQ(densities_of(follower_), now());
     EXPECT_EQ(follower_.cuts(), 1u);
-    EXPECT_TRUE(follower_.touched());
+    EXPECT_TRUE(follower_.is_touched());
   }
   follower_.with_isovalue(300, 0, 0);
-  follower_.give_up();
+  follower_.discard_next();
   EXPECT_EQ(follower_.cuts(), 1u);
   EXPECT_TRUE(settles(follower_, collected_, *bone_, 500));
 }

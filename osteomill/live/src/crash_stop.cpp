@@ -13,9 +13,9 @@ namespace osteomill {
 
 // Entry through which handlers find a device. Entries are reused and never destroyed, so that a handler may
 // go through all of them whatever other threads do.
-struct Place {
+struct DeviceSlot {
   std::atomic<DrivenDevice*> driven{nullptr};
-  Place* next = nullptr;
+  DeviceSlot* next = nullptr;
 };
 
 namespace {
@@ -32,36 +32,36 @@ constexpr bool is_fault(int signal) {
   return signal == SIGSEGV || signal == SIGBUS || signal == SIGFPE || signal == SIGILL || signal == SIGABRT ||
          signal == SIGSYS;
 }
-constexpr int kWaits = 50;
+constexpr int kMaxWaits = 50;
 constexpr timespec kWait{0, 1'000'000};
 constexpr std::size_t kStackBytes = 1 << 16;
 
-std::atomic<Place*> places{nullptr};
+std::atomic<DeviceSlot*> device_slots{nullptr};
 // How many handlers are going through them.
-std::atomic<int> handlers_at_places{0};
+std::atomic<int> handlers_in_slots{0};
 
 // Holds the action of a signal before it was handled here.
-struct Taken {
+struct SignalAction {
   struct sigaction before {};
-  bool is_taken = false;
+  bool is_handled = false;
 };
-std::array<Taken, kSignals.size()> taken;
+std::array<SignalAction, kSignals.size()> signal_actions;
 // Guards the count of CrashStop objects and their changes to signals.
 std::mutex mutex;
-int objects = 0;
+int object_count = 0;
 
 std::atomic<bool> ending{false};
 std::atomic<bool> has_ended{false};
 
 template <typename Condition>
 void wait_for(const Condition& condition) {
-  for (int n = 0; n < kWaits && !condition(); ++n) nanosleep(&kWait, nullptr);
+  for (int n = 0; n < kMaxWaits && !condition(); ++n) nanosleep(&kWait, nullptr);
 }
 
 // Gives a thread a stack for handlers until it ends, unless it has one already (from a sanitizer).
-class StackOfHandlers {
+class SignalStack {
  public:
-  StackOfHandlers() {
+  SignalStack() {
     stack_t before{};
     sigaltstack(nullptr, &before);
     if ((before.ss_flags & SS_DISABLE) == 0) return;
@@ -71,14 +71,14 @@ class StackOfHandlers {
     own.ss_size = kStackBytes;
     sigaltstack(&own, nullptr);
   }
-  ~StackOfHandlers() {
+  ~SignalStack() {
     if (!memory_) return;
     stack_t none{};
     none.ss_flags = SS_DISABLE;
     sigaltstack(&none, nullptr);
   }
-  StackOfHandlers(const StackOfHandlers&) = delete;
-  StackOfHandlers& operator=(const StackOfHandlers&) = delete;
+  SignalStack(const SignalStack&) = delete;
+  SignalStack& operator=(const SignalStack&) = delete;
 
  private:
   std::unique_ptr<char[]> memory_;
@@ -88,19 +88,19 @@ class StackOfHandlers {
 
 // Gives handlers access to all devices.
 struct DrivenDevices {
-  DrivenDevices() { handlers_at_places.fetch_add(1); }
-  ~DrivenDevices() { handlers_at_places.fetch_sub(1); }
+  DrivenDevices() { handlers_in_slots.fetch_add(1); }
+  ~DrivenDevices() { handlers_in_slots.fetch_sub(1); }
   DrivenDevices(const DrivenDevices&) = delete;
   DrivenDevices& operator=(const DrivenDevices&) = delete;
 
   template <typename Ask>
   bool all(const Ask& ask) const {
-    bool all = true;
-    for (Place* place = places.load(); place != nullptr; place = place->next) {
-      DrivenDevice* const driven = place->driven.load();
-      if (driven != nullptr && !ask(*driven)) all = false;
+    bool all_true = true;
+    for (DeviceSlot* slot = device_slots.load(); slot != nullptr; slot = slot->next) {
+      DrivenDevice* const driven = slot->driven.load();
+      if (driven != nullptr && !ask(*driven)) all_true = false;
     }
-    return all;
+    return all_true;
   }
   void disengage() const {
     wait_for([&] { return all([](DrivenDevice& driven) { return driven.device_.disengage(); }); });
@@ -113,7 +113,7 @@ struct DrivenDevices {
   }
   void end() const {
     all([](DrivenDevice& driven) {
-      driven.end_asked_.store(true, std::memory_order_release);
+      driven.stop_requested_.store(true, std::memory_order_release);
       return true;
     });
     wait_for([&] {
@@ -131,8 +131,8 @@ bool has_handler(const struct sigaction& action) {
          (action.sa_handler != SIG_DFL && action.sa_handler != SIG_IGN);
 }
 
-Taken& taken_of(int signal) {
-  return taken[static_cast<std::size_t>(std::ranges::find(kSignals, signal) - kSignals.begin())];
+SignalAction& action_of(int signal) {
+  return signal_actions[static_cast<std::size_t>(std::ranges::find(kSignals, signal) - kSignals.begin())];
 }
 
 void pass_to(const struct sigaction& before, int signal, siginfo_t* info, void* context) {
@@ -145,7 +145,7 @@ void pass_to(const struct sigaction& before, int signal, siginfo_t* info, void* 
   }
 }
 
-void end_by(int signal) {
+void end_process(int signal) {
   if (!ending.exchange(true)) {
     DrivenDevices().end();
     has_ended.store(true);
@@ -160,9 +160,9 @@ void end_by(int signal) {
 }
 
 // Only what is safe in a signal's handler from here on.
-void handle(int signal, siginfo_t* info, void* context) {
+void handle_signal(int signal, siginfo_t* info, void* context) {
   const int error = errno;
-  const struct sigaction& before = taken_of(signal).before;
+  const struct sigaction& before = action_of(signal).before;
   if (has_handler(before)) {
     CrashStop::disengage();
     pass_to(before, signal, info, context);
@@ -172,60 +172,60 @@ void handle(int signal, siginfo_t* info, void* context) {
     raise(SIGSTOP);
     CrashStop::engage();
   } else {
-    end_by(signal);
+    end_process(signal);
   }
   errno = error;
 }
 
-bool is_ours(const struct sigaction& action) {
-  return (action.sa_flags & SA_SIGINFO) != 0 && action.sa_sigaction == &handle;
+bool is_own_handler(const struct sigaction& action) {
+  return (action.sa_flags & SA_SIGINFO) != 0 && action.sa_sigaction == &handle_signal;
 }
 
-bool may_be_taken(int signal, const struct sigaction& now) {
+bool can_be_handled(int signal, const struct sigaction& now) {
   if (has_handler(now)) return is_fault(signal);
   return now.sa_handler == SIG_DFL;
 }
 
-void take(int signal) {
-  Taken& of = taken_of(signal);
+void install_handler(int signal) {
+  SignalAction& action = action_of(signal);
   // One that the program has taken over since may pass it on to us, so we may not pass it back.
-  if (of.is_taken) return;
+  if (action.is_handled) return;
   struct sigaction now {};
   sigaction(signal, nullptr, &now);
-  if (!may_be_taken(signal, now)) return;
-  of = {now, true};
+  if (!can_be_handled(signal, now)) return;
+  action = {now, true};
   struct sigaction own {};
-  own.sa_sigaction = &handle;
+  own.sa_sigaction = &handle_signal;
   // One at a time in a thread.
   sigfillset(&own.sa_mask);
   own.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_RESTART;
   sigaction(signal, &own, nullptr);
 }
 
-void give_back(int signal) {
-  Taken& of = taken_of(signal);
+void restore_handler(int signal) {
+  SignalAction& action = action_of(signal);
   struct sigaction now {};
   sigaction(signal, nullptr, &now);
-  if (!of.is_taken || !is_ours(now)) return;
-  sigaction(signal, &of.before, nullptr);
-  of.is_taken = false;
+  if (!action.is_handled || !is_own_handler(now)) return;
+  sigaction(signal, &action.before, nullptr);
+  action.is_handled = false;
 }
 
 }  // namespace
 
-void CrashStop::give_this_thread_a_stack() {
-  thread_local const StackOfHandlers stack;
+void CrashStop::install_signal_stack() {
+  thread_local const SignalStack stack;
 }
 
 CrashStop::CrashStop() {
-  give_this_thread_a_stack();
+  install_signal_stack();
   const std::lock_guard lock(mutex);
-  if (objects++ == 0) std::ranges::for_each(kSignals, take);
+  if (object_count++ == 0) std::ranges::for_each(kSignals, install_handler);
 }
 
 CrashStop::~CrashStop() {
   const std::lock_guard lock(mutex);
-  if (--objects == 0) std::ranges::for_each(kSignals, give_back);
+  if (--object_count == 0) std::ranges::for_each(kSignals, restore_handler);
 }
 
 void CrashStop::disengage() noexcept {
@@ -237,18 +237,18 @@ void CrashStop::engage() noexcept {
 }
 
 DrivenDevice::DrivenDevice(Device& device) : device_(device) {
-  for (place_ = places.load(); place_ != nullptr; place_ = place_->next) {
-    DrivenDevice* nobody = nullptr;
-    if (place_->driven.compare_exchange_strong(nobody, this)) return;
+  for (slot_ = device_slots.load(); slot_ != nullptr; slot_ = slot_->next) {
+    DrivenDevice* expected = nullptr;
+    if (slot_->driven.compare_exchange_strong(expected, this)) return;
   }
-  place_ = new Place{.driven = this, .next = places.load()};
-  while (!places.compare_exchange_weak(place_->next, place_)) {
+  slot_ = new DeviceSlot{.driven = this, .next = device_slots.load()};
+  while (!device_slots.compare_exchange_weak(slot_->next, slot_)) {
   }
 }
 
 DrivenDevice::~DrivenDevice() {
-  place_->driven.store(nullptr);
-  while (handlers_at_places.load() != 0) nanosleep(&kWait, nullptr);
+  slot_->driven.store(nullptr);
+  while (handlers_in_slots.load() != 0) nanosleep(&kWait, nullptr);
 }
 
 }  // namespace osteomill

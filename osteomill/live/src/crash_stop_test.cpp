@@ -242,7 +242,7 @@ class HostTest : public ::testing::Test {
     const auto ticks = live->timing().ticks;
     for (int n = 0; n < 2000 && live->timing().ticks < ticks + 20; ++n) std::this_thread::sleep_for(5ms);
     EXPECT_GE(live->timing().ticks, ticks + 20);
-    EXPECT_TRUE(live->running());
+    EXPECT_TRUE(live->is_running());
   }
   Volume bone_ = flat_bone();
   Sent sent_{};

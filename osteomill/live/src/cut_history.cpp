@@ -27,9 +27,9 @@ bool lower_emptied(DensityBlock& brick, const DensityBlock& first, float emptied
 
 }  // namespace
 
-void CutHistory::keep(const DensityBlock& before) {
+void CutHistory::save(const DensityBlock& before) {
   const std::uint64_t place = place_of(before.first);
-  first_.try_emplace(place, before);
+  original_bricks_.try_emplace(place, before);
   if (!cuts_.back().before.try_emplace(place, before).second) return;
   ++bricks_in_cuts_;
   forget_oldest();
@@ -39,7 +39,7 @@ void CutHistory::forget_oldest() {
   while (bricks_in_cuts_ > max_bricks_ && cuts_.size() > 1) {
     bricks_in_cuts_ -= cuts_.front().before.size();
     cuts_.pop_front();
-    forgotten_ = true;
+    has_forgotten_cuts_ = true;
   }
 }
 
@@ -52,35 +52,35 @@ std::size_t CutHistory::cuts() const {
   return cuts_.size() - (cuts_.back().before.empty() ? 1 : 0);
 }
 
-CutHistory::Before CutHistory::before_last() const {
-  if (last_is_all()) return before_all();
+CutHistory::PriorState CutHistory::state_before_last_cut() const {
+  if (last_cut_is_all()) return state_before_all_cuts();
   const Cut& last = cuts_[std::max<std::size_t>(cuts(), 1) - 1];
   return {last.before, last.removed_before_mm3};
 }
 
 void CutHistory::drop_last() {
-  if (last_is_all()) return drop_all();
+  if (last_cut_is_all()) return drop_all();
   if (cuts_.back().before.empty() && cuts_.size() > 1) cuts_.pop_back();
   bricks_in_cuts_ -= cuts_.back().before.size();
   cuts_.back().before.clear();
 }
 
 void CutHistory::drop_all() {
-  first_.clear();
+  original_bricks_.clear();
   cuts_ = std::deque<Cut>(1);
   bricks_in_cuts_ = 0;
-  forgotten_ = false;
+  has_forgotten_cuts_ = false;
 }
 
-std::vector<DensityBlock> CutHistory::keep_emptied(const DensityGrid& grid, float emptied, double isovalue,
-                                                   float floor) {
+std::vector<DensityBlock> CutHistory::lower_emptied_bricks(const DensityGrid& grid, float emptied,
+                                                           double isovalue, float floor) {
   for (Cut& cut : cuts_) {
     for (auto& [place, brick] : cut.before) {
-      lower_emptied(brick, first_.at(place), emptied, isovalue, floor);
+      lower_emptied(brick, original_bricks_.at(place), emptied, isovalue, floor);
     }
   }
   std::vector<DensityBlock> differing;
-  for (const auto& [place, first] : first_) {
+  for (const auto& [place, first] : original_bricks_) {
     DensityBlock now(grid, first.first);
     if (lower_emptied(now, first, emptied, isovalue, floor)) differing.push_back(now);
   }

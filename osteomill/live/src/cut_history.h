@@ -19,7 +19,7 @@ class CutHistory {
   /// Bricks by their places.
   using Bricks = std::unordered_map<std::uint64_t, DensityBlock>;
   /// Bricks as they were before milling that can be taken back, and what had been removed by then.
-  struct Before {
+  struct PriorState {
     const Bricks& bricks;
     double removed_mm3;
   };
@@ -27,20 +27,20 @@ class CutHistory {
   explicit CutHistory(std::size_t undo_bytes) : max_bricks_(undo_bytes / sizeof(DensityBlock)), cuts_(1) {}
 
   /// Keeps a brick as it was, of which something has just changed.
-  void keep(const DensityBlock& before);
+  void save(const DensityBlock& before);
   /// Begins another cut, to which all that is milled from now on belongs; `removed_mm3` is what had been
   /// removed before it. Does nothing if nothing was cut since the last call.
   void begin_cut(double removed_mm3);
 
   /// Returns how many cuts can be taken back.
   std::size_t cuts() const;
-  bool touched() const { return !first_.empty(); }
+  bool is_touched() const { return !original_bricks_.empty(); }
   /// Returns every brick that was touched, as it was at the beginning.
-  const Bricks& first() const { return first_; }
+  const Bricks& original_bricks() const { return original_bricks_; }
 
   /// Returns the state before the last cut; no bricks if there is none.
-  Before before_last() const;
-  Before before_all() const { return {first_, 0}; }
+  PriorState state_before_last_cut() const;
+  PriorState state_before_all_cuts() const { return {original_bricks_, 0}; }
   /// Forget the last cut, or all that was milled since the beginning, after it has been taken back. Without
   /// the first of all cuts nothing is milled any more.
   void drop_last();
@@ -50,8 +50,8 @@ class CutHistory {
   /// as bone: lowers them to `floor`, in all that can be taken back and in the bricks returned, which are
   /// those of `grid` that differ. Voxels that are cut in part stay as they are, and with them the cut's
   /// surface.
-  std::vector<DensityBlock> keep_emptied(const DensityGrid& grid, float emptied, double isovalue,
-                                         float floor);
+  std::vector<DensityBlock> lower_emptied_bricks(const DensityGrid& grid, float emptied, double isovalue,
+                                                 float floor);
 
  private:
   struct Cut {
@@ -60,13 +60,13 @@ class CutHistory {
   };
 
   void forget_oldest();
-  bool last_is_all() const { return cuts() <= 1 && !forgotten_; }
+  bool last_cut_is_all() const { return cuts() <= 1 && !has_forgotten_cuts_; }
 
   std::size_t max_bricks_;
-  Bricks first_;
+  Bricks original_bricks_;
   std::deque<Cut> cuts_;
   std::size_t bricks_in_cuts_ = 0;
-  bool forgotten_ = false;
+  bool has_forgotten_cuts_ = false;
 };
 
 }  // namespace osteomill

@@ -16,15 +16,15 @@ class CutHistoryTest : public ::testing::Test {
     const VoxelIndex first{voxel.i / 8 * 8, voxel.j / 8 * 8, voxel.k / 8 * 8};
     const DensityBlock before(bone_.grid(), first);
     bone_.lower_density(voxel, bone_.grid()[voxel] - 100);
-    history_.keep(before);
+    history_.save(before);
   }
   double undo() {
-    const double removed_mm3 = put(history_.before_last());
+    const double removed_mm3 = put(history_.state_before_last_cut());
     history_.drop_last();
     return removed_mm3;
   }
   void reset() {
-    put(history_.before_all());
+    put(history_.state_before_all_cuts());
     history_.drop_all();
   }
   double put(const CutHistory::Before& before) {
@@ -78,16 +78,16 @@ TEST_F(CutHistoryTest, ResetsPastEveryCut) {
   reset();
   EXPECT_EQ(now(), before_);
   EXPECT_EQ(history_.cuts(), 0u);
-  EXPECT_FALSE(history_.touched());
+  EXPECT_FALSE(history_.is_touched());
 }
 
 TEST_F(CutHistoryTest, WhatBeginsBeforeACutIsDroppedIsAnotherCut) {
   mill({3, 4, 5});
   history_.begin_cut(2.5);
   mill({18, 2, 9});
-  EXPECT_EQ(put(history_.before_last()), 2.5);
+  EXPECT_EQ(put(history_.state_before_last_cut()), 2.5);
   history_.begin_cut(4);
-  EXPECT_EQ(history_.before_last().removed_mm3, 2.5);
+  EXPECT_EQ(history_.state_before_last_cut().removed_mm3, 2.5);
   history_.drop_last();
   EXPECT_EQ(history_.cuts(), 1u);
   mill({18, 2, 9});
@@ -113,10 +113,10 @@ TEST_F(CutHistoryTest, ForgetsTheOldestCutsBeyondItsMemory) {
 
 TEST_F(CutHistoryTest, NothingIsTouchedOnceTheOnlyCutIsTakenBack) {
   mill({3, 4, 5});
-  EXPECT_TRUE(history_.touched());
+  EXPECT_TRUE(history_.is_touched());
   EXPECT_EQ(history_.cuts(), 1u);
   undo();
-  EXPECT_FALSE(history_.touched());
+  EXPECT_FALSE(history_.is_touched());
   EXPECT_EQ(now(), before_);
 }
 
@@ -132,9 +132,9 @@ TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPa
   mill_to({3, 4, 4}, 700);
   mill_to({3, 4, 5}, 400);
   DensityGrid milled = bone_.grid();
-  EXPECT_TRUE(history_.keep_emptied(bone_.grid(), 300, 990, 300).empty());
-  EXPECT_TRUE(history_.keep_emptied(bone_.grid(), 300, 350, 300).empty());
-  std::vector<DensityBlock> differing = history_.keep_emptied(bone_.grid(), 300, 50, -30);
+  EXPECT_TRUE(history_.lower_emptied_bricks(bone_.grid(), 300, 990, 300).empty());
+  EXPECT_TRUE(history_.lower_emptied_bricks(bone_.grid(), 300, 350, 300).empty());
+  std::vector<DensityBlock> differing = history_.lower_emptied_bricks(bone_.grid(), 300, 50, -30);
   ASSERT_EQ(differing.size(), 1u);
   EditableVolume(bone_).swap(differing.front());
   milled.set({3, 4, 2}, -30);

@@ -8,7 +8,7 @@ DensityHandover::DensityHandover(const GridGeometry& geometry, std::size_t capac
     : brick_dims_(geometry.all_voxels().bricks(DensityBlock::kVoxels).dims()),
       marked_(cell_count(brick_dims_)),
       order_(cell_count(brick_dims_)),
-      on_their_way_(std::max<std::size_t>(capacity, 1)) {}
+      in_flight_(std::max<std::size_t>(capacity, 1)) {}
 
 void DensityHandover::mark(const VolumeChange& change) noexcept {
   const VoxelBox& box = change.voxels;
@@ -30,7 +30,7 @@ void DensityHandover::send(const Volume& volume, std::size_t max) noexcept {
     const std::uint32_t number = order_[next_];
     const auto [bi, bj, bk] = cell_at(brick_dims_, number);
     const VoxelBox voxels = VoxelBox::of_brick({bi, bj, bk}, DensityBlock::kVoxels);
-    if (!on_their_way_.try_push(volume.grid(), voxels.first)) break;
+    if (!in_flight_.try_push(volume.grid(), voxels.first)) break;
     next_ = (next_ + 1) % order_.size();
     --waiting;
     marked_[number] = 0;

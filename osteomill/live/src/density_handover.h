@@ -19,7 +19,7 @@ namespace osteomill {
 class DensityHandover {
  public:
   /// 1 MiB: enough for all that is milled while the whole surface is meshed at a new isovalue.
-  static constexpr std::size_t kBricksOnTheirWay = 511;
+  static constexpr std::size_t kMaxBricksInFlight = 511;
 
   /// Makes room for `capacity` bricks (or a few more) on their way, 2 KiB each. Allocates everything.
   DensityHandover(const GridGeometry& geometry, std::size_t capacity);
@@ -30,11 +30,11 @@ class DensityHandover {
   /// haptic tick.
   void send(const Volume& volume, std::size_t max) noexcept;
   /// Returns how many bricks are marked and not sent; all others can be received. From any thread.
-  std::size_t waiting() const noexcept { return waiting_.load(std::memory_order_acquire); }
+  std::size_t waiting_count() const noexcept { return waiting_.load(std::memory_order_acquire); }
 
   /// Returns the next brick, the receiving thread's own until `pop`; null if there is none.
-  DensityBlock* front() noexcept { return on_their_way_.front(); }
-  void pop() noexcept { on_their_way_.pop(); }
+  DensityBlock* front() noexcept { return in_flight_.front(); }
+  void pop() noexcept { in_flight_.pop(); }
 
  private:
   std::array<int, 3> brick_dims_;
@@ -45,7 +45,7 @@ class DensityHandover {
   std::size_t next_ = 0;
   std::atomic<std::size_t> waiting_{0};
 
-  SpscQueue<DensityBlock> on_their_way_;
+  SpscQueue<DensityBlock> in_flight_;
 };
 
 }  // namespace osteomill

@@ -18,7 +18,7 @@ TEST(DensityHandover, SendsWhatIsMarkedOnceAndAsItIsThen) {
   handover.mark({{{9, 3, 17}, {9, 3, 17}}});
   volume.lower_density({9, 3, 17}, 4);
   handover.mark({{{9, 3, 17}, {9, 3, 17}}});
-  EXPECT_EQ(handover.waiting(), 1u);
+  EXPECT_EQ(handover.waiting_count(), 1u);
   EXPECT_EQ(handover.front(), nullptr);
   handover.send(volume, 10);
   DensityBlock* brick = handover.front();
@@ -35,18 +35,18 @@ TEST(DensityHandover, KeepsMarkedWhatFindsNoRoomAndSendsTheLongestMarkedFirst) {
   DensityHandover handover(volume.geometry(), 3);
   handover.mark({{{0, 0, 0}, {63, 0, 0}}});
   handover.send(volume, 2);
-  EXPECT_EQ(handover.waiting(), 6u);
+  EXPECT_EQ(handover.waiting_count(), 6u);
   handover.send(volume, 5);
-  EXPECT_EQ(handover.waiting(), 5u);  // room for one
+  EXPECT_EQ(handover.waiting_count(), 5u);  // room for one
   handover.mark({{{0, 0, 0}, {0, 0, 0}}});
-  EXPECT_EQ(handover.waiting(), 6u);
+  EXPECT_EQ(handover.waiting_count(), 6u);
   for (const int first : {0, 8, 16, 24, 32, 40, 48, 56, 0}) {
     ASSERT_NE(handover.front(), nullptr);
     EXPECT_EQ(handover.front()->first.i, first);
     handover.pop();
     handover.send(volume, 5);
   }
-  EXPECT_EQ(handover.waiting(), 0u);
+  EXPECT_EQ(handover.waiting_count(), 0u);
   EXPECT_EQ(handover.front(), nullptr);
 }
 

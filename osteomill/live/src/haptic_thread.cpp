@@ -22,14 +22,14 @@ HapticThread::HapticThread(std::unique_ptr<MillingSession> session, Device& devi
     : clock_(std::move(clock)), device_(device), driven_(device), session_(std::move(session)) {}
 
 void HapticThread::start() {
-  if (running()) return;
+  if (is_running()) return;
   stop();
   failure_ = nullptr;
   std::atomic<bool> ready{false};
   running_.store(true, std::memory_order_release);
   try {
     thread_ = std::jthread([this, &ready](const std::stop_token& stop) {
-      CrashStop::give_this_thread_a_stack();
+      CrashStop::install_signal_stack();
       refused_real_time_ = request_real_time();
       ready.store(true, std::memory_order_release);
       run(stop);
@@ -47,20 +47,20 @@ void HapticThread::stop() {
 }
 
 // Commands swap what they replace into the commanding thread's hands, so that it is destroyed there.
-void HapticThread::between_ticks(const std::function<void()>& command) {
+void HapticThread::run_between_ticks(const std::function<void()>& command) {
   command_.store(&command, std::memory_order_release);
   while (command_.load(std::memory_order_acquire) != nullptr) {
-    if (!running()) {
+    if (!is_running()) {
       // It may only just be ending.
       if (thread_.joinable()) thread_.join();
-      take_command();
+      run_pending_command();
     } else {
       std::this_thread::sleep_for(200us);
     }
   }
 }
 
-void HapticThread::take_command() {
+void HapticThread::run_pending_command() {
   const auto* const command = command_.load(std::memory_order_acquire);
   if (command == nullptr) return;
   (*command)();
@@ -68,20 +68,20 @@ void HapticThread::take_command() {
 }
 
 void HapticThread::set_spindle(bool on) {
-  between_ticks([&] { spindle_ = on; });
+  run_between_ticks([&] { spindle_ = on; });
 }
 
 void HapticThread::set_paused(bool paused) {
-  between_ticks([&] { paused_ = paused; });
+  run_between_ticks([&] { paused_ = paused; });
 }
 
-void HapticThread::hold_bone(bool held) {
-  between_ticks([&] { bone_held_ = held; });
+void HapticThread::freeze_bone(bool held) {
+  run_between_ticks([&] { bone_frozen_ = held; });
 }
 
 SessionHandover HapticThread::replace(std::unique_ptr<MillingSession> session) {
   SessionHandover left;
-  between_ticks([&] {
+  run_between_ticks([&] {
     std::swap(session_, session);
     left = session->handover();
     session_->resume_from(left);
@@ -92,21 +92,21 @@ SessionHandover HapticThread::replace(std::unique_ptr<MillingSession> session) {
 }
 
 void HapticThread::place(const Pose& X_WD) {
-  if (placing()) return;
+  if (is_placing()) return;
   placing_.store(true, std::memory_order_release);
-  between_ticks([&] {
+  run_between_ticks([&] {
     X_WD_place_ = X_WD;
     fading_out_ = true;
     session_->fade_out();
   });
 }
 
-void HapticThread::listen(TickListener listener) {
-  between_ticks([&] { std::swap(listener_, listener); });
+void HapticThread::set_listener(TickListener listener) {
+  run_between_ticks([&] { std::swap(listener_, listener); });
 }
 
 void HapticThread::run(const std::stop_token& stop) noexcept {
-  driven_.started();
+  driven_.note_started();
   session_->hold_back();
   try {
     tick_until(stop);
@@ -115,7 +115,7 @@ void HapticThread::run(const std::stop_token& stop) noexcept {
   }
   try {
     device_.write_wrench(Wrench{});
-    driven_.stopped();
+    driven_.note_stopped();
   } catch (...) {
     if (!failure_) failure_ = std::current_exception();
   }
@@ -125,10 +125,10 @@ void HapticThread::run(const std::stop_token& stop) noexcept {
 void HapticThread::tick_until(const std::stop_token& stop) {
   constexpr Nanoseconds kTick_ns = 1'000'000;
   NextDeadline next{clock_.now_ns() + kTick_ns, 1};
-  while (!stop.stop_requested() && !driven_.end_asked()) {
+  while (!stop.stop_requested() && !driven_.is_stop_requested()) {
     TickTimes times{next.deadline_ns, 0, 0, next.periods};
     times.woke_ns = clock_.wait_until(next.deadline_ns);
-    take_command();
+    run_pending_command();
     const TickRecord record = tick(std::min((next.periods - 1) * kTick_s, kMaxLate_s));
     times.done_ns = clock_.now_ns();
     timing_.add(times, record);
@@ -157,7 +157,7 @@ TickRecord HapticThread::tick(double late_s) {
   TickRecord record = session_->tick(device_, {.time_s = time_s_,
                                                .dt_s = kTick_s,
                                                .late_s = late_s,
-                                               .spindle_on = spindle_on && !bone_held_,
+                                               .spindle_on = spindle_on && !bone_frozen_,
                                                .paused = paused_});
   record.session = session_number_;
   if (record.placed) fading_out_ = false;

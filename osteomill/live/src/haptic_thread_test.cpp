@@ -75,9 +75,9 @@ TEST_F(HapticThreadTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   EXPECT_TRUE(pushes());
   EXPECT_TRUE(comes_true([&] { return live_.state().record.contacts > 0; }));
   EXPECT_TRUE(comes_true([&] { return live_.timing().ticks > 200; }));
-  EXPECT_TRUE(live_.running());
+  EXPECT_TRUE(live_.is_running());
   live_.stop();
-  EXPECT_FALSE(live_.running());
+  EXPECT_FALSE(live_.is_running());
   EXPECT_GT(device_.max_force_N, 0);
   EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
   EXPECT_EQ(device_.sent.torque_Nmm, Vec3::Zero());
@@ -109,7 +109,7 @@ TEST(HapticThreadOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
   device.throw_at_tick = 30;
   HapticThread live(session_on(std::make_shared<Volume>(half_space()), "line-proxy"), device, clock);
   live.start();
-  ASSERT_TRUE(comes_true([&] { return !live.running(); }));
+  ASSERT_TRUE(comes_true([&] { return !live.is_running(); }));
   live.stop();
   EXPECT_EQ(live.timing().ticks, 30u);
   EXPECT_EQ(live.timing().missed_ticks, 2u);
@@ -151,12 +151,12 @@ TEST_F(HapticThreadTest, WhatIsToBePlacedIsPlacedByTheSessionThatTicksThen) {
   live_.place({{0, 0, 9}, Quat::Identity()});
   EXPECT_TRUE(comes_true([&] { return live_.state().record.wrench.force_N.isZero(0); }));
   std::this_thread::sleep_for(20ms);
-  EXPECT_TRUE(live_.placing());
+  EXPECT_TRUE(live_.is_placing());
   live_.replace(session_on(bone_, "point-shell"));
   std::this_thread::sleep_for(20ms);
-  EXPECT_TRUE(live_.placing());
+  EXPECT_TRUE(live_.is_placing());
   device_.gives_pose = true;
-  EXPECT_TRUE(comes_true([&] { return !live_.placing(); }));
+  EXPECT_TRUE(comes_true([&] { return !live_.is_placing(); }));
   EXPECT_TRUE(comes_true([&] { return live_.state().record.X_WT.position_mm.z() == 9; }));
   live_.stop();
 }
@@ -165,14 +165,14 @@ TEST_F(HapticThreadTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   live_.start();
   live_.set_spindle(true);
   EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > 0; }));
-  live_.hold_bone(true);
+  live_.freeze_bone(true);
   const double removed_mm3 = live_.state().record.removed_mm3;
   const CopyOnWriteFloats held = bone_->grid().densities();
   EXPECT_NE(held, half_space().grid().densities());
   std::this_thread::sleep_for(50ms);
   EXPECT_EQ(bone_->grid().densities(), held);
   EXPECT_TRUE(live_.state().spindle_on);
-  live_.hold_bone(false);
+  live_.freeze_bone(false);
   EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > removed_mm3; }));
   live_.stop();
   EXPECT_NE(bone_->grid().densities(), held);
@@ -214,13 +214,13 @@ TEST_F(HapticThreadTest, StartedAgainInBoneItIsHeldBack) {
 TEST_F(HapticThreadTest, AnAlgorithmPreparedElsewhereTakesOver) {
   live_.start();
   EXPECT_TRUE(pushes());
-  live_.hold_bone(true);
+  live_.freeze_bone(true);
   const double removed_mm3 = 7;
   auto next = session_on(bone_, "surface-points");
   const int points = next->algorithm().sample_point_count();
   next->count_removed_from(removed_mm3);
   live_.replace(std::move(next));
-  live_.hold_bone(false);
+  live_.freeze_bone(false);
   EXPECT_TRUE(comes_true([&] {
     const TickRecord& record = live_.state().record;
     return record.session == 1 && record.wrench.force_N.z() > 0;
@@ -236,7 +236,7 @@ TEST_F(HapticThreadTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
     VoxelBox changed;
   } heard;
   live_.set_spindle(true);
-  live_.listen([&heard](const TickRecord&, const Volume&, const VolumeChange& change) {
+  live_.set_listener([&heard](const TickRecord&, const Volume&, const VolumeChange& change) {
     ++heard.ticks;
     if (change.voxels.empty()) return;
     heard.changed.include(change.voxels.first);
@@ -245,7 +245,7 @@ TEST_F(HapticThreadTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
   live_.start();
   EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > 0; }));
   live_.set_spindle(false);
-  live_.listen({});
+  live_.set_listener({});
   const int ticks = heard.ticks;
   std::this_thread::sleep_for(20ms);
   live_.stop();
@@ -267,7 +267,7 @@ TEST_F(HapticThreadTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
 TEST_F(HapticThreadTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
   device_.throw_at_tick = 500;
   live_.start();
-  EXPECT_TRUE(comes_true([&] { return !live_.running(); }));
+  EXPECT_TRUE(comes_true([&] { return !live_.is_running(); }));
   live_.set_spindle(true);
   EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
   EXPECT_GT(device_.max_force_N, 0);
@@ -281,7 +281,7 @@ TEST_F(HapticThreadTest, AStartThatFailsLeavesASessionThatCanBeStarted) {
     const testing_support::NoMoreThreads none;
     EXPECT_THROW(live_.start(), std::system_error);
   }
-  EXPECT_FALSE(live_.running());
+  EXPECT_FALSE(live_.is_running());
   live_.set_spindle(true);
   live_.start();
   EXPECT_TRUE(comes_true([&] { return live_.timing().ticks > 10; }));

@@ -45,7 +45,7 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
     const WorkProgress::Part meshing(0.8);
     follower = std::make_unique<BoneFollower>(bone);
   }
-  follower->begin_with(before.bricks);
+  follower->load_milled(before.bricks);
   const WorkProgress::Part preparing(1);
   auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
   session->count_removed_from(before.removed_mm3);
@@ -57,12 +57,12 @@ LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
       scan_hash_(prepared.scan_hash),
       follower_(std::move(prepared.follower)),
       live_(std::move(prepared.session), device) {
-  listen();
+  set_listener();
 }
 
-void LiveMilling::listen() {
-  live_.listen([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
-                   const TickRecord& record, const Volume& bone, const VolumeChange& change) {
+void LiveMilling::set_listener() {
+  live_.set_listener([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
+                         const TickRecord& record, const Volume& bone, const VolumeChange& change) {
     follower->bone_changed(bone, change);
     if (recorder != nullptr && record.session >= from) recorder->push(record);
   });
@@ -74,11 +74,11 @@ void LiveMilling::start() {
 }
 
 void LiveMilling::update() {
-  if (preparing() && preparation_.wait_for(0s) == std::future_status::ready) install_prepared();
+  if (is_preparing() && preparation_.wait_for(0s) == std::future_status::ready) install_prepared();
 }
 
 void LiveMilling::finish_preparing() {
-  if (preparing()) install_prepared();
+  if (is_preparing()) install_prepared();
 }
 
 void LiveMilling::set_spindle(bool on) {
@@ -104,12 +104,12 @@ bool LiveMilling::undo() {
 }
 
 bool LiveMilling::reset() {
-  return prepare(setup(), [this] { return follower_->as_at_the_beginning(); });
+  return prepare(setup(), [this] { return follower_->without_all_cuts(); });
 }
 
 // Another bone is the follower's copy, since that can be written while the bone is felt.
 bool LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
-  if (preparing()) return false;
+  if (is_preparing()) return false;
   const auto work = [this, make_bone = std::move(make_bone), setup] {
     catch_up();
     bool other_bone = true;
@@ -120,15 +120,15 @@ bool LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
       session->count_removed_from(next.removed_mm3);
       return Prepared{std::move(session), other_bone};
     } catch (...) {
-      if (other_bone) follower_->give_up();
+      if (other_bone) follower_->discard_next();
       throw;
     }
   };
-  live_.hold_bone(true);
+  live_.freeze_bone(true);
   try {
     preparation_ = std::async(std::launch::async, work);
   } catch (...) {
-    live_.hold_bone(false);
+    live_.freeze_bone(false);
     throw;
   }
   return true;
@@ -139,7 +139,7 @@ void LiveMilling::catch_up() {
     {
       const std::lock_guard lock(no_tick_mutex_);
       // No tick hands anything over.
-      if (!live_.running()) follower_->bone_changed(live_.session().volume(), {});
+      if (!live_.is_running()) follower_->bone_changed(live_.session().volume(), {});
     }
     std::this_thread::sleep_for(1ms);
   }
@@ -152,22 +152,22 @@ void LiveMilling::install_prepared() {
     sample_points_ = prepared.session->algorithm().sample_point_count();
     const SessionHandover left = live_.replace(std::move(prepared.session));
     if (prepared.other_bone) follower_->swap();
-    if (recorder_) tell_recorder(left);
+    if (recorder_) record_session_start(left);
   } catch (...) {
     failure = std::current_exception();
   }
-  live_.hold_bone(false);
+  live_.freeze_bone(false);
   if (!failure) return;
-  forget_recorder_without_session();
+  drop_recorder_without_session();
   std::rethrow_exception(failure);
 }
 
 // A recording whose first session could not be prepared would be of nothing.
-void LiveMilling::forget_recorder_without_session() {
+void LiveMilling::drop_recorder_without_session() {
   if (!recorder_ || live_.session_number() >= recorded_from_) return;
   const std::unique_ptr<Recorder> unused = std::move(recorder_);
   take_picture_ = {};
-  listen();
+  set_listener();
 }
 
 std::vector<double> LiveMilling::removed_by_label() const {
@@ -189,36 +189,37 @@ RunDescription LiveMilling::describe(const std::string& scan_name, const std::st
 std::string LiveMilling::start_recording(const std::filesystem::path& path, RunDescription description,
                                          TakePicture picture) {
   finish_preparing();
-  set_as_now(description);
-  auto recorder = std::make_unique<Recorder>(path, description, Recorder::Begins::when_told);
+  describe_current(description);
+  auto recorder =
+      std::make_unique<Recorder>(path, description, Recorder::FirstSession::begins_when_announced);
   add_picture(*recorder, kPictureBefore, picture);
   recorder_ = std::move(recorder);
   recorder_path_ = path;
   take_picture_ = std::move(picture);
   recorded_ = std::move(description);
-  const bool untouched = !live_.running() && live_.timing().ticks == 0;
+  const bool untouched = !live_.is_running() && live_.timing().ticks == 0;
   recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
-  if (untouched) tell_recorder({});
-  listen();
-  std::string kept = recorder_->kept();
+  if (untouched) record_session_start({});
+  set_listener();
+  std::string kept = recorder_->leftover_note();
   try {
     [[maybe_unused]] const bool begun = untouched || change(setup());
   } catch (...) {
-    forget_recorder_without_session();
+    drop_recorder_without_session();
     throw;
   }
   return kept;
 }
 
-void LiveMilling::set_as_now(RunDescription& run) const {
+void LiveMilling::describe_current(RunDescription& run) const {
   run.isovalue = isovalue();
   set_session_settings(run, settings_of(live_.session()), sample_points_);
 }
 
 // While nothing is milled.
-void LiveMilling::tell_recorder(const SessionHandover& handover) {
+void LiveMilling::record_session_start(const SessionHandover& handover) {
   RunDescription run = recorded_;
-  set_as_now(run);
+  describe_current(run);
   recorder_->begin_session(live_.session_number(), {std::move(run), handover, live_.session().removed_mm3(),
                                                     follower_->touched_bricks(), ""});
 }
@@ -227,7 +228,7 @@ std::filesystem::path LiveMilling::stop_recording() {
   // One that was stopped before it could begin still begins.
   if (live_.session_number() < recorded_from_) finish_preparing();
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
-  listen();
+  set_listener();
   for (const auto name : {kPictureAfter, kPictureAlong}) add_picture(*recorder, name, take_picture_);
   take_picture_ = {};
   recorder->close();

@@ -135,7 +135,7 @@ TEST_F(LiveMillingTest, AnUndoThatGetsNoThreadChangesNothing) {
     const testing_support::NoMoreThreads none;
     EXPECT_THROW((void)milling_.undo(), std::system_error);
   }
-  EXPECT_FALSE(milling_.preparing());
+  EXPECT_FALSE(milling_.is_preparing());
   EXPECT_EQ(milling_.follower().cuts(), 1u);
   mill(0.1);
 }
@@ -167,7 +167,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   EXPECT_EQ(bone(), untouched_);
   EXPECT_EQ(milling_.state().record.removed_mm3, 0);
   EXPECT_EQ(milling_.removed_by_label(), (std::vector<double>{0, 0, 0}));
-  EXPECT_FALSE(milling_.follower().touched());
+  EXPECT_FALSE(milling_.follower().is_touched());
   EXPECT_TRUE(surface_is_the_bones());
 }
 
@@ -209,15 +209,15 @@ TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
   other.algorithm = algorithm_named("surface-points");
   other.tool.burr_radius_mm = 1.2;
   EXPECT_TRUE(milling_.change(other));
-  EXPECT_TRUE(milling_.preparing());
+  EXPECT_TRUE(milling_.is_preparing());
   EXPECT_FALSE(milling_.undo());  // nothing while that is prepared
   milling_.finish_preparing();
-  EXPECT_FALSE(milling_.preparing());
+  EXPECT_FALSE(milling_.is_preparing());
   EXPECT_EQ(milling_.setup().algorithm.id, "surface-points");
   EXPECT_EQ(bone(), milled);
   EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
   mill(0.2);
-  EXPECT_TRUE(milling_.running());
+  EXPECT_TRUE(milling_.is_running());
 }
 
 TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
@@ -251,7 +251,7 @@ TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
   EXPECT_TRUE(milling_.undo());
   milling_.finish_preparing();
   EXPECT_EQ(bone(), untouched_);
-  EXPECT_FALSE(milling_.follower().touched());
+  EXPECT_FALSE(milling_.follower().is_touched());
   milling_.follower().read([](const Volume& bone) { EXPECT_EQ(bone.isovalue(), 300); });
   EXPECT_TRUE(surface_is_the_bones());
 }
@@ -277,7 +277,7 @@ TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
     return densities;
   };
   EXPECT_EQ(bone_again(), milled);
-  EXPECT_TRUE(again.follower().touched());
+  EXPECT_TRUE(again.follower().is_touched());
   again.start();
   for (int n = 0; n < 2000 && again.timing().ticks == 0; ++n) std::this_thread::sleep_for(5ms);
   EXPECT_EQ(again.state().record.removed_mm3, removed_mm3);
@@ -307,7 +307,7 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
       // Asked for before, the burr may mill until this thread has asked for its place.
       milling_.place(X_W_free);
       milling_.set_spindle(true);
-      ASSERT_TRUE(comes_true([&] { return !milling_.placing(); })) << "the tool was not placed";
+      ASSERT_TRUE(comes_true([&] { return !milling_.is_placing(); })) << "the tool was not placed";
       milling_.set_spindle(false);
       EXPECT_LT((milling_.state().record.X_WD.position_mm - X_W_free.position_mm).norm(), 0.1);
       std::this_thread::sleep_for(20ms);
@@ -353,7 +353,7 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   std::this_thread::sleep_for(20ms);
   milling_.set_paused(false);
   milling_.place(pose_above(entry_, setup_.tool, 5.0));
-  ASSERT_TRUE(comes_true([&] { return !milling_.placing(); })) << "the tool was not placed";
+  ASSERT_TRUE(comes_true([&] { return !milling_.is_placing(); })) << "the tool was not placed";
   EXPECT_TRUE(milling_.change_isovalue(300));
   milling_.finish_preparing();
   hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
@@ -361,8 +361,8 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   EXPECT_TRUE(milling_.reset());
   milling_.finish_preparing();
   mill(0.1);
-  ASSERT_TRUE(milling_.recording());
-  EXPECT_FALSE(milling_.recording_failed());
+  ASSERT_TRUE(milling_.is_recording());
+  EXPECT_FALSE(milling_.has_recording_failed());
   EXPECT_EQ(milling_.stop_recording(), path);
 
   const Recording recording = read_recording(path);
@@ -411,7 +411,7 @@ TEST_F(LiveMillingTest, ARecordingWhoseSessionCannotBePreparedIsNone) {
   fails = true;
   milling_.start_recording(folder / "live.h5", milling_.describe("ball", ""));
   EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
-  EXPECT_FALSE(milling_.recording());
+  EXPECT_FALSE(milling_.is_recording());
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
   fails = false;
   mill(0.1);
@@ -422,7 +422,7 @@ TEST_F(LiveMillingTest, ARecordingFromTheFirstTickOnNeedsNoneBefore) {
   VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
   LiveMilling milling(ball_of_bone(), setup_, hand);
   milling.start_recording(folder / "live.h5", milling.describe("ball", ""));
-  EXPECT_FALSE(milling.preparing());
+  EXPECT_FALSE(milling.is_preparing());
   milling.start();
   for (int n = 0; n < 2000 && milling.timing().ticks < 50; ++n) std::this_thread::sleep_for(5ms);
   milling.stop();

@@ -100,8 +100,8 @@ void LiveTiming::add(const TickTimes& times, const TickRecord& record) noexcept 
   milling_.add(record.milling_us);
   const double busy_us = kUsPerNs * static_cast<double>(times.done_ns - times.woke_ns);
   tick_.add(busy_us);
-  held_.add(busy_us);
-  rate_hz_.store(held_.rate_hz(), std::memory_order_relaxed);
+  sustained_.add(busy_us);
+  rate_hz_.store(sustained_.rate_hz(), std::memory_order_relaxed);
   if (lateness_ns > kLate_ns) add_to(late_ticks_, 1);
   if (times.periods > 1) add_to(missed_ticks_, static_cast<std::uint64_t>(times.periods - 1));
   const double woke_s = static_cast<double>(times.woke_ns) / static_cast<double>(kNsPerS);

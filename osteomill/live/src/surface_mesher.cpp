@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 // The haptic thread wakes no other (that would be a system call), so the mesher looks by itself: oftener than
 // 30 times a second, seldom enough that a brick milled at every tick is not meshed at every tick.
-constexpr auto kLookEvery = 20ms;
+constexpr auto kPollInterval = 20ms;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ void SurfaceMesher::mesh(const Volume& bone) {
 
 void SurfaceMesher::wait(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  woken_.wait_for(lock, stop, kLookEvery, [this] { return new_isovalue_.has_value(); });
+  woken_.wait_for(lock, stop, kPollInterval, [this] { return new_isovalue_.has_value(); });
 }
 
 void SurfaceMesher::show_isovalue(double isovalue) {

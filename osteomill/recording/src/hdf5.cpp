@@ -186,7 +186,7 @@ void Attributes::get(const std::string& name, std::uint64_t& value) const {
 
 void Attributes::get_reals(const std::string& name, std::span<double> values) const {
   read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, std::ssize(values), values.data());
-  if (!std::ranges::all_of(values, [](double value) { return std::abs(value) <= kMostReal; }))
+  if (!std::ranges::all_of(values, [](double value) { return std::abs(value) <= kMaxReal; }))
     throw InputError(file_.string(), "the attribute '" + name + "' is not finite, or beyond 1e12");
 }
 

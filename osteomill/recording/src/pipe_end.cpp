@@ -14,8 +14,10 @@ void require_whole(bool whole) {
 
 }  // namespace
 
-PipeEnd::PipeEnd(int descriptor, Does does, std::uintmax_t max_bytes)
-    : file_(::fdopen(descriptor, does == Does::take ? "r" : "w")), does_(does), max_bytes_(max_bytes) {
+PipeEnd::PipeEnd(int descriptor, Direction direction, std::uintmax_t max_bytes)
+    : file_(::fdopen(descriptor, direction == Direction::read ? "r" : "w")),
+      direction_(direction),
+      max_bytes_(max_bytes) {
   if (file_ == nullptr) ::close(descriptor);
   require_whole(file_ != nullptr);
 }
@@ -27,7 +29,8 @@ PipeEnd::~PipeEnd() {
 void PipeEnd::pass_bytes(void* data, std::size_t count) {
   // An empty container may have no memory.
   if (count == 0) return;
-  require_whole((takes() ? std::fread(data, 1, count, file_) : std::fwrite(data, 1, count, file_)) == count);
+  require_whole((is_reading() ? std::fread(data, 1, count, file_) : std::fwrite(data, 1, count, file_)) ==
+                count);
 }
 
 std::size_t PipeEnd::pass_count(std::size_t count, std::size_t size) {

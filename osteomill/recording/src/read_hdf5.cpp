@@ -59,10 +59,10 @@ void require_nothing_elsewhere(const Hdf5File& file) {
 // Restores the default action of signals: the program's own is not for the child. The C library reports a
 // damaged heap.
 void end_by_any_fault(std::uintmax_t bytes) {
-  constexpr unsigned kLeast_s = 2, kWaitingShare = 20;
+  constexpr unsigned kMinLimit_s = 2, kWaitingShare = 20;
   constexpr std::uintmax_t kBytesPerSecond = 5'000'000;
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
-  const unsigned most_s = kLeast_s + static_cast<unsigned>(bytes / kBytesPerSecond);
+  const unsigned most_s = kMinLimit_s + static_cast<unsigned>(bytes / kBytesPerSecond);
   const rlimit processor{most_s, most_s};
   ::setrlimit(RLIMIT_CPU, &processor);
   ::alarm(kWaitingShare * most_s);
@@ -141,9 +141,9 @@ Hdf5File open_hdf5(const fs::path& path) {
 void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& put,
                      const std::function<void(PipeEnd&)>& take) {
   // Largest number of bytes that the child passes on, for each byte of the file, and that of a reason.
-  constexpr std::uintmax_t kMostBytes = 10'000, kMostOfReason = 1'000'000;
+  constexpr std::uintmax_t kMaxBytesPerByte = 10'000, kMaxReasonBytes = 1'000'000;
   std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error), most = kMostBytes * bytes + kMostOfReason;
+  const std::uintmax_t bytes = fs::file_size(path, error), most = kMaxBytesPerByte * bytes + kMaxReasonBytes;
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     throw InputError(path.string(), "cannot be read: too many open files");
@@ -151,13 +151,13 @@ void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& 
   if (child == 0) {
     end_by_any_fault(bytes);
     ::close(ends[0]);
-    PipeEnd pipe(ends[1], PipeEnd::Does::put, most);
+    PipeEnd pipe(ends[1], PipeEnd::Direction::write, most);
     be_the_child(path, pipe, put);
   }
   ::close(ends[1]);
   std::optional<std::string> fault;
   {
-    PipeEnd pipe(ends[0], PipeEnd::Does::take, most);
+    PipeEnd pipe(ends[0], PipeEnd::Direction::read, most);
     fault = taken(pipe, take);
   }
   if (child < 0)
@@ -172,7 +172,7 @@ void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& 
 Hdf5Column open_column(const Hdf5File& file, const std::string& place, hsize_t width) {
   // A byte of the file for each row lets through what other programs have compressed; of wide rows, whatever
   // deflate may save.
-  constexpr hsize_t kMostThatDeflateSaves = 1100;
+  constexpr hsize_t kMaxDeflateRatio = 1100;
   Hdf5Column column{place, Hdf5Handle(H5Dopen2(file.id(), place.c_str(), H5P_DEFAULT), H5Dclose), width};
   if (!column.dataset.valid()) file.refuse("has no column '" + place + "'");
   const Hdf5Handle type(H5Dget_type(column.dataset.get()), H5Tclose);
@@ -184,7 +184,7 @@ Hdf5Column open_column(const Hdf5File& file, const std::string& place, hsize_t w
       H5Sget_simple_extent_ndims(space.get()) != rank ||
       H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) != rank || (rank == 2 && size[1] != width))
     file.refuse("'" + place + "' is not a column of numbers");
-  const hsize_t most = rank == 1 ? file.bytes : kMostThatDeflateSaves * file.bytes / (width * sizeof(float));
+  const hsize_t most = rank == 1 ? file.bytes : kMaxDeflateRatio * file.bytes / (width * sizeof(float));
   if (size[0] > most)
     file.refuse(fmt::format("'{}' claims {} rows, more than the file can hold", place, size[0]));
   column.rows = size[0];

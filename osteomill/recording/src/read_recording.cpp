@@ -41,7 +41,7 @@ static void pass(PipeEnd& pipe, RunDescription& run) {
 }
 static auto members_of(SessionStart& start) {
   return std::tie(start.run, start.handover.X_WT, start.handover.sent, start.handover.held_back,
-                  start.removed_mm3, start.bricks, start.goes_on_from);
+                  start.removed_mm3, start.bricks, start.continues_from);
 }
 static auto members_of(RecordedSession& session) {
   return std::tie(session.first, session.start);
@@ -59,9 +59,9 @@ namespace {
 void require_our_version(const Hdf5File& recording, const Attributes& root) {
   if (!root.has("osteomill_recording_version")) recording.refuse("is HDF5, but no recording of osteomill");
   const auto version = root.get<std::uint64_t>("osteomill_recording_version");
-  if (version != kRecordingVersion && version != kRecordingVersionBefore) {
+  if (version != kRecordingVersion && version != kPreviousRecordingVersion) {
     recording.refuse(fmt::format("is a recording of version {}; this program reads versions {} and {}",
-                                 version, kRecordingVersionBefore, kRecordingVersion));
+                                 version, kPreviousRecordingVersion, kRecordingVersion));
   }
 }
 
@@ -80,7 +80,7 @@ std::size_t common_rows(const Hdf5File& recording, std::span<const Hdf5Column> c
 }
 
 void require_in_range(const Hdf5File& recording, const Field<TickRecord>& column, double value) {
-  const bool is_missing = column.has(kMayBeMissing) && !std::isfinite(value);
+  const bool is_missing = column.has(kMayBeNotFinite) && !std::isfinite(value);
   if (!is_missing && !column.range.contains(value))
     recording.refuse(fmt::format("the column '{}' holds {:g}", column.name, value));
 }
@@ -187,7 +187,7 @@ SessionStart read_session_start(const Hdf5File& recording, hid_t group, const st
   const Attributes read(recording.path, group);
   SessionStart start;
   start.run = run != nullptr ? *run : read_description(recording.path, group);
-  read.get("goes_on_from", start.goes_on_from);
+  read.get("goes_on_from", start.continues_from);
   read.get("removed_mm3", start.removed_mm3);
   start.handover.sent = {read.get<Vec3>("force_N"), read.get<Vec3>("torque_Nmm")};
   start.handover.held_back = read.has("held_back") && read.get<std::uint64_t>("held_back") != 0;
@@ -297,15 +297,15 @@ SessionStart read_start(const fs::path& path) {
   return std::move(recording.sessions.front().start);
 }
 
-Recording read_with_what_came_before(const fs::path& path) {
+Recording read_recording_chain(const fs::path& path) {
   Recording recording = read_recording(path);
-  if (recording.sessions.empty() || recording.sessions.front().start.goes_on_from.empty()) return recording;
-  const fs::path name = recording.sessions.front().start.goes_on_from;
+  if (recording.sessions.empty() || recording.sessions.front().start.continues_from.empty()) return recording;
+  const fs::path name = recording.sessions.front().start.continues_from;
   if (name != name.filename()) throw InputError(path.string(), "goes on from a recording elsewhere");
   if (std::error_code error; !fs::exists(path.parent_path() / name, error))
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not beside it");
   Recording whole = read_recording(path.parent_path() / name);
-  const bool begins = !whole.sessions.empty() && whole.sessions.front().start.goes_on_from.empty();
+  const bool begins = !whole.sessions.empty() && whole.sessions.front().start.continues_from.empty();
   if (!begins || whole.description.scan_hash != recording.description.scan_hash) {
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not what came before it");
   }
@@ -349,7 +349,7 @@ bool is_run_alike(const RunDescription& a, const RunDescription& b) {
 
 }  // namespace
 
-std::vector<Recording> in_stretches(Recording recording) {
+std::vector<Recording> split_by_setup(Recording recording) {
   std::vector<std::size_t> first{0};
   const std::vector<RecordedSession>& sessions = recording.sessions;
   for (std::size_t n = 1; n < sessions.size(); ++n) {

@@ -15,7 +15,7 @@ namespace {
 
 using Fields = std::vector<Field<TickRecord>>;
 
-constexpr NumberRange kReal{-kMostReal, kMostReal, false};
+constexpr NumberRange kReal{-kMaxReal, kMaxReal, false};
 
 template <typename Place>
 void add_real(Fields& fields, const char* name, const char* unit, Place place, const char* doc,
@@ -59,7 +59,7 @@ Fields record_fields() {
   add_real(all, "time_s", "s", &R::time_s, "when the tick began", kInLog);
   add_pose(all, "device", &R::X_WD,
            "device as read (X_WD), as the burr's centre, frame W; not finite without a pose",
-           "device's orientation in W, unit quaternion", kInLog | kMayBeMissing);
+           "device's orientation in W, unit quaternion", kInLog | kMayBeNotFinite);
   add_pose(all, "tool", &R::X_WT, "simulated tool (X_WT), the burr's centre, frame W",
            "simulated tool's orientation in W, unit quaternion; the shaft points along its +z", kInLog);
   add_vector(
@@ -73,10 +73,10 @@ Fields record_fields() {
   add_real(all, "removed_mm3", "mm^3", &R::removed_mm3,
            "bone removed since the beginning, as bone of the reference density", kInLog);
   add_real(all, "compute_us", "us", &R::compute_us, "time of the algorithm's step, by the clock",
-           kInLog | kByTheClock);
-  add_real(all, "milling_us", "us", &R::milling_us, "time of milling, by the clock", kByTheClock);
+           kInLog | kMeasuredTime);
+  add_real(all, "milling_us", "us", &R::milling_us, "time of milling, by the clock", kMeasuredTime);
   add_real(all, "tick_cpu_us", "us", &R::tick_cpu_us, "CPU time of the whole tick; 0 if it was not measured",
-           kByTheClock);
+           kMeasuredTime);
   add_vector(
       all, "burr_force", "N", [](auto& r) -> auto& { return r.burr_force_W_N; },
       "force of the burr on the bone, frame W");

@@ -32,7 +32,7 @@ constexpr auto kFlushEvery = 400ms;
 // Pieces of the file are written whole, unless records come so slowly that they would wait for longer.
 constexpr auto kWaitAtMost = 800ms;
 // The pushing thread wakes no other (that would be a system call), so the writing thread looks by itself.
-constexpr auto kLookEvery = 2ms;
+constexpr auto kPollInterval = 2ms;
 constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
 
 // HDF5 writes here and there in a file, which then takes the place of what was there.
@@ -50,15 +50,16 @@ fs::path file_behind(const fs::path& path) {
 struct Recorder::Impl {
   using Clock = std::chrono::steady_clock;
 
-  Impl(const fs::path& path_, const RunDescription& description, Begins begins, Unfinished unfinished_)
+  Impl(const fs::path& path_, const RunDescription& description, FirstSession first_session,
+       UnfinishedFile unfinished_)
       : unfinished(unfinished_),
         path(file_behind(path_)),
         part(file_behind(unfinished_recording_path(path))),
         kept(set_aside(part)),
         held(FileLock::of_new_file(part)),
         file(part, description) {
-    if (unfinished == Unfinished::removed) leftover.emplace(part);
-    if (begins == Begins::with_the_recording) {
+    if (unfinished == UnfinishedFile::remove) leftover.emplace(part);
+    if (first_session == FirstSession::begins_at_once) {
       file.begin_session({}, 0);
       session = 0;
     }
@@ -72,7 +73,7 @@ struct Recorder::Impl {
   }
   ~Impl() {
     stop();
-    if (unfinished == Unfinished::removed || file.rows() == 0) remove();
+    if (unfinished == UnfinishedFile::remove || file.rows() == 0) remove();
   }
 
   void remove() const noexcept {
@@ -102,7 +103,7 @@ struct Recorder::Impl {
           flushed = now;
           flushed_rows = file.rows();
         }
-        if (emptied && !last) std::this_thread::sleep_for(kLookEvery);
+        if (emptied && !last) std::this_thread::sleep_for(kPollInterval);
       }
     } catch (...) {
       failure = std::current_exception();
@@ -144,7 +145,7 @@ struct Recorder::Impl {
     waiting_since = Clock::now();
   }
 
-  Unfinished unfinished;
+  UnfinishedFile unfinished;
   fs::path path;
   fs::path part;
   std::optional<fs::path> kept;
@@ -169,9 +170,9 @@ struct Recorder::Impl {
   std::jthread writer;
 };
 
-Recorder::Recorder(const fs::path& path, const RunDescription& description, Begins begins,
-                   Unfinished unfinished)
-    : impl_(std::make_unique<Impl>(path, description, begins, unfinished)) {}
+Recorder::Recorder(const fs::path& path, const RunDescription& description, FirstSession first_session,
+                   UnfinishedFile unfinished)
+    : impl_(std::make_unique<Impl>(path, description, first_session, unfinished)) {}
 
 Recorder::~Recorder() = default;
 
@@ -193,7 +194,7 @@ void Recorder::begin_session(std::uint32_t number, SessionStart start) {
   impl_->starts.emplace_back(number, std::move(start));
 }
 
-std::string Recorder::kept() const {
+std::string Recorder::leftover_note() const {
   if (!impl_->kept) return {};
   return impl_->part.string() + ": a recording that was not finished; it is kept as " + impl_->kept->string();
 }

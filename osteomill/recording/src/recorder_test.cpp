@@ -90,7 +90,7 @@ TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {
   const TestFolder folder;
   constexpr int kTicks = 5000;  // several chunks and a part of one
   TickRecord odd = sample_record(kTicks);
-  odd.wrench.force_N = {-0.0, std::numeric_limits<double>::denorm_min(), -kMostReal};
+  odd.wrench.force_N = {-0.0, std::numeric_limits<double>::denorm_min(), -kMaxReal};
   odd.X_WD.position_mm = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                           0};
   const std::vector<unsigned char> png{0x89, 'P', 'N', 'G', 0, 255, 1};
@@ -292,8 +292,8 @@ TEST(Recorder, WithoutCloseAnUnfinishedRecordingIsLeft) {
 TEST(Recorder, OfARunThatCanBeRunAgainNothingIsLeftWithoutClose) {
   const TestFolder folder;
   {
-    Recorder recorder(folder / "run.h5", sample_description(), Recorder::Begins::with_the_recording,
-                      Recorder::Unfinished::removed);
+    Recorder recorder(folder / "run.h5", sample_description(), Recorder::FirstSession::begins_at_once,
+                      Recorder::UnfinishedFile::remove);
     recorder.push_waiting(sample_record(0));
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
@@ -318,7 +318,7 @@ TEST(Recorder, AnUnfinishedRecordingIsKeptUnderAnotherName) {
   for (int ticks = 1; ticks <= 3; ++ticks) {
     Recorder recorder(path, sample_description());
     for (int tick = 0; tick < ticks; ++tick) recorder.push_waiting(sample_record(tick));
-    EXPECT_EQ(recorder.kept().empty(), ticks == 1);
+    EXPECT_EQ(recorder.leftover_note().empty(), ticks == 1);
     if (ticks == 3) recorder.close();
   }
   EXPECT_EQ(read_recording(folder / "run.part-1.h5").records.size(), 1u);

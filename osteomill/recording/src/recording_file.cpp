@@ -230,7 +230,7 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   const Hdf5Handle group = create_group(file_.get(), place);
   const Attributes write(path_, group.get());
   write.put("row", row);
-  write.put("goes_on_from", start.goes_on_from);
+  write.put("goes_on_from", start.continues_from);
   write.put("removed_mm3", start.removed_mm3);
   write.put("force_N", start.handover.sent.force_N);
   write.put("torque_Nmm", start.handover.sent.torque_Nmm);

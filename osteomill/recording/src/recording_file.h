@@ -15,7 +15,7 @@ namespace osteomill {
 /// The version of the layout, in the root's attribute `osteomill_recording_version`, and the one before,
 /// which is read too: it also has the attribute `mode`, of which nothing is left.
 inline constexpr std::uint64_t kRecordingVersion = 6;
-inline constexpr std::uint64_t kRecordingVersionBefore = 5;
+inline constexpr std::uint64_t kPreviousRecordingVersion = 5;
 
 /// A recording being written, from one thread at a time; docs/formats.md describes it. Every failure is an
 /// InputError that names `path`; after one the file is closed with what it holds. Room on the disk is taken

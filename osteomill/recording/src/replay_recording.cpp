@@ -32,7 +32,7 @@ void require_whole(const Recording& recording) {
   if (recording.sessions.empty()) refuse(recording, "holds no ticks");
   if (recording.dropped > 0)
     refuse(recording, fmt::format("lost {} ticks, so they cannot be run again", recording.dropped));
-  if (const std::string& before = recording.sessions.front().start.goes_on_from; !before.empty())
+  if (const std::string& before = recording.sessions.front().start.continues_from; !before.empty())
     refuse(recording, "goes on from " + before + ", without which it cannot be run again");
 }
 
@@ -61,7 +61,7 @@ auto made(const Recording& recording, const Make& make) {
 std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStart& start,
                                            const Recording& recording, const Replay& replay) {
   const RunDescription& run = start.run;
-  const AlgorithmDescription* algorithm = replay.find(run.algorithm.name);
+  const AlgorithmDescription* algorithm = replay.find_algorithm(run.algorithm.name);
   if (algorithm == nullptr) refuse(recording, "its algorithm " + run.algorithm.name + " is not known here");
   auto [setup, densities] = session_settings(run, recording.path);
   setup.algorithm = *algorithm;
@@ -88,7 +88,7 @@ TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
 
 std::optional<std::string> difference_of(const TickRecord& recorded, const TickRecord& now) {
   for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
-    if (column.has(kByTheClock)) continue;
+    if (column.has(kMeasuredTime)) continue;
     const double then = column.get(recorded);
     const double again = column.get(now);
     if (std::bit_cast<std::uint64_t>(then) == std::bit_cast<std::uint64_t>(again)) continue;
@@ -150,24 +150,24 @@ void replay_recording(const Volume& scan, const Recording& recording, const Repl
   require_made_with(recording, scan);
   for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
     SessionStart start = recording.sessions[n].start;
-    if (replay.as) start.run = replay.as(start.run);
+    if (replay.transform_description) start.run = replay.transform_description(start.run);
     const auto session = session_at(scan, start, recording, replay);
-    if (replay.begun) replay.begun(start, *session);
+    if (replay.on_session) replay.on_session(start, *session);
     for (std::size_t row = recording.sessions[n].first; row < end_of(recording, n); ++row) {
       const TickRecord& recorded = recording.records[row];
       TickRecord now = tick_again(*session, recorded);
       now.session = recorded.session;
-      if (!replay.tick(recorded, now)) return;
+      if (!replay.on_tick(recorded, now)) return;
     }
   }
 }
 
 Verification verify_recording(const Volume& scan, const Recording& recording,
-                              const std::function<void(std::size_t ticks)>& told) {
+                              const std::function<void(std::size_t ticks)>& on_progress) {
   Verification verified;
   auto hash = recording.bone_hashes.begin();
   Replay replay;
-  replay.tick = [&](const TickRecord& recorded, const TickRecord& now) {
+  replay.on_tick = [&](const TickRecord& recorded, const TickRecord& now) {
     auto what = difference_of(recorded, now);
     const bool has_hash = hash != recording.bone_hashes.end() && hash->record == verified.ticks;
     if (!what && has_hash && hash->hash != now.bone_hash) what = "the bone is another";
@@ -177,10 +177,10 @@ Verification verify_recording(const Volume& scan, const Recording& recording,
     }
     if (has_hash) {
       ++hash;
-      ++verified.bones;
+      ++verified.compared_bones;
     }
     ++verified.ticks;
-    if (told) told(verified.ticks);
+    if (on_progress) on_progress(verified.ticks);
     return true;
   };
   replay_recording(scan, recording, replay);

@@ -114,7 +114,7 @@ TEST(ReplayRecording, EveryAlgorithmComesOutTheSameWhateverTheHandDoes) {
     EXPECT_FALSE(verified.difference)
         << algorithm.id.name << " at " << verified.difference->record << ": " << verified.difference->what;
     EXPECT_EQ(verified.ticks, 620u);
-    EXPECT_EQ(verified.bones, 7u) << "every hundredth, and the last";
+    EXPECT_EQ(verified.compared_bones, 7u) << "every hundredth, and the last";
     EXPECT_EQ(recording.bone_hashes.back(), (BoneHash{619, bone->change_hash()}));
   }
 }
@@ -136,7 +136,7 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
     bool reset;
   };
   Recorder recorder(folder / "run.h5", description_of(scan, algorithm_named("point-shell")),
-                    Recorder::Begins::when_told);
+                    Recorder::FirstSession::begins_when_announced);
   std::uint32_t number = 3;
   std::shared_ptr<Volume> now = bone;
   for (const Step& step : {Step{"point-shell", kIsovalue, false}, Step{"barrier-shell", kIsovalue, false},
@@ -180,8 +180,9 @@ class OneRecording : public ::testing::Test {
   OneRecording() {
     const auto session = make(std::make_shared<Volume>(scan_), algorithm_);
     Recorder recorder(folder_ / "a.h5", description_of(scan_, algorithm_));
-    Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_), Recorder::Begins::when_told);
-    rest.begin_session(0, {.goes_on_from = "a.h5"});
+    Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_),
+                  Recorder::FirstSession::begins_when_announced);
+    rest.begin_session(0, {.continues_from = "a.h5"});
     Hand hand;
     for (int n = 0; n < 250; ++n) recorder.push_waiting(hand.tick(*session));
     for (int n = 0; n < 150; ++n) rest.push_waiting(hand.tick(*session));
@@ -222,12 +223,12 @@ TEST_F(OneRecording, WhatDiffersIsToldFromTheFirstTickOn) {
 TEST_F(OneRecording, GoesOnFromTheOneBeforeIt) {
   const Recording rest = read_recording(folder_ / "b.h5");
   EXPECT_NE(refusal(scan_, rest).find("goes on from a.h5"), std::string::npos);
-  const Recording whole = read_with_what_came_before(folder_ / "b.h5");
+  const Recording whole = read_recording_chain(folder_ / "b.h5");
   EXPECT_EQ(whole.records.size(), 400u);
   const Verification verified = verify_recording(scan_, whole);
   EXPECT_FALSE(verified.difference) << verified.difference->what;
   EXPECT_EQ(verified.ticks, 400u);
-  EXPECT_EQ(verified.bones, 3u + 2u);
+  EXPECT_EQ(verified.compared_bones, 3u + 2u);
 }
 
 TEST_F(OneRecording, WhatCannotBeReplayedIsRefused) {
@@ -250,16 +251,16 @@ TEST_F(OneRecording, WhatCannotBeReplayedIsRefused) {
 TEST_F(OneRecording, TheSameMotionGoesThroughAnotherAlgorithm) {
   const Recording recording = read_recording(folder_ / "a.h5");
   Replay replay;
-  replay.as = [](RunDescription run) {
+  replay.transform_description = [](RunDescription run) {
     set_session_settings(run, settings_of_all(algorithm_named("line-proxy")), 0);
     return run;
   };
   bool begun = false;
-  replay.begun = [&](const SessionStart& start, const MillingSession&) {
+  replay.on_session = [&](const SessionStart& start, const MillingSession&) {
     begun = start.run.algorithm == "line-proxy";
   };
   std::size_t ticks = 0, other = 0;
-  replay.tick = [&](const TickRecord& recorded, const TickRecord& now) {
+  replay.on_tick = [&](const TickRecord& recorded, const TickRecord& now) {
     EXPECT_EQ(recorded.X_WD.position_mm, now.X_WD.position_mm);
     other += recorded.wrench.force_N != now.wrench.force_N ? 1u : 0u;
     return ++ticks < 240;

@@ -217,7 +217,7 @@ void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) 
   if (spindle_on) no_go_.look(step.X_WT.position_mm, mill_.by_label());
   reaction_.follow(step.X_WT, step.burr_force_W_N, cut.removed_mm3, dt_s);
   last_change_ = cut.change;
-  // Nothing is written while nothing is milled: then another thread may read it (HapticThread::hold_bone).
+  // Nothing is written while nothing is milled: then another thread may read it (HapticThread::freeze_bone).
   if (cut.removed_mm3 > 0) removed_mm3_ += cut.removed_mm3;
   if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);
 }

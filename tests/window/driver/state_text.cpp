@@ -118,7 +118,7 @@ std::string state_text(const std::string& name, const WindowContents& window) {
   lines.add("device", hardware != nullptr ? hardware->capabilities().name : simulation.holder.name);
   lines.add("device_fault", hardware != nullptr ? hardware->report().complaint() : "");
   lines.add("unsaved", simulation.autosave.unsaved(milling));
-  lines.add("recording", milling.recording());
+  lines.add("recording", milling.is_recording());
   const auto recording_s = files.recording_s(simulation);
   lines.add("badge", recording_s ? recording_text(*recording_s) : "");
   lines.add("last_recording", files.last_recording().string());

@@ -53,9 +53,9 @@ TEST(Percentile, EndsAreTheLeastAndTheGreatest) {
   EXPECT_EQ(percentile({}, 0.5), 0);
 }
 
-TEST(HeldRate, OnlyWhatIsLongerThanATickCosts) {
+TEST(SustainedRate, OnlyWhatIsLongerThanATickCosts) {
   const auto rate_of = [](std::initializer_list<double> busy_us, double period_us) {
-    HeldRate rate(period_us);
+    SustainedRate rate(period_us);
     for (const double busy : busy_us) rate.add(busy);
     return rate.rate_hz();
   };

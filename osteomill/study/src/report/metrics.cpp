@@ -196,7 +196,7 @@ RunMetrics run_metrics(const Recording& recording, std::size_t first) {
   std::vector<bool> touches, shaft_touches;
   std::vector<double> step_us, tick_us;
   double contacts = 0, cutting_s = 0;
-  HeldRate held(1e6 * recording.description.tick_period_s);
+  SustainedRate held(1e6 * recording.description.tick_period_s);
   for (const TickRecord& record : records) {
     force_N.push_back(record.wrench.force_N);
     torque_Nmm.push_back(record.wrench.torque_Nmm);

@@ -41,7 +41,7 @@ std::string text_of(const AlgorithmDescription& algorithm, const Resolution& res
 
 struct Times {
   std::vector<double> step_us;
-  HeldRate held;
+  SustainedRate held;
   int ticks_before = 0;
   void add(const TickRecord& record) {
     step_us.push_back(record.compute_us);

@@ -101,12 +101,13 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
     if (!pictures.can_be_had())
       run.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
     paths.push_back(folder / recording_name(plan, run.phase));
-    Recorder recorder(paths.back(), run,
-                      first ? Recorder::Begins::with_the_recording : Recorder::Begins::when_told,
-                      Recorder::Unfinished::removed);
-    if (const std::string kept = recorder.kept(); !kept.empty()) events.warn(kept);
+    Recorder recorder(
+        paths.back(), run,
+        first ? Recorder::FirstSession::begins_at_once : Recorder::FirstSession::begins_when_announced,
+        Recorder::UnfinishedFile::remove);
+    if (const std::string kept = recorder.leftover_note(); !kept.empty()) events.warn(kept);
     // The session goes on from phase to phase.
-    if (!first) recorder.begin_session(0, {.goes_on_from = paths.front().filename().string()});
+    if (!first) recorder.begin_session(0, {.continues_from = paths.front().filename().string()});
     for (const TickRecord& record : phase.records) recorder.push_waiting(record);
     if (first) {
       for (const std::string_view name : {kPictureBefore, kPictureAfter, kPictureAlong})

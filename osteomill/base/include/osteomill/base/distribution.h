@@ -31,9 +31,9 @@ Distribution distribution_of(std::vector<double> values);
 /// Computes what `rate_hz` means wherever osteomill writes it: the rate that a loop with the period
 /// `period_us` reaches when its ticks are busy for the times that were added. A tick that is done early waits
 /// for the end of its period, so the rate is at most the loop's own. Adding is safe in the haptic tick.
-class HeldRate {
+class SustainedRate {
  public:
-  explicit HeldRate(double period_us = 1000) : period_us_(period_us) {}
+  explicit SustainedRate(double period_us = 1000) : period_us_(period_us) {}
   void add(double busy_us) {
     sum_us_ += std::max(period_us_, busy_us);
     count_ += 1;

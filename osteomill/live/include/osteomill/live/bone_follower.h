@@ -33,7 +33,7 @@ class BoneFollower {
   ~BoneFollower();
 
   /// Puts what was milled of this bone at another time into bone and copy, as one cut. Before the first tick.
-  void begin_with(const std::vector<DensityBlock>& milled);
+  void load_milled(const std::vector<DensityBlock>& milled);
 
   /// Hands over what a tick changed of the bone. The haptic thread calls it at every tick, with an empty
   /// change too: a part of what is to be copied may have been left to later ticks. Safe in the haptic tick:
@@ -60,7 +60,7 @@ class BoneFollower {
   /// Returns how many cuts can be taken back.
   std::size_t cuts() const;
   /// Returns whether anything was milled since the beginning.
-  bool touched() const;
+  bool is_touched() const;
   /// Returns every brick that was ever milled, as it is now.
   std::vector<DensityBlock> touched_bricks() const;
   /// Returns by how much densities have fallen since the beginning, summed over each label's voxels, by its
@@ -68,7 +68,7 @@ class BoneFollower {
   std::vector<double> drops_by_label() const;
 
   /// Puts what has arrived into the copy. Returns true if nothing is left to come, so that the copy is the
-  /// bone, provided that the bone is held (HapticThread::hold_bone).
+  /// bone, provided that the bone is held (HapticThread::freeze_bone).
   bool catch_up();
 
   /// The copy, made ready to become the bone.
@@ -80,11 +80,11 @@ class BoneFollower {
     std::optional<BoneDensities> densities;
   };
   /// Returns the copy with the last cut taken back. Call this, and each of the next two, while the bone is
-  /// held and the copy is caught up; from then until `swap` or `give_up` no thread writes into either. The
-  /// surface shows the change at once; the cut is gone with `swap`.
+  /// held and the copy is caught up; from then until `swap` or `discard_next` no thread writes into either.
+  /// The surface shows the change at once; the cut is gone with `swap`.
   NextBone without_last_cut();
   /// Returns the copy as the bone was at the beginning.
-  NextBone as_at_the_beginning();
+  NextBone without_all_cuts();
   /// Returns the copy with another isovalue. Voxels that milling had emptied (cut down to `surroundings`)
   /// stay empty. Throws std::invalid_argument if the isovalue is not finite.
   NextBone with_isovalue(double isovalue, double surroundings, double removed_mm3);
@@ -92,7 +92,7 @@ class BoneFollower {
   /// there are never more than the two.
   void swap();
   /// Makes the copy again what the bone is.
-  void give_up();
+  void discard_next();
 
  private:
   struct Parts;

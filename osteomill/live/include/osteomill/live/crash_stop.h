@@ -35,7 +35,7 @@ class CrashStop {
   /// Gives the calling thread a stack for signal handlers, in case its own overflows, unless it has one; the
   /// thread that makes this object and every haptic thread get one. When the stack of a thread without one
   /// overflows, no zero is sent.
-  static void give_this_thread_a_stack();
+  static void install_signal_stack();
 
   /// Has all live devices sent zero until `engage`, and waits up to 50 ms until it has gone out. For a
   /// signal handler of the program's own; any thread, with or without an object of this class.
@@ -54,20 +54,20 @@ class DrivenDevice {
   DrivenDevice(const DrivenDevice&) = delete;
   DrivenDevice& operator=(const DrivenDevice&) = delete;
 
-  /// Returns true when the haptic thread is to send zero and call `stopped`. Asked at every tick; real-time
-  /// safe.
-  bool end_asked() const { return end_asked_.load(std::memory_order_acquire); }
+  /// Returns true when the haptic thread is to send zero and call `note_stopped`. Asked at every tick;
+  /// real-time safe.
+  bool is_stop_requested() const { return stop_requested_.load(std::memory_order_acquire); }
   /// The haptic thread begins to drive the device, or has sent zero for the last time.
-  void started() { is_stopped_.store(false, std::memory_order_release); }
-  void stopped() { is_stopped_.store(true, std::memory_order_release); }
+  void note_started() { is_stopped_.store(false, std::memory_order_release); }
+  void note_stopped() { is_stopped_.store(true, std::memory_order_release); }
 
  private:
   friend struct DrivenDevices;
   Device& device_;
-  std::atomic<bool> end_asked_{false};
+  std::atomic<bool> stop_requested_{false};
   std::atomic<bool> is_stopped_{true};
   // Handlers only read it, so that it stays where it is.
-  struct Place* place_;
+  struct DeviceSlot* slot_;
 };
 
 }  // namespace osteomill

@@ -57,17 +57,17 @@ class HapticThread {
   void set_paused(bool paused);
   /// Holds the bone or lets it go. While held, nothing is milled, though everything is felt, and other
   /// threads may read the volume.
-  void hold_bone(bool held);
+  void freeze_bone(bool held);
   /// Goes on with another algorithm, tool, setting or bone, prepared beforehand. Returns the state in which
   /// that began.
   SessionHandover replace(std::unique_ptr<MillingSession> session);
   /// Brings the tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which
   /// nothing is milled, so that the hand feels no step; then the device is put there (Device::put_at), and
-  /// the algorithm begins again. One at a time: does nothing while `placing`.
+  /// the algorithm begins again. One at a time: does nothing while `is_placing`.
   void place(const Pose& X_WD);
-  bool placing() const { return placing_.load(std::memory_order_acquire); }
+  bool is_placing() const { return placing_.load(std::memory_order_acquire); }
   /// Replaces the listener; an empty one for none.
-  void listen(TickListener listener);
+  void set_listener(TickListener listener);
 
   /// Returns the state after the last tick.
   const LiveState& state() { return state_.read(); }
@@ -77,10 +77,10 @@ class HapticThread {
   TimingSummary timing() const { return timing_.summary(); }
   /// Returns in one line what real-time scheduling the system refused; empty if nothing. Valid once started.
   const std::string& refused_real_time() const { return refused_real_time_; }
-  bool running() const { return running_.load(std::memory_order_acquire); }
+  bool is_running() const { return running_.load(std::memory_order_acquire); }
   /// Returns what ended the session by itself, as the device threw it; null while it runs, and if `stop` or a
   /// signal ended it. For the commanding thread.
-  std::exception_ptr failure() const { return running() ? nullptr : failure_; }
+  std::exception_ptr failure() const { return is_running() ? nullptr : failure_; }
 
   /// Return the session now in use, and how many were replaced before it. Its volume's densities may be read
   /// only while held, or while not running.
@@ -88,8 +88,8 @@ class HapticThread {
   std::uint32_t session_number() const { return session_number_; }
 
  private:
-  void between_ticks(const std::function<void()>& command);
-  void take_command();
+  void run_between_ticks(const std::function<void()>& command);
+  void run_pending_command();
   void run(const std::stop_token& stop) noexcept;
   void tick_until(const std::stop_token& stop);
   void place_when_at_rest();
@@ -107,7 +107,7 @@ class HapticThread {
   TickListener listener_;
   bool spindle_ = false;
   bool paused_ = false;
-  bool bone_held_ = false;
+  bool bone_frozen_ = false;
   double time_s_ = 0;
   std::uint32_t session_number_ = 0;
   Pose X_WD_place_;

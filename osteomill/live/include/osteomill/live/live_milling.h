@@ -48,7 +48,7 @@ class LiveMilling {
   /// Starts the haptic thread, as HapticThread::start does, failures included.
   void start();
   void stop() { live_.stop(); }
-  bool running() const { return live_.running(); }
+  bool is_running() const { return live_.is_running(); }
   /// Returns the exception with which the device ended the milling (HapticThread::failure).
   std::exception_ptr failure() const { return live_.failure(); }
 
@@ -57,7 +57,7 @@ class LiveMilling {
   void update();
   /// Returns when nothing is being prepared any more. Throws as `update` does.
   void finish_preparing();
-  bool preparing() const { return preparation_.valid(); }
+  bool is_preparing() const { return preparation_.valid(); }
 
   /// Switching it on begins another cut, which `undo` takes back by itself.
   void set_spindle(bool on);
@@ -65,7 +65,7 @@ class LiveMilling {
   void set_paused(bool paused) { live_.set_paused(paused); }
   /// Brings the tool and its device to a pose free of bone (HapticThread::place).
   void place(const Pose& X_WD) { live_.place(X_WD); }
-  bool placing() const { return live_.placing(); }
+  bool is_placing() const { return live_.is_placing(); }
   /// Begins to prepare another algorithm, tool or setting. Returns false, as do the functions below, if
   /// something is being prepared already: then it does nothing, and the caller asks again once that is in
   /// place.
@@ -87,16 +87,16 @@ class LiveMilling {
   /// Starts a recording, which goes on whatever is changed or taken back. Waits for what is being prepared.
   /// If ticks have run already, another session is prepared, so that the recording holds all that it takes to
   /// replay it, and its ticks begin with that session. Pictures, if `picture` is given, are taken now and at
-  /// the end. Returns a line on an unfinished recording that was there and is kept (Recorder::kept). Throws
-  /// InputError if the file cannot be written; then nothing is recorded. Nothing is recorded either if
+  /// the end. Returns a line on an unfinished recording that was there and is kept (Recorder::leftover_note).
+  /// Throws InputError if the file cannot be written; then nothing is recorded. Nothing is recorded either if
   /// `update` or `finish_preparing` throws because that session cannot be prepared.
   std::string start_recording(const std::filesystem::path& path, RunDescription description,
                               TakePicture picture = {});
   /// Ends the recording and returns its name. Throws as Recorder::close does.
   std::filesystem::path stop_recording();
-  bool recording() const { return recorder_ != nullptr; }
+  bool is_recording() const { return recorder_ != nullptr; }
   /// Returns whether writing has failed (a full disk); stop_recording says why. Milling goes on.
-  bool recording_failed() const { return recorder_ && recorder_->failed(); }
+  bool has_recording_failed() const { return recorder_ && recorder_->failed(); }
 
   const LiveState& state() { return live_.state(); }
   /// Every tick in turn (HapticThread::next_record).
@@ -123,13 +123,13 @@ class LiveMilling {
   };
   using MakeBone = std::function<BoneFollower::NextBone()>;
 
-  void listen();
+  void set_listener();
   bool prepare(const MillingSetup& setup, MakeBone make_bone);
   void catch_up();
   void install_prepared();
-  void forget_recorder_without_session();
-  void set_as_now(RunDescription& run) const;
-  void tell_recorder(const SessionHandover& handover);
+  void drop_recorder_without_session();
+  void describe_current(RunDescription& run) const;
+  void record_session_start(const SessionHandover& handover);
 
   // The number as the algorithm was prepared: the points in use belong to the haptic thread, and change.
   int sample_points_;

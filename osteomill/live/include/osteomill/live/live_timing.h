@@ -82,7 +82,8 @@ struct TickTimes {
 /// Figures of how well a live session keeps its time.
 struct TimingSummary {
   std::uint64_t ticks = 0;
-  /// The rate that the ticks' work allows a loop of this period (HeldRate), whether they woke in time or not.
+  /// The rate that the ticks' work allows a loop of this period (SustainedRate), whether they woke in time or
+  /// not.
   double rate_hz = 0;
   /// Counted by the clock: over the whole time, and over the last second that was completed (0 before).
   double ticks_per_s = 0;
@@ -116,7 +117,7 @@ class LiveTiming {
   std::atomic<double> rate_hz_{0};
   std::atomic<double> recent_ticks_per_s_{0};
   // The adding thread's own.
-  HeldRate held_;
+  SustainedRate sustained_;
   RecentRate recent_;
 };
 

@@ -66,7 +66,7 @@ class Hdf5Handle {
 Hdf5Handle access_without_locks();
 
 /// Greater numbers overflow in sums of squares, and are refused where they are read.
-inline constexpr double kMostReal = 1e12;
+inline constexpr double kMaxReal = 1e12;
 
 /// HDF5's name for what stands in memory.
 template <typename Value>
@@ -104,7 +104,7 @@ class Attributes {
   void replace(const std::string& name, std::uint64_t value) const;
 
   void get(const std::string& name, std::string& text) const;
-  /// Finite and up to kMostReal, as all reals.
+  /// Finite and up to kMaxReal, as all reals.
   void get(const std::string& name, double& value) const { get_reals(name, {&value, 1}); }
   void get(const std::string& name, std::uint64_t& value) const;
   void get(const std::string& name, Eigen::Ref<Vec3> value) const { get_reals(name, {value.data(), 3}); }

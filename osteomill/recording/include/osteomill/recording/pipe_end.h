@@ -21,15 +21,15 @@ namespace osteomill {
 /// by the same calls of `pass` in the same order.
 class PipeEnd {
  public:
-  enum class Does : unsigned char { put, take };
+  enum class Direction : unsigned char { write, read };
 
   /// Owns the descriptor. No text or list of more bytes is taken.
-  PipeEnd(int descriptor, Does does, std::uintmax_t max_bytes);
+  PipeEnd(int descriptor, Direction direction, std::uintmax_t max_bytes);
   ~PipeEnd();
   PipeEnd(const PipeEnd&) = delete;
   PipeEnd& operator=(const PipeEnd&) = delete;
 
-  bool takes() const { return does_ == Does::take; }
+  bool is_reading() const { return direction_ == Direction::read; }
   /// Throws std::runtime_error if the other end has gone.
   void pass_bytes(void* data, std::size_t count);
   /// Passes how many there are of things of this size. Throws std::runtime_error for too many.
@@ -39,7 +39,7 @@ class PipeEnd {
 
  private:
   std::FILE* file_;
-  Does does_;
+  Direction direction_;
   std::uintmax_t max_bytes_;
 };
 
@@ -99,7 +99,7 @@ void pass(PipeEnd& pipe, std::optional<T>& value) {
 inline void pass(PipeEnd& pipe, std::variant<double, std::string>& value) {
   bool is_text = value.index() == 1;
   pass(pipe, is_text);
-  if (pipe.takes() && is_text) value = std::string();
+  if (pipe.is_reading() && is_text) value = std::string();
   std::visit([&](auto& held) { pass(pipe, held); }, value);
 }
 

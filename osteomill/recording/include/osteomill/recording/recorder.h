@@ -19,8 +19,8 @@ namespace osteomill {
 /// that is killed leaves a NAME.part.h5 that read_recording opens, less the last second at the most, and that
 /// other HDF5 programs open too (hence the extension stays last). A recorder destroyed without `close`, as
 /// when an exception passes, leaves the same, with nothing missing. The next recording of that name renames
-/// it to NAME.part-1.h5, or the first number that is free (`kept`); one that is still being written by
-/// another program is left alone, and the recorder cannot be made.
+/// it to NAME.part-1.h5, or the first number that is free (`leftover_note`); one that is still being written
+/// by another program is left alone, and the recorder cannot be made.
 ///
 /// If several sessions follow each other on a bone (HapticThread::replace), `begin_session` is told of each;
 /// the number in a record names its session.
@@ -33,16 +33,17 @@ class Recorder {
 
   /// When the first session's records are written: at once, for a session that begins with the recording, or
   /// from when `begin_session` says what it began from.
-  enum class Begins : unsigned char { with_the_recording, when_told };
+  enum class FirstSession : unsigned char { begins_at_once, begins_when_announced };
 
   /// The fate of the file if the recorder is destroyed without `close`. It is removed in any case if nothing
-  /// was recorded yet; `removed` is for runs that can simply be run again.
-  enum class Unfinished : unsigned char { left, removed };
+  /// was recorded yet; `remove` is for runs that can simply be run again.
+  enum class UnfinishedFile : unsigned char { keep, remove };
 
   /// Throws InputError, naming the file, if it cannot be created or another program writes it, and
   /// std::invalid_argument if the description cannot be stored (write_description).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
-           Begins begins = Begins::with_the_recording, Unfinished unfinished = Unfinished::left);
+           FirstSession first_session = FirstSession::begins_at_once,
+           UnfinishedFile unfinished = UnfinishedFile::keep);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -60,7 +61,7 @@ class Recorder {
   void begin_session(std::uint32_t number, SessionStart start);
 
   /// Returns a line on the unfinished recording that was there and where it is kept; empty if there was none.
-  std::string kept() const;
+  std::string leftover_note() const;
 
   /// Returns how many records were lost. From any thread.
   std::uint64_t dropped() const noexcept;

@@ -23,7 +23,7 @@ struct SessionStart {
   std::vector<DensityBlock> bricks;
   /// If not empty, the session began in the recording of this name in the same folder, which ends where this
   /// one begins; the other fields mean nothing then.
-  std::string goes_on_from;
+  std::string continues_from;
 };
 
 /// A picture that belongs to a recording, as the bytes of a PNG file.
@@ -77,7 +77,7 @@ struct Recording {
 /// Splits a recording into one for each stretch in which algorithm, tool and settings stayed as they were (a
 /// cut taken back ends none), to be measured one by one. If there are several, their phases are their
 /// numbers.
-std::vector<Recording> in_stretches(Recording recording);
+std::vector<Recording> split_by_setup(Recording recording);
 
 /// Reads a recording that a Recorder wrote, or the unfinished one that a killed program left (`complete` is
 /// then false). Throws InputError, naming the file, if it is not HDF5, is no recording of a version that is
@@ -87,9 +87,9 @@ std::vector<Recording> in_stretches(Recording recording);
 /// read as it is. Sizes are held against the file's before memory is taken.
 Recording read_recording(const std::filesystem::path& path);
 
-/// Reads a recording that may go on from another one in its folder (SessionStart::goes_on_from): both as one,
-/// described as the first. Throws as read_recording.
-Recording read_with_what_came_before(const std::filesystem::path& path);
+/// Reads a recording that may go on from another one in its folder (SessionStart::continues_from): both as
+/// one, described as the first. Throws as read_recording.
+Recording read_recording_chain(const std::filesystem::path& path);
 
 /// Reads what write_start wrote. The file is no input of the program's (input_files.h): it may be written
 /// over.

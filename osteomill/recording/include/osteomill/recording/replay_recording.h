@@ -19,13 +19,13 @@ void require_made_with(const Recording& recording, const Volume& scan);
 /// The choices for running a recording again, and the functions that are told of it.
 struct Replay {
   /// Finds the algorithm that a name means.
-  std::function<const AlgorithmDescription*(std::string_view)> find = find_algorithm;
+  std::function<const AlgorithmDescription*(std::string_view)> find_algorithm = osteomill::find_algorithm;
   /// Returns the description as which each session is run, given its own. If empty, each is run as it was.
-  std::function<RunDescription(const RunDescription&)> as;
+  std::function<RunDescription(const RunDescription&)> transform_description;
   /// Is told of each session before its first tick; may be empty.
-  std::function<void(const SessionStart&, const MillingSession&)> begun;
+  std::function<void(const SessionStart&, const MillingSession&)> on_session;
   /// Is told of each tick, as it was and as it is now. Returns whether to go on.
-  std::function<bool(const TickRecord& recorded, const TickRecord& now)> tick;
+  std::function<bool(const TickRecord& recorded, const TickRecord& now)> on_tick;
 };
 
 /// Runs the recording's ticks again through the same code as any session's: what the device, its spindle and
@@ -46,14 +46,15 @@ struct Verification {
   /// The number of ticks that were the same, and that of those after which the bone was compared with the
   /// recording's.
   std::size_t ticks = 0;
-  std::size_t bones = 0;
+  std::size_t compared_bones = 0;
   std::optional<Difference> difference;
 };
 
 /// Replays the recording and returns whether it comes out again bit for bit: everything of every tick except
-/// times, and the bone. `told` is told how many ticks are done; may be empty. Throws as `replay_recording`.
+/// times, and the bone. `on_progress` is told how many ticks are done; may be empty. Throws as
+/// `replay_recording`.
 Verification verify_recording(const Volume& scan, const Recording& recording,
-                              const std::function<void(std::size_t ticks)>& told = {});
+                              const std::function<void(std::size_t ticks)>& on_progress = {});
 
 /// Mills the bone as the recording did: `volume` is the scan as it was when the recording began, and is
 /// afterwards as it was when the recording ended, density by density; its isovalue plays no part and stays.

@@ -18,7 +18,7 @@ struct RateRow {
   int points = 0;
   double step_us_median = 0;
   double step_us_p99 = 0;
-  /// The HeldRate of the ticks in a loop at 1000 Hz, as in the paper.
+  /// The SustainedRate of the ticks in a loop at 1000 Hz, as in the paper.
   double rate_hz = 0;
   /// The rate that the median step would allow with nothing else to do and nothing to wait for.
   double steps_per_s = 0;

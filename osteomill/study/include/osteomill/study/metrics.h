@@ -107,7 +107,7 @@ struct RunMetrics {
   Distribution step_us;
   /// The time of the tick's whole work (TickRecord::busy_us).
   Distribution tick_us;
-  /// HeldRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
+  /// SustainedRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
   double rate_hz = 0;
   ContactShares contact;
   /// Force and torque while in contact; not a number if the hand did not feel a force, or a torque, for long
