@@ -19,8 +19,8 @@
 
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/input_files.h"
-#include "osteomill/base/leftovers.h"
 #include "osteomill/base/run_program.h"
+#include "osteomill/base/signal_cleanup.h"
 #include "osteomill/base/work_progress.h"
 #include "osteomill/live/crash_stop.h"
 
@@ -195,7 +195,7 @@ int osteomill::app::run_osteomill(int argc, char** argv, WindowDriver* driver) {
   std::signal(SIGPIPE, SIG_IGN);
   // Before leftovers are, so that a signal that removes them goes on to the devices.
   const CrashStop crash_stop;
-  remove_leftovers_when_ended();
-  const KeepInputs keep_inputs;
+  install_signal_cleanup();
+  const InputProtection input_protection;
   return end_output(run(argc, argv, driver));
 }

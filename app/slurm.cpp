@@ -18,13 +18,13 @@ namespace {
 
 // Returns a program's output. Throws InputError with its last line if it fails.
 std::string output_of(const std::vector<std::string>& words) {
-  Said said = run_program(words);
-  if (said.exit_code == Said::kNoProgram)
+  ProcessResult result = run_program(words);
+  if (result.exit_code == ProcessResult::kNoProgram)
     throw InputError(words.front(),
                      "is not installed, and --on slurm submits with it (package slurm-client)");
-  while (!said.text.empty() && said.text.back() == '\n') said.text.pop_back();
-  if (said.exit_code == 0) return said.text;
-  std::string last = said.text.substr(said.text.rfind('\n') + 1);
+  while (!result.text.empty() && result.text.back() == '\n') result.text.pop_back();
+  if (result.exit_code == 0) return result.text;
+  std::string last = result.text.substr(result.text.rfind('\n') + 1);
   const std::string before = words.front() + ": error: ";
   if (last.starts_with(before)) last.erase(0, before.size());
   throw InputError(words.front(), last.empty() ? "failed" : last);

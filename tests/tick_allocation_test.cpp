@@ -40,11 +40,11 @@ class TickAllocation : public ::testing::TestWithParam<Case> {};
 
 // A no-go structure in the middle of bone of five other labels.
 std::shared_ptr<const LabelMap> labels_of(const GridGeometry& grid) {
-  std::vector<LabelMap::Place> places;
+  std::vector<LabelMap::LabelIndex> places;
   for (int k = 0; k < grid.dims[2]; ++k) {
     for (int j = 0; j < grid.dims[1]; ++j) {
       for (int i = 0; i < grid.dims[0]; ++i)
-        places.push_back(static_cast<LabelMap::Place>(std::abs(i - 32) < 3 ? 6 : 1 + i % 5));
+        places.push_back(static_cast<LabelMap::LabelIndex>(std::abs(i - 32) < 3 ? 6 : 1 + i % 5));
     }
   }
   std::vector<Label> labels(6);

@@ -67,7 +67,7 @@ RunDescription describe(const ScanOptions& scan, const LiveMilling& milling) {
 }  // namespace
 
 std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& folder) {
-  auto lock = FileLock::of(folder);
+  auto lock = FileLock::try_lock(folder);
   if (!lock) return std::nullopt;
   return AutosaveFile(folder, *std::move(lock));
 }

@@ -29,7 +29,7 @@ namespace {
 // By value, in its order: how many voxels have it and its place among the labels.
 struct FoundLabel {
   std::size_t voxels = 0;
-  LabelMap::Place place = 0;
+  LabelMap::LabelIndex place = 0;
 };
 using FoundLabels = std::map<int, FoundLabel>;
 
@@ -55,21 +55,21 @@ FoundLabels find_labels(const std::string& subject, const std::vector<float>& va
   }
   found.erase(0);
   if (found.empty()) throw InputError(subject, "labels nothing: all its voxels are 0");
-  LabelMap::Place place = 0;
+  LabelMap::LabelIndex place = 0;
   for (auto& [value, label] : found) label.place = ++place;
   return found;
 }
 
-std::vector<LabelMap::Place> places_of(const std::vector<float>& values, const FoundLabels& found) {
-  std::vector<LabelMap::Place> places;
+std::vector<LabelMap::LabelIndex> places_of(const std::vector<float>& values, const FoundLabels& found) {
+  std::vector<LabelMap::LabelIndex> places;
   places.reserve(values.size());
   float last = 0;
-  LabelMap::Place place = 0;
+  LabelMap::LabelIndex place = 0;
   for (const float value : values) {
     if (value != last) {
       last = value;
       const auto label = found.find(static_cast<int>(value));
-      place = label == found.end() ? LabelMap::Place{0} : label->second.place;
+      place = label == found.end() ? LabelMap::LabelIndex{0} : label->second.place;
     }
     places.push_back(place);
   }
@@ -77,7 +77,7 @@ std::vector<LabelMap::Place> places_of(const std::vector<float>& values, const F
 }
 
 // Hues by the golden angle, so that labels which follow each other differ.
-Colour colour_of_place(LabelMap::Place place) {
+Colour colour_of_place(LabelMap::LabelIndex place) {
   const double hue = std::fmod(0.09 + 0.381966 * place, 1.0);
   Colour colour{};
   for (std::size_t n = 0; n < 3; ++n) {

@@ -50,7 +50,7 @@ std::vector<LabelSummary> summarise_labels(const Volume& bone) {
   if (!map) return summaries;
   for (const Label& label : map->labels()) summaries.push_back({label});
   for_each(map->box(), [&](const VoxelIndex& v) {
-    const LabelMap::Place place = map->at(v);
+    const LabelMap::LabelIndex place = map->at(v);
     if (place == 0) return;
     LabelSummary& summary = summaries[place - 1u];
     ++summary.voxels;

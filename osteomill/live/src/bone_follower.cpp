@@ -53,7 +53,7 @@ struct BoneFollower::Parts {
       milled = copy.bone();
       where = std::exchange(arrived, {});
     }
-    milled->prepare_about(where);
+    milled->prefault_around(where);
   }
   // Other threads may read meanwhile; none marks what is to be meshed while one holds the lock.
   void mesh() {
@@ -148,7 +148,7 @@ std::vector<double> BoneFollower::drops_by_label() const {
   for (const auto& [place, first] : parts_->copy.history().original_bricks()) {
     const float* before = first.densities.data();
     for_each({first.first, first.last()}, [&](const VoxelIndex& v) {
-      const LabelMap::Place label = bone.labels()->at(v);
+      const LabelMap::LabelIndex label = bone.labels()->at(v);
       if (label != 0) drops[label] += static_cast<double>(*before) - static_cast<double>(bone.grid()[v]);
       ++before;
     });

@@ -39,7 +39,7 @@ std::shared_ptr<Volume> ball_of_bone() {
   auto bone = std::make_shared<Volume>(testing_support::shape_volume(
       testing_support::centred_cube(51, 0.25), testing_support::ball(Vec3::Zero(), 5.0)));
   // Its left half, and its right.
-  std::vector<LabelMap::Place> places;
+  std::vector<LabelMap::LabelIndex> places;
   for (std::size_t n = 0; n < bone->geometry().voxel_count(); ++n) places.push_back(n % 51 < 25 ? 1 : 2);
   const GridGeometry& grid = bone->geometry();
   bone->set_labels(

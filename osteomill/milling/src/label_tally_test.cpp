@@ -22,7 +22,7 @@ TEST(LabelTally, TellsOfEveryLabelInItsTurn) {
   for (int tick = 0; tick < 50; ++tick) {
     for (int label = 0; label < 9 && tick < 40; ++label) {
       const double removed_mm3 = 0.25 * label + tick;
-      tally.add(static_cast<LabelMap::Place>(label), removed_mm3);
+      tally.add(static_cast<LabelMap::LabelIndex>(label), removed_mm3);
       if (label > 0) added += removed_mm3;
     }
     bool ended = false;
@@ -50,7 +50,7 @@ double cap_mm3(double radius_mm, double z) {
 TEST(BurrMill, SharesOutACarvedBallAmongLabelsAsGeometryDoes) {
   constexpr double kRadius_mm = 1.5, kPlane_mm = 0.4;
   const GridGeometry grid = centred_cube(61, 0.1);
-  std::vector<LabelMap::Place> places;
+  std::vector<LabelMap::LabelIndex> places;
   for (int k = 0; k < 61; ++k) {
     const double z = grid.world_from_voxel(VoxelIndex{0, 0, k}).z();
     places.insert(places.end(), 61 * 61, z > kPlane_mm + 0.05 ? 2 : z > -0.1 ? 0 : 1);

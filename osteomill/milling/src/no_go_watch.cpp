@@ -30,7 +30,7 @@ void NoGoWatch::look(const Vec3& burr_centre_W, LabelTally& tally) const noexcep
     return;
   }
   for (const Vec3& point_mm : points_mm_) {
-    const LabelMap::Place label = labels_->nearest_to(burr_centre_W + point_mm);
+    const LabelMap::LabelIndex label = labels_->nearest_to(burr_centre_W + point_mm);
     if (label != 0 && labels_->label(label).no_go) tally.add(label, 0);
   }
 }

@@ -16,7 +16,7 @@ constexpr double kRadius_mm = 1.5;
 // Label 1 is allowed, 2 is not: a ball of 0.6 mm in the middle.
 std::shared_ptr<const LabelMap> nerve_in_bone() {
   const GridGeometry grid = centred_cube(41, 0.25);
-  std::vector<LabelMap::Place> places;
+  std::vector<LabelMap::LabelIndex> places;
   for (int k = 0; k < 41; ++k) {
     for (int j = 0; j < 41; ++j) {
       for (int i = 0; i < 41; ++i)

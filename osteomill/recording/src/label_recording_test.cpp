@@ -20,7 +20,7 @@ RunDescription with_labels() {
 // Every third tick cuts, some of them two labels.
 TickRecord cutting_tick(int n) {
   TickRecord record = sample_record(n);
-  if (n % 3 == 0) record.label_cuts[0] = {static_cast<LabelMap::Place>(1 + n % 2), 0.1 * n};
+  if (n % 3 == 0) record.label_cuts[0] = {static_cast<LabelMap::LabelIndex>(1 + n % 2), 0.1 * n};
   if (n % 9 == 0) record.label_cuts[1] = {3, 0};
   return record;
 }

@@ -129,7 +129,7 @@ void put_cut(const Hdf5File& recording, const std::vector<Label>& labels, double
   if (label == labels.end() || free == record.label_cuts.end()) {
     recording.refuse("has a cut of a label that cannot be");
   }
-  *free = {static_cast<LabelMap::Place>(label - labels.begin() + 1), removed_mm3};
+  *free = {static_cast<LabelMap::LabelIndex>(label - labels.begin() + 1), removed_mm3};
 }
 
 // Puts the cuts of labels into the records of their ticks.

@@ -16,7 +16,7 @@
 #include "osteomill/base/atomic_file.h"
 #include "osteomill/base/file_lock.h"
 #include "osteomill/base/input_error.h"
-#include "osteomill/base/leftovers.h"
+#include "osteomill/base/signal_cleanup.h"
 #include "osteomill/base/spsc_queue.h"
 
 #include "recording_file.h"
@@ -56,9 +56,9 @@ struct Recorder::Impl {
         path(file_behind(path_)),
         part(file_behind(unfinished_recording_path(path))),
         kept(set_aside(part)),
-        held(FileLock::of_new_file(part)),
+        held(FileLock::create_locked(part)),
         file(part, description) {
-    if (unfinished == UnfinishedFile::remove) leftover.emplace(part);
+    if (unfinished == UnfinishedFile::remove) signal_cleanup.emplace(part);
     if (first_session == FirstSession::begins_at_once) {
       file.begin_session({}, 0);
       session = 0;
@@ -152,7 +152,7 @@ struct Recorder::Impl {
   // Until it has its name.
   std::optional<FileLock> held;
   RecordingFile file;
-  std::optional<Leftover> leftover;
+  std::optional<SignalCleanup> signal_cleanup;
   SpscQueue<TickRecord> queue{kCapacity};
   // The writing thread's: taken from the queue and not yet written, and of which session the last one is.
   std::vector<TickRecord> rows;

@@ -41,9 +41,9 @@ std::optional<double> median(const ForEach& for_each) {
   std::size_t before = all / 2;
   // In which half rank the wanted one lies, and how many of that come before it.
   const auto find = [&] {
-    std::uint32_t place = 0;
-    for (; before >= counts[place]; ++place) before -= counts[place];
-    return place;
+    std::uint32_t half = 0;
+    for (; before >= counts[half]; ++half) before -= counts[half];
+    return half;
   };
   const std::uint32_t upper = find();
   counts.assign(counts.size(), 0);

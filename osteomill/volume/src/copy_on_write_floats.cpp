@@ -95,7 +95,7 @@ class CopyOnWriteFloats::Original {
   int file_;
 };
 
-RowLayout RowLayout::apart(std::size_t row_length, std::size_t slice_rows, std::size_t slices) {
+RowLayout RowLayout::with_padding(std::size_t row_length, std::size_t slice_rows, std::size_t slices) {
   constexpr std::size_t kLineFloats = 16;
   // Sets of a first-level cache of 32 KiB; an odd count of lines goes through all of them.
   constexpr std::size_t kSets = 64;
@@ -159,7 +159,7 @@ bool CopyOnWriteFloats::operator==(const CopyOnWriteFloats& other) const {
   return std::equal(values_, values_ + size_, other.values_, other.values_ + other.size_);
 }
 
-void CopyOnWriteFloats::prepare(std::size_t first, std::size_t last) {
+void CopyOnWriteFloats::prefault(std::size_t first, std::size_t last) {
   const std::size_t end = last / kPageFloats + 1;
   const auto made = [&](std::size_t page) {
     return std::atomic_ref(written_[page]).load(std::memory_order_relaxed) != 0;

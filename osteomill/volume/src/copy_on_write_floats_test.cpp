@@ -25,7 +25,7 @@ std::vector<float> ascending(std::size_t count) {
 }
 
 CopyOnWriteFloats dense(std::vector<float> values) {
-  const RowLayout layout = RowLayout::apart(values.size(), 1, 1);
+  const RowLayout layout = RowLayout::with_padding(values.size(), 1, 1);
   return CopyOnWriteFloats(std::move(values), layout);
 }
 
@@ -35,13 +35,13 @@ TEST(CopyOnWriteFloats, HoldsWhatItWasGiven) {
     const CopyOnWriteFloats floats = dense(values);
     EXPECT_TRUE(std::equal(values.begin(), values.end(), floats.data())) << count;
   }
-  EXPECT_TRUE(CopyOnWriteFloats({}, RowLayout::apart(0, 1, 1)).empty());
+  EXPECT_TRUE(CopyOnWriteFloats({}, RowLayout::with_padding(0, 1, 1)).empty());
 }
 
 TEST(RowLayout, GivesNeighbouringRowsSetsOfTheCacheToThemselvesWhateverTheScan) {
   constexpr std::size_t kLine = 16, kSets = 64;
   for (const std::size_t width : {64u, 65u, 100u, 192u, 256u, 511u, 512u, 1024u}) {
-    const RowLayout layout = RowLayout::apart(width, width, 20);
+    const RowLayout layout = RowLayout::with_padding(width, width, 20);
     EXPECT_GE(layout.row_stride, width);
     EXPECT_LE(layout.row_stride, width + 2 * kLine);
     EXPECT_GE(layout.slice_stride, width * layout.row_stride);
@@ -60,13 +60,13 @@ TEST(RowLayout, GivesNeighbouringRowsSetsOfTheCacheToThemselvesWhateverTheScan) 
 }
 
 TEST(RowLayout, OfThinScansHasNoGaps) {
-  EXPECT_EQ(RowLayout::apart(2, 2, 10'000'000).size(), 40'000'000u);
-  EXPECT_EQ(RowLayout::apart(512, 8, 512).size(), 512u * 8 * 512);
+  EXPECT_EQ(RowLayout::with_padding(2, 2, 10'000'000).size(), 40'000'000u);
+  EXPECT_EQ(RowLayout::with_padding(512, 8, 512).size(), 512u * 8 * 512);
 }
 
 TEST(CopyOnWriteFloats, TakesRowsApartAndLeavesZerosBetween) {
   const std::vector<float> values = ascending(2 * 70 * 100);
-  const RowLayout layout = RowLayout::apart(100, 70, 2);
+  const RowLayout layout = RowLayout::with_padding(100, 70, 2);
   const CopyOnWriteFloats floats(values, layout);
   std::vector<float> expected(layout.size());
   for (std::size_t row = 0; row < 2 * 70; ++row) {
@@ -119,7 +119,7 @@ TEST(CopyOnWriteFloats, ACopyOutlivesWhatItWasCopiedFrom) {
 TEST(CopyOnWriteFloats, PreparingChangesNothingAndSharesNothingWritten) {
   CopyOnWriteFloats first = dense(ascending(20'000));
   const CopyOnWriteFloats before = first;
-  std::thread other([&] { first.prepare(0, 19'999); });
+  std::thread other([&] { first.prefault(0, 19'999); });
   for (std::size_t n = 0; n < 20'000; n += 3) first.set(n, -1);
   other.join();
   for (std::size_t n = 0; n < 20'000; ++n) {

@@ -10,7 +10,7 @@ DensityBlock::DensityBlock(const DensityGrid& grid, const VoxelIndex& first_) no
   for (int k = first.k; k <= inside.last.k; ++k) {
     for (int j = first.j; j <= inside.last.j; ++j) {
       const VoxelIndex row{first.i, j, k};
-      std::copy_n(grid.address_of(row), inside.last.i - first.i + 1, &densities[place_of(row)]);
+      std::copy_n(grid.address_of(row), inside.last.i - first.i + 1, &densities[index_of(row)]);
     }
   }
 }

@@ -19,8 +19,8 @@ constexpr double kAhead_mm = 0.5;
 
 RowLayout layout_of(const GridGeometry& geometry) {
   const auto& [i, j, k] = geometry.dims;
-  return RowLayout::apart(static_cast<std::size_t>(i), static_cast<std::size_t>(j),
-                          static_cast<std::size_t>(k));
+  return RowLayout::with_padding(static_cast<std::size_t>(i), static_cast<std::size_t>(j),
+                                 static_cast<std::size_t>(k));
 }
 
 // Null if all have a density.
@@ -62,7 +62,7 @@ DensityGrid::DensityGrid(const GridGeometry& geometry, std::vector<float> densit
   }
 }
 
-void DensityGrid::prepare_about(const VoxelBox& changed) {
+void DensityGrid::prefault_around(const VoxelBox& changed) {
   if (changed.empty()) return;
   const auto grown = [&](double by_mm) {
     std::array<int, 3> by;
@@ -75,12 +75,12 @@ void DensityGrid::prepare_about(const VoxelBox& changed) {
         .intersected(geometry_.all_voxels());
   };
   const VoxelBox near = grown(kAhead_mm);
-  if (near.intersected(prepared_) == near) return;
+  if (near.intersected(prefaulted_) == near) return;
   // Twice as far, so that it is not due again with every voxel that the burr goes on.
-  prepared_ = grown(2 * kAhead_mm);
-  const auto& [first, last] = prepared_;
+  prefaulted_ = grown(2 * kAhead_mm);
+  const auto& [first, last] = prefaulted_;
   for (int k = first.k; k <= last.k; ++k) {
-    densities_.prepare(place(first.i, first.j, k), place(last.i, last.j, k));
+    densities_.prefault(offset_of(first.i, first.j, k), offset_of(last.i, last.j, k));
   }
 }
 

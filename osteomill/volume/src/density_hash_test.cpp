@@ -71,8 +71,8 @@ TEST(DensityHash, FingerprintsOfScansAndLabelMapsDiffer) {
   EXPECT_NE(as_read, fingerprint_of(scan.grid()));
 
   const GridGeometry& grid = scan.geometry();
-  const auto map_of = [&](int value, LabelMap::Place elsewhere = 0) {
-    std::vector<LabelMap::Place> places(grid.voxel_count(), elsewhere);
+  const auto map_of = [&](int value, LabelMap::LabelIndex elsewhere = 0) {
+    std::vector<LabelMap::LabelIndex> places(grid.voxel_count(), elsewhere);
     places[500] = 1;
     return LabelMap(std::vector<Label>{{value, "nerve"}}, grid, grid, places);
   };

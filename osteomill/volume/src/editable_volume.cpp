@@ -14,7 +14,7 @@ VoxelBox EditableVolume::swap(DensityBlock& block) {
   std::array<float, DensityBlock::kVoxels> densities;
   for (int k = inside.first.k; k <= inside.last.k; ++k) {
     for (int j = inside.first.j; j <= inside.last.j; ++j) {
-      float* kept = &block.densities[block.place_of({inside.first.i, j, k})];
+      float* kept = &block.densities[block.index_of({inside.first.i, j, k})];
       const float* before = bone_.grid().address_of({inside.first.i, j, k});
       const auto length = static_cast<std::size_t>(inside.last.i - inside.first.i + 1);
       if (std::memcmp(kept, before, length * sizeof(float)) == 0) continue;

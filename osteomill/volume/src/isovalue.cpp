@@ -184,12 +184,12 @@ Range range_of(const DensityGrid& grid) {
   return {static_cast<double>(min), static_cast<double>(max)};
 }
 
-bool touches(const DensityGrid& grid, double isovalue, std::size_t axis, int place) {
+bool touches(const DensityGrid& grid, double isovalue, std::size_t axis, int layer) {
   const auto& dims = grid.geometry().dims;
   const std::size_t across = (axis + 1) % 3, up = (axis + 2) % 3;
   long bone = 0;
   std::array<int, 3> v{};
-  v[axis] = place;
+  v[axis] = layer;
   for (v[across] = 0; v[across] < dims[across]; ++v[across])
     for (v[up] = 0; v[up] < dims[up]; ++v[up])
       bone += static_cast<double>(grid[{v[0], v[1], v[2]}]) > isovalue;
@@ -261,7 +261,7 @@ bool is_less_sharp(const Level& a, const Level& b) {
 
 // The least gradient on the way from a level, down or up, to one that is sharper than it.
 template <typename Way>
-double least_before_sharper(const Level& from, Way next, Way end) {
+double min_before_sharper(const Level& from, Way next, Way end) {
   const Way sharper =
       std::find_if(next, end, [&](const Level& level) { return level.gradient > from.gradient; });
   return next == sharper ? from.gradient : std::min_element(next, sharper, is_less_sharp)->gradient;
@@ -269,12 +269,12 @@ double least_before_sharper(const Level& from, Way next, Way end) {
 
 // Changes the order of the samples.
 std::vector<Boundary> boundaries_of(std::vector<Sample>& samples) {
-  constexpr double kProminence = 0.1, kLeastArea = 0.01;
+  constexpr double kProminence = 0.1, kMinArea = 0.01;
   // The rarest at both ends would only make the levels wide.
   const auto rare = static_cast<std::ptrdiff_t>(samples.size() / 2000);
-  const auto density_at = [&](std::ptrdiff_t place) {
-    std::nth_element(samples.begin(), samples.begin() + place, samples.end(), is_less_dense);
-    return samples[static_cast<std::size_t>(place)].density;
+  const auto density_at = [&](std::ptrdiff_t rank) {
+    std::nth_element(samples.begin(), samples.begin() + rank, samples.end(), is_less_dense);
+    return samples[static_cast<std::size_t>(rank)].density;
   };
   const double min = density_at(rare), max = density_at(std::ssize(samples) - 1 - rare);
   if (!(max > min)) return {};
@@ -291,16 +291,16 @@ std::vector<Boundary> boundaries_of(std::vector<Sample>& samples) {
   }
   area = blurred(area);
   gradient = blurred(gradient);
-  const double least_area = kLeastArea * *std::max_element(area.begin(), area.end());
+  const double min_area = kMinArea * *std::max_element(area.begin(), area.end());
   std::vector<Level> levels;
   for (std::size_t n = 0; n < kLevels; ++n) {
-    if (area[n] > 0 && area[n] >= least_area)
+    if (area[n] > 0 && area[n] >= min_area)
       levels.push_back({min + (static_cast<double>(n) + 0.5) * width, gradient[n] / area[n]});
   }
   std::vector<std::vector<Level>::const_iterator> sharpest;
   for (auto level = levels.cbegin(); level != levels.cend(); ++level) {
-    const double below = least_before_sharper(*level, std::make_reverse_iterator(level), levels.crend());
-    const double above = least_before_sharper(*level, std::next(level), levels.cend());
+    const double below = min_before_sharper(*level, std::make_reverse_iterator(level), levels.crend());
+    const double above = min_before_sharper(*level, std::next(level), levels.cend());
     if (level->gradient - std::max(below, above) >= kProminence * level->gradient && level->gradient > 0)
       sharpest.push_back(level);
   }
@@ -360,9 +360,9 @@ std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isova
   std::string faces;
   int count = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const int place : {0, grid.geometry().dims[axis] - 1}) {
-      if (!touches(grid, isovalue, axis, place)) continue;
-      faces += fmt::format("{}{} {}", count++ == 0 ? "" : ", ", place == 0 ? "first" : "last", "ijk"[axis]);
+    for (const int layer : {0, grid.geometry().dims[axis] - 1}) {
+      if (!touches(grid, isovalue, axis, layer)) continue;
+      faces += fmt::format("{}{} {}", count++ == 0 ? "" : ", ", layer == 0 ? "first" : "last", "ijk"[axis]);
     }
   }
   if (count == 0) return {};

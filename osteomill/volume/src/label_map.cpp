@@ -13,11 +13,11 @@ namespace osteomill {
 
 namespace {
 
-VoxelBox labelled_box(const GridGeometry& own, const std::vector<LabelMap::Place>& places) {
+VoxelBox labelled_box(const GridGeometry& own, const std::vector<LabelMap::LabelIndex>& indices) {
   VoxelBox box;
   std::size_t n = 0;
   for_each_with_progress(own.all_voxels(), [&](const VoxelIndex& v) {
-    if (places[n++] != 0) box.include(v);
+    if (indices[n++] != 0) box.include(v);
   });
   return box;
 }
@@ -53,51 +53,52 @@ std::string hex_colour(const Label& label) {
 }
 
 LabelMap::LabelMap(std::vector<Label> labels, const GridGeometry& scan, const GridGeometry& own,
-                   const std::vector<Place>& places)
+                   const std::vector<LabelIndex>& indices)
     : labels_(std::move(labels)), scan_(scan) {
   if (labels_.size() > kMaxLabels) throw std::invalid_argument("LabelMap: too many labels");
-  if (places.size() != own.voxel_count() ||
-      std::any_of(places.begin(), places.end(), [&](Place place) { return place > labels_.size(); })) {
-    throw std::invalid_argument("LabelMap: places that do not fit its grid or labels");
+  if (indices.size() != own.voxel_count() ||
+      std::any_of(indices.begin(), indices.end(), [&](LabelIndex index) { return index > labels_.size(); })) {
+    throw std::invalid_argument("LabelMap: indices that do not fit its grid or labels");
   }
   const VoxelBox own_voxels = own.all_voxels();
-  const auto at_nearest = [&](const VoxelIndex& v) -> Place {
+  const auto at_nearest = [&](const VoxelIndex& v) -> LabelIndex {
     const VoxelIndex in_own = nearest_voxel(own, scan.world_from_voxel(v));
-    return own_voxels.contains(in_own) ? places[row_major(own.dims, in_own.i, in_own.j, in_own.k)] : 0;
+    return own_voxels.contains(in_own) ? indices[row_major(own.dims, in_own.i, in_own.j, in_own.k)] : 0;
   };
-  for_each_with_progress(covered(scan, own, labelled_box(own, places)), [&](const VoxelIndex& v) {
-    const Place place = at_nearest(v);
-    if (place == 0) return;
+  for_each_with_progress(covered(scan, own, labelled_box(own, indices)), [&](const VoxelIndex& v) {
+    const LabelIndex index = at_nearest(v);
+    if (index == 0) return;
     box_.include(v);
-    if (label(place).no_go) no_go_box_.include(v);
+    if (label(index).no_go) no_go_box_.include(v);
   });
   if (box_.empty()) return;
   dims_ = box_.dims();
-  places_.reserve(cell_count(dims_));
-  for_each_with_progress(box_, [&](const VoxelIndex& v) { places_.push_back(at_nearest(v)); });
+  indices_.reserve(cell_count(dims_));
+  for_each_with_progress(box_, [&](const VoxelIndex& v) { indices_.push_back(at_nearest(v)); });
   WordHash hash;
   for (const VoxelIndex& corner : {box_.first, box_.last})
     for (const int n : {corner.i, corner.j, corner.k}) hash.add(static_cast<std::uint64_t>(n));
-  for (const Place place : places_) hash.add(place == 0 ? 0 : static_cast<std::uint64_t>(label(place).value));
+  for (const LabelIndex index : indices_)
+    hash.add(index == 0 ? 0 : static_cast<std::uint64_t>(label(index).value));
   fingerprint_ = hash.value();
 }
 
 std::vector<std::size_t> LabelMap::voxel_counts() const {
   std::vector<std::size_t> counts(labels_.size() + 1);
-  for (const Place place : places_) ++counts[place];
+  for (const LabelIndex index : indices_) ++counts[index];
   counts[0] = 0;
   return counts;
 }
 
-LabelMap::Place LabelMap::nearest_to(const Vec3& point_W) const noexcept {
+LabelMap::LabelIndex LabelMap::nearest_to(const Vec3& point_W) const noexcept {
   return at(nearest_voxel(scan_, point_W));
 }
 
-LabelMap::Place LabelMap::under_surface(const Vec3& point_W, const Vec3& normal_W) const noexcept {
+LabelMap::LabelIndex LabelMap::under_surface(const Vec3& point_W, const Vec3& normal_W) const noexcept {
   const double voxel_mm = scan_.spacing_mm.maxCoeff();
   for (const double voxels : {0.5, 0.0, 1.0, 1.5}) {
-    const Place place = nearest_to(point_W - voxels * voxel_mm * normal_W);
-    if (place != 0) return place;
+    const LabelIndex index = nearest_to(point_W - voxels * voxel_mm * normal_W);
+    if (index != 0) return index;
   }
   return 0;
 }

@@ -19,8 +19,8 @@ std::vector<Label> three_labels() {
 }
 
 // A shell with a core in it, in no particular place.
-std::vector<LabelMap::Place> shell_and_core(const GridGeometry& grid) {
-  std::vector<LabelMap::Place> places;
+std::vector<LabelMap::LabelIndex> shell_and_core(const GridGeometry& grid) {
+  std::vector<LabelMap::LabelIndex> places;
   for (int k = 0; k < grid.dims[2]; ++k) {
     for (int j = 0; j < grid.dims[1]; ++j) {
       for (int i = 0; i < grid.dims[0]; ++i) {
@@ -34,7 +34,7 @@ std::vector<LabelMap::Place> shell_and_core(const GridGeometry& grid) {
 
 TEST(LabelMap, OnTheScansOwnGridKeepsEveryVoxel) {
   const GridGeometry scan = centred_cube(21, 0.25);
-  const std::vector<LabelMap::Place> places = shell_and_core(scan);
+  const std::vector<LabelMap::LabelIndex> places = shell_and_core(scan);
   const LabelMap map(three_labels(), scan, scan, places);
   std::vector<std::size_t> counts(4);
   std::size_t n = 0;
@@ -66,7 +66,7 @@ TEST(LabelMap, OnAnotherGridEveryVoxelHasTheLabelOfTheNearest) {
   own.direction = quaternion_from_rotation_vector({-0.7, 0.1, 0.4}).toRotationMatrix();
   own.direction.col(0) = -own.direction.col(0);
   own.origin_mm = Vec3(0.21, -0.33, 0.17) - own.direction * own.spacing_mm.cwiseProduct(Vec3(5, 6, 4));
-  const std::vector<LabelMap::Place> places = shell_and_core(own);
+  const std::vector<LabelMap::LabelIndex> places = shell_and_core(own);
   const LabelMap map(three_labels(), scan, own, places);
   std::size_t labelled = 0;
   for (int k = 0; k < 17; ++k) {
@@ -74,7 +74,7 @@ TEST(LabelMap, OnAnotherGridEveryVoxelHasTheLabelOfTheNearest) {
       for (int i = 0; i < 17; ++i) {
         const Vec3 point_W = scan.world_from_voxel(VoxelIndex{i, j, k});
         double least = 1e300;
-        LabelMap::Place expected = 0;
+        LabelMap::LabelIndex expected = 0;
         std::size_t n = 0;
         for (int c = 0; c < own.dims[2]; ++c) {
           for (int b = 0; b < own.dims[1]; ++b) {
@@ -111,7 +111,7 @@ TEST(LabelMap, RefusesPlacesThatAreNoLabels) {
   const GridGeometry scan = centred_cube(2, 1);
   EXPECT_THROW(LabelMap(three_labels(), scan, scan, {0, 1, 2, 3, 4, 0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(LabelMap(three_labels(), scan, scan, {0, 1}), std::invalid_argument);
-  EXPECT_THROW(LabelMap(std::vector<Label>(256), scan, scan, std::vector<LabelMap::Place>(8)),
+  EXPECT_THROW(LabelMap(std::vector<Label>(256), scan, scan, std::vector<LabelMap::LabelIndex>(8)),
                std::invalid_argument);
 }
 

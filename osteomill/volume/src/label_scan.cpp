@@ -19,7 +19,7 @@ namespace osteomill {
 
 namespace {
 
-constexpr int kGreatestLabel = std::numeric_limits<std::int16_t>::max();
+constexpr int kMaxLabel = std::numeric_limits<std::int16_t>::max();
 
 // The different values of a grid, which are few whole numbers from 0 up.
 struct Values {
@@ -29,10 +29,10 @@ struct Values {
 };
 
 Values values_of(const DensityGrid& grid) {
-  Values values{std::vector<std::size_t>(kGreatestLabel + 1)};
+  Values values{std::vector<std::size_t>(kMaxLabel + 1)};
   const auto count_row = [&](std::span<const float> row) {
     for (const float value : row) {
-      if (!(value >= 0 && value <= kGreatestLabel && value == std::floor(value))) return false;
+      if (!(value >= 0 && value <= kMaxLabel && value == std::floor(value))) return false;
       values.different += values.counts[static_cast<std::size_t>(value)]++ == 0 ? 1 : 0;
       if (values.different > LabelMap::kMaxLabels + 1) return false;
     }

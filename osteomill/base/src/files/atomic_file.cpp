@@ -15,7 +15,7 @@
 
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/input_files.h"
-#include "osteomill/base/leftovers.h"
+#include "osteomill/base/signal_cleanup.h"
 #include "osteomill/base/temporary_folder.h"
 
 namespace osteomill {
@@ -52,7 +52,7 @@ bool is_device_or_pipe(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-void write_into(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+void write_through(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   // Opening a FIFO otherwise waits until another program reads it.
   const int reader_is_there = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (reader_is_there < 0)
@@ -79,17 +79,17 @@ void rename_to(const fs::path& from, const fs::path& target, const fs::path& pat
 }
 
 // An open folder, and the lock that shows that its owner lives.
-class HeldFolder {
+class LockedFolder {
  public:
-  explicit HeldFolder(const fs::path& path)
+  explicit LockedFolder(const fs::path& path)
       : descriptor_(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)) {}
-  ~HeldFolder() {
+  ~LockedFolder() {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
-  HeldFolder(const HeldFolder&) = delete;
-  HeldFolder& operator=(const HeldFolder&) = delete;
+  LockedFolder(const LockedFolder&) = delete;
+  LockedFolder& operator=(const LockedFolder&) = delete;
   // Also false if the file system has no such locks (folders on NFS): the lock is unknown there.
-  bool take() const { return descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0; }
+  bool try_lock() const { return descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0; }
 
  private:
   int descriptor_;
@@ -98,11 +98,11 @@ class HeldFolder {
 constexpr const char* kBeside = "files";
 
 // Removes folders that a killed program left half-written.
-void remove_what_the_dead_left(const fs::path& folder) {
+void remove_orphaned_folders(const fs::path& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
     if (entry.path().filename().string().starts_with("." + std::string(kBeside) + ".writing-") &&
-        HeldFolder(entry.path()).take())
+        LockedFolder(entry.path()).try_lock())
       fs::remove_all(entry.path(), ignored);
 }
 
@@ -132,34 +132,36 @@ void remove_stale(const fs::path& folder, const std::function<bool(const std::st
 }
 
 // Throws the current exception again, with a temporary file's name replaced by its final one.
-[[noreturn]] void throw_by_its_name(const fs::path& beside, const fs::path& folder) {
+[[noreturn]] void rethrow_with_final_name(const fs::path& beside, const fs::path& folder) {
   try {
     throw;
   } catch (const InputError& error) {
-    const std::string said = error.what(), name = in_one_line(beside.string());
-    if (!said.starts_with(name)) throw;
-    const std::size_t end = said.find(": ", name.size());
-    throw InputError(folder.string() + said.substr(name.size(), end - name.size()), said.substr(end + 2));
+    const std::string message = error.what(), name = in_one_line(beside.string());
+    if (!message.starts_with(name)) throw;
+    const std::size_t end = message.find(": ", name.size());
+    throw InputError(folder.string() + message.substr(name.size(), end - name.size()),
+                     message.substr(end + 2));
   }
 }
 
 // A path that is not absolute does not count.
-fs::path folder_named_by(const char* variable) {
+fs::path folder_from_environment(const char* variable) {
   const char* value = std::getenv(variable);
   const fs::path folder = value != nullptr ? value : "";
   return folder.is_absolute() ? folder : fs::path();
 }
 
-fs::path own_folder(const char* variable, const char* in_home) {
-  if (const fs::path named = folder_named_by(variable); !named.empty()) return named / "osteomill";
-  if (const fs::path home = folder_named_by("HOME"); !home.empty()) return home / in_home / "osteomill";
+fs::path user_folder(const char* variable, const char* in_home) {
+  if (const fs::path named = folder_from_environment(variable); !named.empty()) return named / "osteomill";
+  if (const fs::path home = folder_from_environment("HOME"); !home.empty())
+    return home / in_home / "osteomill";
   return {};
 }
 
 }  // namespace
 
 fs::path output_path(const fs::path& path) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMaxLinks = 40;
   std::error_code error;
   require_not_input(path);
   if (fs::is_directory(path, error)) throw InputError(path.string(), "cannot be written: it is a folder");
@@ -167,7 +169,7 @@ fs::path output_path(const fs::path& path) {
   if (is_device_or_pipe(path)) return path;
   fs::path target = path;
   for (int n = 0; fs::is_symlink(fs::symlink_status(target, error)); ++n) {
-    if (n == kMostLinks) throw InputError(path.string(), "is a link that leads to itself");
+    if (n == kMaxLinks) throw InputError(path.string(), "is a link that leads to itself");
     target = target.parent_path() / fs::read_symlink(target, error);
   }
   return target;
@@ -175,9 +177,9 @@ fs::path output_path(const fs::path& path) {
 
 void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   const fs::path target = output_path(path);
-  if (is_device_or_pipe(target)) return write_into(path, write);
+  if (is_device_or_pipe(target)) return write_through(path, write);
   const fs::path beside = create_beside(target, create_file);
-  const Leftover while_written(beside);
+  const SignalCleanup cleanup(beside);
   try {
     write(beside);
   } catch (...) {
@@ -204,11 +206,11 @@ void write_folder_atomically(const fs::path& folder, const std::function<void(co
   std::error_code ignored;
   const bool was_there = fs::exists(folder, ignored);
   create_folder(folder);
-  remove_what_the_dead_left(folder);
+  remove_orphaned_folders(folder);
   const fs::path beside = create_beside(folder / kBeside, create_empty_folder);
-  const HeldFolder held(beside);
-  held.take();
-  const Leftover while_written(beside);
+  const LockedFolder held(beside);
+  held.try_lock();
+  const SignalCleanup cleanup(beside);
   try {
     write(beside);
     const std::vector<fs::path> files = files_in(beside);
@@ -222,7 +224,7 @@ void write_folder_atomically(const fs::path& folder, const std::function<void(co
   } catch (...) {
     fs::remove_all(beside, ignored);
     if (!was_there) fs::remove(folder, ignored);
-    throw_by_its_name(beside, folder);
+    rethrow_with_final_name(beside, folder);
   }
 }
 
@@ -233,11 +235,11 @@ void create_folder(const fs::path& folder) {
 }
 
 fs::path state_folder() {
-  return own_folder("XDG_STATE_HOME", ".local/state");
+  return user_folder("XDG_STATE_HOME", ".local/state");
 }
 
 fs::path config_folder() {
-  return own_folder("XDG_CONFIG_HOME", ".config");
+  return user_folder("XDG_CONFIG_HOME", ".config");
 }
 
 }  // namespace osteomill

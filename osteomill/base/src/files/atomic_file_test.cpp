@@ -108,7 +108,7 @@ TEST_F(AtomicFileTest, WhatIsReadIsNotWrittenOverByAnyOfItsNames) {
   fs::create_hard_link(scan, folder_ / "other.nrrd");
   note_input(scan);
   EXPECT_EQ(output_path(scan), scan);
-  const KeepInputs keep_inputs;
+  const InputProtection input_protection;
   EXPECT_EQ(output_path(scan), scan);
   note_input(folder_ / "link.nrrd");
   for (const char* name : {"scan.nrrd", "link.nrrd", "other.nrrd"})

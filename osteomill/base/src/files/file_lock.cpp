@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kHeld = "another program is writing to it";
+constexpr const char* kLockedByOther = "another program is writing to it";
 
 // A pipe is not waited for.
-int open_to_look(const fs::path& path) {
+int open_for_check(const fs::path& path) {
   return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 }
 
@@ -40,7 +40,7 @@ bool rename_to_free_name(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-bool FileLock::take() const {
+bool FileLock::try_lock() const {
   return ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
@@ -52,17 +52,17 @@ bool FileLock::is_at(const fs::path& path) const {
 }
 
 // The former holder may have renamed or removed the file meanwhile.
-std::optional<FileLock> FileLock::of(const fs::path& path) {
-  FileLock lock(open_to_look(path));
-  if (lock.descriptor_ < 0 || !lock.take() || !lock.is_at(path)) return std::nullopt;
+std::optional<FileLock> FileLock::try_lock(const fs::path& path) {
+  FileLock lock(open_for_check(path));
+  if (lock.descriptor_ < 0 || !lock.try_lock() || !lock.is_at(path)) return std::nullopt;
   return lock;
 }
 
 // Between the two calls another program may take the file for a leftover.
-FileLock FileLock::of_new_file(const fs::path& path) {
+FileLock FileLock::create_locked(const fs::path& path) {
   FileLock lock(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (lock.descriptor_ < 0) refuse(path, "cannot be created: ");
-  if (!lock.take() || !lock.is_at(path)) throw InputError(path.string(), kHeld);
+  if (!lock.try_lock() || !lock.is_at(path)) throw InputError(path.string(), kLockedByOther);
   return lock;
 }
 
@@ -71,7 +71,7 @@ FileLock::~FileLock() {
 }
 
 bool is_locked(const fs::path& path) {
-  const int descriptor = open_to_look(path);
+  const int descriptor = open_for_check(path);
   if (descriptor < 0) return false;
   const bool locked = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(descriptor);
@@ -81,8 +81,8 @@ bool is_locked(const fs::path& path) {
 std::optional<fs::path> set_aside(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) return std::nullopt;
-  const auto lock = FileLock::of(path);
-  if (!lock) throw InputError(path.string(), kHeld);
+  const auto lock = FileLock::try_lock(path);
+  if (!lock) throw InputError(path.string(), kLockedByOther);
   for (int number = 1;; ++number) {
     const fs::path name = path.parent_path() /
                           (path.stem().string() + "-" + std::to_string(number) + path.extension().string());
@@ -96,8 +96,8 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   for (fs::path path = folder_; !path.empty() && !fs::exists(path, error); path = path.parent_path())
     made_.push_back(path);
   create_folder(folder_);
-  lock_ = FileLock::of(folder_);
-  if (!lock_) throw InputError(folder_.string(), kHeld);
+  lock_ = FileLock::try_lock(folder_);
+  if (!lock_) throw InputError(folder_.string(), kLockedByOther);
 }
 
 OutputFolder::~OutputFolder() {

@@ -15,19 +15,19 @@ namespace fs = std::filesystem;
 TEST(FileLock, OneAtATimeHoldsAFile) {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.h5";
-  EXPECT_FALSE(FileLock::of(path));
+  EXPECT_FALSE(FileLock::try_lock(path));
   {
-    const FileLock lock = FileLock::of_new_file(path);
+    const FileLock lock = FileLock::create_locked(path);
     EXPECT_TRUE(is_locked(path));
-    EXPECT_FALSE(FileLock::of(path));
-    EXPECT_THROW(FileLock::of_new_file(path), InputError);
+    EXPECT_FALSE(FileLock::try_lock(path));
+    EXPECT_THROW(FileLock::create_locked(path), InputError);
     EXPECT_TRUE(lock.is_at(path));
     fs::rename(path, folder / "b.h5");
     EXPECT_FALSE(lock.is_at(path));
     EXPECT_TRUE(is_locked(folder / "b.h5"));
   }
   EXPECT_FALSE(is_locked(folder / "b.h5"));
-  EXPECT_TRUE(FileLock::of(folder / "b.h5"));
+  EXPECT_TRUE(FileLock::try_lock(folder / "b.h5"));
 }
 
 TEST(FileLock, WhatIsLeftIsSetAsideAndWhatIsHeldIsNot) {
@@ -40,7 +40,7 @@ TEST(FileLock, WhatIsLeftIsSetAsideAndWhatIsHeldIsNot) {
   EXPECT_EQ(set_aside(path), folder / "r.part-2.h5");
   EXPECT_EQ(fs::file_size(folder / "r.part-1.h5"), 5u);
   EXPECT_EQ(fs::file_size(folder / "r.part-2.h5"), 6u);
-  const FileLock lock = FileLock::of_new_file(path);
+  const FileLock lock = FileLock::create_locked(path);
   EXPECT_THROW(set_aside(path), InputError);
   EXPECT_TRUE(lock.is_at(path));
 }

@@ -18,12 +18,12 @@ std::optional<std::set<fs::path>> inputs;
 
 }  // namespace
 
-KeepInputs::KeepInputs() {
+InputProtection::InputProtection() {
   const std::lock_guard lock(mutex);
   inputs.emplace();
 }
 
-KeepInputs::~KeepInputs() {
+InputProtection::~InputProtection() {
   const std::lock_guard lock(mutex);
   inputs.reset();
 }

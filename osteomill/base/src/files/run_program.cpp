@@ -23,8 +23,8 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-Said run_program(const std::vector<std::string>& words, std::chrono::duration<double> limit) {
-  constexpr std::size_t kMostKept = 16'000'000;
+ProcessResult run_program(const std::vector<std::string>& words, std::chrono::duration<double> limit) {
+  constexpr std::size_t kMaxKeptBytes = 16'000'000;
   // Whatever it has started ends with it, or else this would wait for that.
   std::ostringstream seconds;
   seconds << limit.count();
@@ -33,15 +33,15 @@ Said run_program(const std::vector<std::string>& words, std::chrono::duration<do
   for (const std::string& word : words) line += quoted(word) + " ";
   std::FILE* output = ::popen((line + "2>&1 </dev/null").c_str(), "r");
   if (output == nullptr) throw InputError(words.front(), "cannot be started");
-  Said said;
+  ProcessResult result;
   std::array<char, 4096> part{};
   while (const std::size_t count = std::fread(part.data(), 1, part.size(), output))
-    said.text.append(part.data(), std::min(count, kMostKept - said.text.size()));
+    result.text.append(part.data(), std::min(count, kMaxKeptBytes - result.text.size()));
   const int status = ::pclose(output);
-  said.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  if (said.exit_code != 0 && std::chrono::steady_clock::now() - start >= limit)
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (result.exit_code != 0 && std::chrono::steady_clock::now() - start >= limit)
     throw InputError(words.front(), "did not end within " + seconds.str() + " s");
-  return said;
+  return result;
 }
 
 }  // namespace osteomill

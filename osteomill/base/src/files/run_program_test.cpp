@@ -8,9 +8,9 @@ namespace osteomill {
 namespace {
 
 TEST(RunProgram, SaysWhatItPrintedAndHowItEnded) {
-  const Said said = run_program({"sh", "-c", "echo out; echo err >&2; cat; exit 3"});
-  EXPECT_EQ(said.text, "out\nerr\n") << "with no input";
-  EXPECT_EQ(said.exit_code, 3);
+  const ProcessResult result = run_program({"sh", "-c", "echo out; echo err >&2; cat; exit 3"});
+  EXPECT_EQ(result.text, "out\nerr\n") << "with no input";
+  EXPECT_EQ(result.exit_code, 3);
 }
 
 TEST(RunProgram, WordsArriveAsTheyAre) {
@@ -19,7 +19,7 @@ TEST(RunProgram, WordsArriveAsTheyAre) {
 }
 
 TEST(RunProgram, OneThatIsNotThereIsTold) {
-  EXPECT_EQ(run_program({"no-such-program-anywhere"}).exit_code, Said::kNoProgram);
+  EXPECT_EQ(run_program({"no-such-program-anywhere"}).exit_code, ProcessResult::kNoProgram);
 }
 
 TEST(RunProgram, OneThatDoesNotEndIsEndedWithWhatItStarted) {

@@ -21,7 +21,7 @@ TemporaryFolder::TemporaryFolder() {
     throw InputError(parent.string(), std::string("cannot hold a temporary folder: ") + std::strerror(errno));
   }
   path_ = name;
-  leftover_.emplace(path_);
+  cleanup_.emplace(path_);
 }
 
 TemporaryFolder::~TemporaryFolder() {

@@ -7,16 +7,16 @@ namespace {
 
 TEST(RowMajor, CountsEveryCellOnceInOrder) {
   const std::array<int, 3> dims{3, 5, 4};
-  std::size_t place = 0;
+  std::size_t index = 0;
   for (int k = 0; k < dims[2]; ++k) {
     for (int j = 0; j < dims[1]; ++j) {
-      for (int i = 0; i < dims[0]; ++i, ++place) {
-        EXPECT_EQ(row_major(dims, i, j, k), place);
-        EXPECT_EQ(cell_at(dims, place), (std::array<int, 3>{i, j, k}));
+      for (int i = 0; i < dims[0]; ++i, ++index) {
+        EXPECT_EQ(row_major(dims, i, j, k), index);
+        EXPECT_EQ(cell_at(dims, index), (std::array<int, 3>{i, j, k}));
       }
     }
   }
-  EXPECT_EQ(cell_count(dims), place);
+  EXPECT_EQ(cell_count(dims), index);
 }
 
 // 2048^3 is more than an int counts.

@@ -64,9 +64,9 @@ void run_gnuplot(const fs::path& folder, const std::string& script, const std::s
   write_bytes(folder / kScript, valid_utf8(script));
   // gnuplot does not look at what could not be written; a limit to its files ends it. -d: the settings of the
   // user's own must not change the figures.
-  const Said said =
+  const ProcessResult said =
       run_program({"env", "--default-signal=XFSZ", "--chdir=" + folder.string(), program, "-d", kScript});
-  if (said.exit_code == Said::kNoProgram) {
+  if (said.exit_code == ProcessResult::kNoProgram) {
     throw InputError(program,
                      "is not installed, and without it no figures can be drawn (package gnuplot-nox)");
   }

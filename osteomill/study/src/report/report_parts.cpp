@@ -147,7 +147,7 @@ void add_rows(const MeasuredRun& run, Table& table) {
 
 // Returns the points of the curve of a label's removed volume over time: both ends, and one for each further
 // two-hundredth.
-std::string curve_of(const Recording& recording, LabelMap::Place label, double all_mm3) {
+std::string curve_of(const Recording& recording, LabelMap::LabelIndex label, double all_mm3) {
   const double first_s = recording.records.front().time_s;
   std::string data = "0 0\n";
   double removed_mm3 = 0, written_mm3 = 0;
@@ -171,7 +171,7 @@ std::string panel(const MeasuredRun& run, FigureScript& figure) {
   std::string plot;
   for (std::size_t n = 0; n < count.labels().size(); ++n) {
     if (!(count.entries()[n].removed_mm3 > 0)) continue;
-    const std::string curve = curve_of(*run.recording, static_cast<LabelMap::Place>(n + 1), all_mm3);
+    const std::string curve = curve_of(*run.recording, static_cast<LabelMap::LabelIndex>(n + 1), all_mm3);
     plot += fmt::format("{}{} with steps lw 2 lc rgb '{}' title {}", plot.empty() ? "plot " : ", ",
                         figure.data(curve), hex_colour(count.labels()[n]),
                         gnuplot_quoted(count.labels()[n].name));

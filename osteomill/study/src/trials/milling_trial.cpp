@@ -36,7 +36,7 @@ MillingTrial::Tick MillingTrial::tick() {
   TickRecord record = session_.tick(
       operator_, {.time_s = operator_.time_s(), .dt_s = tick_s_, .spindle_on = milling_phase && spindle_});
   record.tick_cpu_us = 1e6 * (operator_.done_at_cpu_s - before_s);
-  session_.shared_volume()->prepare_about(session_.last_change().voxels);
+  session_.shared_volume()->prefault_around(session_.last_change().voxels);
   return {record, milling_phase};
 }
 

@@ -103,7 +103,7 @@ TEST(StudySlices, WhatAnotherProgramHoldsIsNeitherDoneNorMissing) {
   const StudyFolder study{folder.path(), sample_record()};
   for (std::size_t n = 0; n < 3; ++n) write_slice(study, sample_slice(study.record, n));
   EXPECT_NO_THROW(require_none_locked(study_status(study)));
-  const auto lock = FileLock::of(slice_path(folder.path(), 1));
+  const auto lock = FileLock::try_lock(slice_path(folder.path(), 1));
   const StudyStatus status = study_status(study);
   EXPECT_EQ(status.locked, std::vector<fs::path>{slice_path(folder.path(), 1)});
   EXPECT_TRUE(status.missing.empty() && status.damaged.empty());

@@ -48,7 +48,8 @@ void write_stl(std::ostream& out, const BrickMesh& mesh) {
 const Label kUnlabelled{0, "", {222, 194, 148}, false};
 
 const Label& label_of(const LabelMap& labels, const MeshVertex& vertex) {
-  const LabelMap::Place place = labels.under_surface(vec3_of(vertex.position_mm), vec3_of(vertex.normal));
+  const LabelMap::LabelIndex place =
+      labels.under_surface(vec3_of(vertex.position_mm), vec3_of(vertex.normal));
   return place == 0 ? kUnlabelled : labels.label(place);
 }
 

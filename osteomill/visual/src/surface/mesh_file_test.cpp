@@ -128,8 +128,8 @@ struct HalfLabelled {
       DensityView(testing_support::shape_volume(grid, testing_support::ball(Vec3::Zero(), 2))));
   LabelMap labels = {{{7, "crown", {0, 51, 255}, false}}, grid, grid, places()};
 
-  std::vector<LabelMap::Place> places() const {
-    std::vector<LabelMap::Place> places(grid.voxel_count());
+  std::vector<LabelMap::LabelIndex> places() const {
+    std::vector<LabelMap::LabelIndex> places(grid.voxel_count());
     for (std::size_t n = 0; n < places.size(); ++n) places[n] = n % 24 < 12 ? 0 : 1;
     return places;
   }

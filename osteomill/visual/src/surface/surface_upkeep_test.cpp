@@ -27,7 +27,7 @@ DensityView at_isovalue(const Volume& volume, double isovalue) {
 VoxelBox set_density(Volume& volume, const VoxelIndex& v, float density) {
   constexpr int kSide = DensityBlock::kVoxels;
   DensityBlock block(volume.grid(), {v.i / kSide * kSide, v.j / kSide * kSide, v.k / kSide * kSide});
-  block.densities[block.place_of(v)] = density;
+  block.densities[block.index_of(v)] = density;
   return EditableVolume(volume).swap(block);
 }
 

@@ -120,7 +120,8 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
 using LabelColour = std::array<std::uint8_t, 4>;
 
 LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex) {
-  const LabelMap::Place place = labels.under_surface(vec3_of(vertex.position_mm), vec3_of(vertex.normal));
+  const LabelMap::LabelIndex place =
+      labels.under_surface(vec3_of(vertex.position_mm), vec3_of(vertex.normal));
   if (place == 0) return {};
   const auto& [red, green, blue] = labels.label(place).colour;
   return {red, green, blue, 255};

@@ -94,7 +94,7 @@ ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const Window
       const double bright = scale * (density_at(grid, at(x, y)) - window.black);
       const auto grey = static_cast<unsigned char>(std::clamp(bright, 0.0, 255.0));
       face.pixels.push_back({grey, grey, grey});
-      const LabelMap::Place label = labels == nullptr ? 0 : labels->nearest_to(at(x, y));
+      const LabelMap::LabelIndex label = labels == nullptr ? 0 : labels->nearest_to(at(x, y));
       if (label != 0) face.pixels.back() = tinted(grey, labels->label(label).colour);
     }
   }

@@ -67,7 +67,7 @@ TEST(ClipFace, PlanesCanBeMovedAsFarAsTheGridReaches) {
 
 TEST(ClipFace, ShowsTheLabelsOfTheNearestVoxels) {
   const GridGeometry geometry = testing_support::centred_cube(8, 1.0);
-  std::vector<LabelMap::Place> places;
+  std::vector<LabelMap::LabelIndex> places;
   for (int k = 0; k < 8; ++k)
     for (int j = 0; j < 8; ++j)
       for (int i = 0; i < 8; ++i) places.push_back(i < 4 ? 0 : j < 4 ? 1 : 2);

@@ -279,7 +279,7 @@ TEST_F(SceneRendererTest, BoneHasTheColoursOfItsLabels) {
   const GridGeometry& geometry = bone_.geometry();
   const auto labels =
       std::make_shared<const LabelMap>(std::vector<Label>{{1, "blue", {0, 0, 255}}}, geometry, geometry,
-                                       std::vector<LabelMap::Place>(geometry.voxel_count(), 1));
+                                       std::vector<LabelMap::LabelIndex>(geometry.voxel_count(), 1));
   const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
   renderer_ = std::make_unique<SceneRenderer>(mesh.layout, geometry, labels);
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) set_brick(n, mesh.bricks[n]);

@@ -80,33 +80,35 @@ struct Field : FieldDescription {
 template <typename Struct, typename Value = double>
 const std::vector<Field<Struct, Value>>& fields_of();
 
-/// Makes the field of a number, a switch, an enumeration or a text or path. `place` gives a reference to it:
+/// Makes the field of a number, a switch, an enumeration or a text or path. `access` gives a reference to it:
 /// a pointer to the member, or a function that takes the struct, constant or not.
-template <typename Struct, typename Place>
-auto field(FieldDescription description, Place place) {
-  using Value = std::remove_cvref_t<std::invoke_result_t<Place, Struct&>>;
-  using Shown = std::conditional_t<std::is_arithmetic_v<Value> || std::is_enum_v<Value>, double, std::string>;
-  return Field<Struct, Shown>{std::move(description),
-                              [place](const Struct& s) { return static_cast<Shown>(std::invoke(place, s)); },
-                              [place](Struct& s, const Shown& value) {
-                                if constexpr (std::is_same_v<Value, bool>) {
-                                  std::invoke(place, s) = value != 0;
-                                } else {
-                                  std::invoke(place, s) = static_cast<Value>(value);
-                                }
-                              }};
+template <typename Struct, typename Access>
+auto field(FieldDescription description, Access access) {
+  using Value = std::remove_cvref_t<std::invoke_result_t<Access, Struct&>>;
+  using Stored =
+      std::conditional_t<std::is_arithmetic_v<Value> || std::is_enum_v<Value>, double, std::string>;
+  return Field<Struct, Stored>{
+      std::move(description),
+      [access](const Struct& s) { return static_cast<Stored>(std::invoke(access, s)); },
+      [access](Struct& s, const Stored& value) {
+        if constexpr (std::is_same_v<Value, bool>) {
+          std::invoke(access, s) = value != 0;
+        } else {
+          std::invoke(access, s) = static_cast<Value>(value);
+        }
+      }};
 }
 
-/// Returns the fields of a part of `Outer` as fields of the whole. `place` gives a reference to the part.
-template <typename Outer, typename Place, typename Value,
-          typename Inner = std::remove_cvref_t<std::invoke_result_t<Place, Outer&>>>
-std::vector<Field<Outer, Value>> fields_within(Place place, const std::vector<Field<Inner, Value>>& inner) {
+/// Returns the fields of a part of `Outer` as fields of the whole. `access` gives a reference to the part.
+template <typename Outer, typename Access, typename Value,
+          typename Inner = std::remove_cvref_t<std::invoke_result_t<Access, Outer&>>>
+std::vector<Field<Outer, Value>> fields_within(Access access, const std::vector<Field<Inner, Value>>& inner) {
   std::vector<Field<Outer, Value>> fields;
   for (const Field<Inner, Value>& one : inner) {
     fields.push_back({one,
-                      [place, get = one.get](const Outer& outer) { return get(std::invoke(place, outer)); },
-                      [place, set = one.set](Outer& outer, const Value& value) {
-                        set(std::invoke(place, outer), value);
+                      [access, get = one.get](const Outer& outer) { return get(std::invoke(access, outer)); },
+                      [access, set = one.set](Outer& outer, const Value& value) {
+                        set(std::invoke(access, outer), value);
                       }});
   }
   return fields;

@@ -14,9 +14,9 @@ namespace osteomill {
 class FileLock {
  public:
   /// Returns nothing if another one holds `path`, or if the file is no longer there.
-  static std::optional<FileLock> of(const std::filesystem::path& path);
+  static std::optional<FileLock> try_lock(const std::filesystem::path& path);
   /// Creates an empty file and holds it. Throws InputError if there is one already, or none can be created.
-  static FileLock of_new_file(const std::filesystem::path& path);
+  static FileLock create_locked(const std::filesystem::path& path);
 
   ~FileLock();
   FileLock(FileLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
@@ -30,7 +30,7 @@ class FileLock {
 
  private:
   explicit FileLock(int descriptor) : descriptor_(descriptor) {}
-  bool take() const;
+  bool try_lock() const;
 
   int descriptor_;
 };

@@ -14,19 +14,19 @@ class LatestValue {
  public:
   void write(const T& value) noexcept(std::is_nothrow_copy_assignable_v<T>) {
     buffers_[writing_] = value;
-    writing_ = shared_.exchange(writing_ | kNew, std::memory_order_acq_rel) & kPlace;
+    writing_ = shared_.exchange(writing_ | kNewFlag, std::memory_order_acq_rel) & kIndexMask;
   }
   /// Returns the newest value written, or a default one before the first. Valid until the next call.
   const T& read() noexcept {
-    if ((shared_.load(std::memory_order_relaxed) & kNew) != 0) {
-      reading_ = shared_.exchange(reading_, std::memory_order_acq_rel) & kPlace;
+    if ((shared_.load(std::memory_order_relaxed) & kNewFlag) != 0) {
+      reading_ = shared_.exchange(reading_, std::memory_order_acq_rel) & kIndexMask;
     }
     return buffers_[reading_];
   }
 
  private:
-  static constexpr unsigned kPlace = 3;
-  static constexpr unsigned kNew = 4;
+  static constexpr unsigned kIndexMask = 3;
+  static constexpr unsigned kNewFlag = 4;
 
   std::array<T, 3> buffers_{};
   unsigned writing_ = 0;

@@ -12,17 +12,17 @@ class RecentRate {
   /// Returns that rate. Has to be called more often than once a second. `now_s` never goes back; the first
   /// second begins with the first call.
   double per_s(double now_s) noexcept {
-    const double passed_s = now_s - began_s_;
+    const double passed_s = now_s - period_start_s_;
     if (passed_s >= 1) {
       per_s_ = count_ / passed_s;
-      began_s_ = now_s;
+      period_start_s_ = now_s;
       count_ = 0;
     }
     return per_s_;
   }
 
  private:
-  double began_s_ = -std::numeric_limits<double>::infinity();
+  double period_start_s_ = -std::numeric_limits<double>::infinity();
   int count_ = 0;
   double per_s_ = 0;
 };

@@ -11,7 +11,7 @@ constexpr std::size_t cell_count(const std::array<int, 3>& dims) noexcept {
          static_cast<std::size_t>(dims[2]);
 }
 
-/// Returns the place of cell (i, j, k), which must lie in the box, when i runs fastest and k slowest: the
+/// Returns the index of cell (i, j, k), which must lie in the box, when i runs fastest and k slowest: the
 /// order of voxels, bricks and nodes in every array of osteomill. Safe in the haptic tick.
 constexpr std::size_t row_major(const std::array<int, 3>& dims, int i, int j, int k) noexcept {
   return static_cast<std::size_t>(i) +
@@ -19,11 +19,11 @@ constexpr std::size_t row_major(const std::array<int, 3>& dims, int i, int j, in
              (static_cast<std::size_t>(j) + static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(k));
 }
 
-/// Returns the cell (i, j, k) at this place.
-constexpr std::array<int, 3> cell_at(const std::array<int, 3>& dims, std::size_t place) noexcept {
+/// Returns the cell (i, j, k) at this index.
+constexpr std::array<int, 3> cell_at(const std::array<int, 3>& dims, std::size_t index) noexcept {
   const auto columns = static_cast<std::size_t>(dims[0]), rows = static_cast<std::size_t>(dims[1]);
-  return {static_cast<int>(place % columns), static_cast<int>(place / columns % rows),
-          static_cast<int>(place / columns / rows)};
+  return {static_cast<int>(index % columns), static_cast<int>(index / columns % rows),
+          static_cast<int>(index / columns / rows)};
 }
 
 }  // namespace osteomill

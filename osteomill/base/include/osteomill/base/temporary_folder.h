@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "osteomill/base/leftovers.h"
+#include "osteomill/base/signal_cleanup.h"
 
 namespace osteomill {
 
 /// A new folder, which is removed with all that is in it when this object is destroyed, or its program is
-/// asked to end (leftovers.h).
+/// asked to end (signal_cleanup.h).
 class TemporaryFolder {
  public:
   /// Throws InputError if none can be made.
@@ -22,7 +22,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
-  std::optional<Leftover> leftover_;
+  std::optional<SignalCleanup> cleanup_;
 };
 
 }  // namespace osteomill

@@ -28,7 +28,7 @@ class BoneFollower {
   static constexpr std::size_t kUndoBytes = std::size_t{256} << 20;
 
   /// Copies the bone and meshes all of it. From then on makes the memory that milling takes ready ahead of
-  /// the burr (Volume::prepare_about).
+  /// the burr (Volume::prefault_around).
   explicit BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes = kUndoBytes);
   ~BoneFollower();
 

@@ -10,7 +10,7 @@ namespace osteomill {
 
 /// The bone that a tick took of one label that it touched. `label` 0 means no entry.
 struct LabelCut {
-  LabelMap::Place label = 0;
+  LabelMap::LabelIndex label = 0;
   /// In mm^3 of reference density, as MillingStep counts.
   double removed_mm3 = 0;
   friend bool operator==(const LabelCut&, const LabelCut&) = default;
@@ -24,7 +24,7 @@ using LabelCuts = std::array<LabelCut, 4>;
 class LabelTally {
  public:
   /// Adds to the sum of a label; does nothing for no label.
-  void add(LabelMap::Place label, double removed_mm3) noexcept {
+  void add(LabelMap::LabelIndex label, double removed_mm3) noexcept {
     if (label == 0) return;
     if (!waits_[label]) {
       waits_[label] = true;
@@ -38,7 +38,7 @@ class LabelTally {
     LabelCuts cuts;
     const std::size_t taken = std::min(cuts.size(), count_);
     for (std::size_t n = 0; n < taken; ++n) {
-      const LabelMap::Place label = waiting_[n];
+      const LabelMap::LabelIndex label = waiting_[n];
       cuts[n] = {label, removed_mm3_[label]};
       removed_mm3_[label] = 0;
       waits_[label] = false;
@@ -52,7 +52,7 @@ class LabelTally {
  private:
   std::array<double, LabelMap::kMaxLabels + 1> removed_mm3_{};
   std::array<bool, LabelMap::kMaxLabels + 1> waits_{};
-  std::array<LabelMap::Place, LabelMap::kMaxLabels> waiting_{};
+  std::array<LabelMap::LabelIndex, LabelMap::kMaxLabels> waiting_{};
   std::size_t count_ = 0;
 };
 

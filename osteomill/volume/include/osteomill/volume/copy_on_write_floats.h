@@ -22,7 +22,7 @@ struct RowLayout {
   /// burr's reach, a tenth of a cache's size, throws itself out again and again. Rows or slices of less than
   /// 64 lie one behind the other, because in thin scans the gaps would take most of the memory. Takes at most
   /// 1.6 times what the values take.
-  static RowLayout apart(std::size_t row_length, std::size_t slice_rows, std::size_t slices);
+  static RowLayout with_padding(std::size_t row_length, std::size_t slice_rows, std::size_t slices);
 
   std::size_t size() const { return slice_stride * slices; }
 };
@@ -31,7 +31,7 @@ struct RowLayout {
 /// were written in it or in what it was copied from. Reading costs what reading any array does.
 ///
 /// When a page is written for the first time the system makes a copy of it, which takes microseconds; for a
-/// thread that cannot wait, another thread calls `prepare`. One thread writes; no thread copies meanwhile.
+/// thread that cannot wait, another thread calls `prefault`. One thread writes; no thread copies meanwhile.
 class CopyOnWriteFloats {
  public:
   CopyOnWriteFloats() = default;
@@ -54,14 +54,14 @@ class CopyOnWriteFloats {
   float operator[](std::size_t n) const { return values_[n]; }
   bool operator==(const CopyOnWriteFloats& other) const;
 
-  /// Writes one value. Safe in the haptic tick, and fast if `prepare` was called.
+  /// Writes one value. Safe in the haptic tick, and fast if `prefault` was called.
   void set(std::size_t n, float value) noexcept {
     values_[n] = value;
     std::atomic_ref(written_[n / kPageFloats]).store(1, std::memory_order_relaxed);
   }
   /// Makes the pages of [first, last] ready before they are written. One thread at a time, which may be
   /// another than the one that writes; waits for the system.
-  void prepare(std::size_t first, std::size_t last);
+  void prefault(std::size_t first, std::size_t last);
 
  private:
   class Original;

@@ -24,7 +24,7 @@ struct DensityBlock {
     return VoxelBox{first, last()}.intersected(geometry.all_voxels());
   }
   /// Returns where among `densities` that of voxel `v` is.
-  std::size_t place_of(const VoxelIndex& v) const {
+  std::size_t index_of(const VoxelIndex& v) const {
     return row_major({kVoxels, kVoxels, kVoxels}, v.i - first.i, v.j - first.j, v.k - first.k);
   }
 

@@ -29,13 +29,13 @@ class DensityGrid {
   const CopyOnWriteFloats& densities() const { return densities_; }
   /// Returns the densities of row (j, k), from i = 0.
   std::span<const float> row(int j, int k) const noexcept {
-    return {densities_.data() + place(0, j, k), layout_.row_length};
+    return {densities_.data() + offset_of(0, j, k), layout_.row_length};
   }
   /// Returns the address of the density of `v`, which must be in the grid. Those that follow along i lie
   /// behind it; along j and k the next are row_stride() and slice_stride() floats on. 64 bytes behind any may
   /// be read.
   const float* address_of(const VoxelIndex& v) const noexcept {
-    return densities_.data() + place(v.i, v.j, v.k);
+    return densities_.data() + offset_of(v.i, v.j, v.k);
   }
   std::ptrdiff_t row_stride() const { return static_cast<std::ptrdiff_t>(layout_.row_stride); }
   std::ptrdiff_t slice_stride() const { return static_cast<std::ptrdiff_t>(layout_.slice_stride); }
@@ -46,7 +46,7 @@ class DensityGrid {
   /// Returns the least density of the grid as it was made.
   float outside_density() const { return outside_density_; }
 
-  /// Returns the voxel's number, i running fastest: not its place in memory.
+  /// Returns the voxel's number, i running fastest: not its offset in memory.
   std::size_t linear_index(const VoxelIndex& v) const noexcept {
     return row_major(geometry_.dims, v.i, v.j, v.k);
   }
@@ -69,14 +69,14 @@ class DensityGrid {
 #endif
   }
   void set(const VoxelIndex& v, float density) noexcept {
-    densities_.set(place(v.i, v.j, v.k), density);
+    densities_.set(offset_of(v.i, v.j, v.k), density);
   }
   /// Pre-faults the pages around `changed`, so that the tick does not page-fault
   /// (CopyOnWriteFloats::prepare), as far as a burr may go on from there in some tens of milliseconds.
-  void prepare_about(const VoxelBox& changed);
+  void prefault_around(const VoxelBox& changed);
 
  private:
-  std::size_t place(int i, int j, int k) const {
+  std::size_t offset_of(int i, int j, int k) const {
     return static_cast<std::size_t>(i) + layout_.row_stride * static_cast<std::size_t>(j) +
            layout_.slice_stride * static_cast<std::size_t>(k);
   }
@@ -87,7 +87,7 @@ class DensityGrid {
   std::shared_ptr<const std::vector<bool>> without_density_;
   std::size_t voxels_without_density_ = 0;
   CopyOnWriteFloats densities_;
-  VoxelBox prepared_;
+  VoxelBox prefaulted_;
   float outside_density_ = 0;
 };
 

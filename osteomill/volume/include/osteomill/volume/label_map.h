@@ -29,32 +29,32 @@ std::string hex_colour(const Label& label);
 /// that holds all labels. Does not change; reading is safe in the haptic tick and from any thread.
 class LabelMap {
  public:
-  /// A label by its place in `labels()`, counted from 1; 0 is no label.
-  using Place = std::uint8_t;
+  /// The index of a label in `labels()`, counted from 1; 0 is no label.
+  using LabelIndex = std::uint8_t;
   static constexpr std::size_t kMaxLabels = 255;
 
-  /// Makes the map from labels on a grid of their own: `places` has a value for each voxel of `own`, i
+  /// Makes the map from labels on a grid of their own: `indices` has a value for each voxel of `own`, i
   /// running fastest. Each voxel of `scan` gets the label of the voxel of `own` that is nearest to its
-  /// centre, none outside of `own`. Throws std::invalid_argument for more than `kMaxLabels` labels or places
+  /// centre, none outside of `own`. Throws std::invalid_argument for more than `kMaxLabels` labels or indices
   /// that do not fit.
   LabelMap(std::vector<Label> labels, const GridGeometry& scan, const GridGeometry& own,
-           const std::vector<Place>& places);
+           const std::vector<LabelIndex>& indices);
 
   const std::vector<Label>& labels() const { return labels_; }
-  /// Returns the label at this place, which is not 0.
-  const Label& label(Place place) const { return labels_[place - 1u]; }
-  /// Returns the place of the label at any voxel of the scan; 0 for none.
-  Place at(const VoxelIndex& v) const noexcept {
+  /// Returns the label of this index, which is not 0.
+  const Label& label(LabelIndex index) const { return labels_[index - 1u]; }
+  /// Returns the index of the label at any voxel of the scan; 0 for none.
+  LabelIndex at(const VoxelIndex& v) const noexcept {
     if (!box_.contains(v)) return 0;
-    return places_[row_major(dims_, v.i - box_.first.i, v.j - box_.first.j, v.k - box_.first.k)];
+    return indices_[row_major(dims_, v.i - box_.first.i, v.j - box_.first.j, v.k - box_.first.k)];
   }
-  /// Returns the place of the label at the voxel nearest to any finite point of W.
-  Place nearest_to(const Vec3& point_W) const noexcept;
+  /// Returns the index of the label at the voxel nearest to any finite point of W.
+  LabelIndex nearest_to(const Vec3& point_W) const noexcept;
   /// Returns the label of the bone just under a place of its surface with this normal. Looks up to 1.5 voxels
   /// deep, since label maps often leave out the bone's outermost voxels.
-  Place under_surface(const Vec3& point_W, const Vec3& normal_W) const noexcept;
+  LabelIndex under_surface(const Vec3& point_W, const Vec3& normal_W) const noexcept;
 
-  /// Returns how many voxels of the scan have each label, by the label's place; voxels without a label are
+  /// Returns how many voxels of the scan have each label, by the label's index; voxels without a label are
   /// not counted. Goes through all voxels; not for the tick.
   std::vector<std::size_t> voxel_counts() const;
 
@@ -63,7 +63,7 @@ class LabelMap {
   /// Returns the box that holds all no-go labels; empty if there are none.
   const VoxelBox& no_go_box() const { return no_go_box_; }
   const GridGeometry& scan_geometry() const { return scan_; }
-  /// Returns a number that two label maps hardly share. It follows from the places of values, not from the
+  /// Returns a number that two label maps hardly share. It follows from where values lie, not from the
   /// labels' names.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
@@ -73,7 +73,7 @@ class LabelMap {
   VoxelBox box_;
   VoxelBox no_go_box_;
   std::array<int, 3> dims_{0, 0, 0};
-  std::vector<Place> places_;
+  std::vector<LabelIndex> indices_;
   std::uint64_t fingerprint_ = 0;
 };
 

@@ -51,9 +51,9 @@ class Volume {
   }
   /// Lowers the density of one voxel. Safe in the haptic tick.
   void lower_density(const VoxelIndex& v, float density) noexcept { lower_row(v.j, v.k, &v.i, &density, 1); }
-  /// Prepares the memory for coming changes (DensityGrid::prepare_about). For another thread than the
+  /// Prepares the memory for coming changes (DensityGrid::prefault_around). For another thread than the
   /// one that lowers, if that one must not wait.
-  void prepare_about(const VoxelBox& changed) { grid_.prepare_about(changed); }
+  void prefault_around(const VoxelBox& changed) { grid_.prefault_around(changed); }
   /// Returns a hash of what differs from the densities the bone was made with: 0 if nothing does, and the
   /// same for any two bones of one scan that are the same, in whatever order they were milled. Safe in the
   /// haptic tick.

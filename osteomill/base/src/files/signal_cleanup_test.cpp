@@ -1,4 +1,4 @@
-#include "osteomill/base/leftovers.h"
+#include "osteomill/base/signal_cleanup.h"
 
 #include <csignal>
 #include <fstream>
@@ -20,7 +20,7 @@ template <typename Do>
 int status_of_child_ended_by(int signal, const Do& before) {
   const ::pid_t child = ::fork();
   if (child == 0) {
-    remove_leftovers_when_ended();
+    install_signal_cleanup();
     before();
     ::raise(signal);
     ::_exit(0);
@@ -32,7 +32,7 @@ int status_of_child_ended_by(int signal, const Do& before) {
 
 TEST(Leftovers, GoWhenTheProgramIsAskedToEnd) {
   // No TemporaryFolder, which the child would remove too.
-  const fs::path folder = fs::path(::testing::TempDir()) / "leftovers";
+  const fs::path folder = fs::path(::testing::TempDir()) / "signal_cleanup";
   fs::remove_all(folder);
   fs::create_directories(folder);
   const auto write = [&] {
@@ -59,7 +59,7 @@ TEST(Leftovers, GoWhenTheProgramIsAskedToEnd) {
 TEST(Leftovers, AnIgnoredSignalStaysIgnored) {
   const auto ignore = [] {
     std::signal(SIGHUP, SIG_IGN);
-    remove_leftovers_when_ended();
+    install_signal_cleanup();
   };
   const int status = status_of_child_ended_by(SIGHUP, ignore);
   EXPECT_TRUE(WIFEXITED(status));

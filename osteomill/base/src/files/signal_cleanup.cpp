@@ -1,4 +1,4 @@
-#include "osteomill/base/leftovers.h"
+#include "osteomill/base/signal_cleanup.h"
 
 #include <array>
 #include <atomic>
@@ -22,10 +22,10 @@ std::array<struct sigaction, kSignals.size()> actions_before;
 
 // A path that is taken from an entry belongs to the thread that took it. Files for which there is no entry
 // are left.
-std::array<std::atomic<char*>, 64> places{};
+std::array<std::atomic<char*>, 64> registered_paths{};
 
 // Removes a folder with calls that are safe in a signal's handler. Other threads may still put files into it.
-void remove_all_of(int in, const char* name) {
+void remove_recursively(int in, const char* name) {
   constexpr int kTries = 100;
   if (::unlinkat(in, name, 0) == 0) return;
   const int folder = ::openat(in, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
@@ -38,7 +38,7 @@ void remove_all_of(int in, const char* name) {
         const auto* entry = reinterpret_cast<const dirent64*>(entries + at);
         at += entry->d_reclen;
         if (std::strcmp(entry->d_name, ".") != 0 && std::strcmp(entry->d_name, "..") != 0)
-          remove_all_of(folder, entry->d_name);
+          remove_recursively(folder, entry->d_name);
       }
     }
   }
@@ -46,8 +46,8 @@ void remove_all_of(int in, const char* name) {
 }
 
 void end_program(int signal) {
-  for (std::atomic<char*>& place : places)
-    if (const char* path = place.exchange(nullptr)) remove_all_of(AT_FDCWD, path);
+  for (std::atomic<char*>& registered : registered_paths)
+    if (const char* path = registered.exchange(nullptr)) remove_recursively(AT_FDCWD, path);
   for (std::size_t n = 0; n < kSignals.size(); ++n)
     if (kSignals[n] == signal) sigaction(signal, &actions_before[n], nullptr);
   raise(signal);
@@ -55,23 +55,23 @@ void end_program(int signal) {
 
 }  // namespace
 
-Leftover::Leftover(const fs::path& path) : place_(-1) {
+SignalCleanup::SignalCleanup(const fs::path& path) : slot_(-1) {
   std::error_code error;
   char* const text = ::strdup(fs::absolute(path, error).c_str());
-  for (std::size_t n = 0; n < places.size(); ++n) {
+  for (std::size_t n = 0; n < registered_paths.size(); ++n) {
     char* none = nullptr;
-    if (!places[n].compare_exchange_strong(none, text)) continue;
-    place_ = static_cast<int>(n);
+    if (!registered_paths[n].compare_exchange_strong(none, text)) continue;
+    slot_ = static_cast<int>(n);
     return;
   }
   ::free(text);
 }
 
-Leftover::~Leftover() {
-  if (place_ >= 0) ::free(places[static_cast<std::size_t>(place_)].exchange(nullptr));
+SignalCleanup::~SignalCleanup() {
+  if (slot_ >= 0) ::free(registered_paths[static_cast<std::size_t>(slot_)].exchange(nullptr));
 }
 
-void remove_leftovers_when_ended() {
+void install_signal_cleanup() {
   struct sigaction action {};
   action.sa_handler = end_program;
   sigfillset(&action.sa_mask);
