@@ -194,7 +194,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   for (const fs::path& path : paths) recordings.push_back(read_recording(path));
   std::vector<Table> came_out;
   const fs::path page = write_comparison_report(recordings, options.out, extras, &came_out);
-  say_tables(came_out);
+  print_tables(came_out);
   fmt::print("{}\n", page.string());
 }
 

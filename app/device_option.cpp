@@ -116,15 +116,15 @@ std::unique_ptr<BoneSender> send_bone(const BoneFollower& bone, const SendOption
 
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option) {
   const HardwareKind* kind = hardware_named(name_in(option.device));
-  if (option.is(kSpaceMouse) && !SpaceMouse().present())
+  if (option.is_device(kSpaceMouse) && !SpaceMouse().present())
     throw InputError("--device spacemouse", kNoSpaceMouse);
   if (kind == nullptr) return nullptr;
   const auto open = [kind, address = address_in(option.device)] { return kind->open(address); };
   auto device = std::make_unique<ConnectedDevice>(open);
   device->set_workspace(workspace_of(option, device->capabilities().name));
   device->start();
-  say(fmt::format("osteomill: {}: {}\n", in_one_line(device->capabilities().name),
-                  degrees_of_freedom(device->capabilities())));
+  print_error(fmt::format("osteomill: {}: {}\n", in_one_line(device->capabilities().name),
+                          degrees_of_freedom(device->capabilities())));
   return device;
 }
 

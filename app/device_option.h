@@ -28,7 +28,7 @@ struct DeviceOption {
   std::vector<double> turn_deg;
   std::optional<double> shaft_lever_mm;
 
-  bool is(const char* name) const { return device == name; }
+  bool is_device(const char* name) const { return device == name; }
 };
 
 /// Adds --device, whose default is `option.device`, and the options of its workspace.

@@ -30,7 +30,7 @@ namespace osteomill::app {
 
 namespace {
 
-constexpr double kEvery_s = 0.02;
+constexpr double kUpdatePeriod_s = 0.02;
 
 struct LiveOptions {
   ScanOptions scan;
@@ -60,7 +60,7 @@ void print_timing(const TimingSummary& timing) {
 }
 
 // Collects the figures of the ticks that are printed at the end.
-struct Seen {
+struct LiveFigures {
   LabelCount labels;
   FaultCount faults = {};
   std::size_t bricks = 0;
@@ -68,27 +68,27 @@ struct Seen {
 };
 
 // A full disk ends the recording, not the session.
-void end_recording(LiveMilling& milling, Seen& seen) {
+void end_recording(LiveMilling& milling, LiveFigures& figures) {
   try {
     milling.stop_recording();
   } catch (const InputError& error) {
-    warn_though_quiet(error.what());
-    seen.has_recording_failed = true;
+    warn_always(error.what());
+    figures.has_recording_failed = true;
   }
 }
 
 // Who holds the tool: hardware, a SpaceMouse or the simulated operator.
-class Holder {
+class ToolSource {
  public:
-  explicit Holder(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
-    if (option.is(kMouse)) throw InputError("--device mouse", "needs the window: osteomill simulate");
-    if (option.is(kSpaceMouse)) space_mouse_.emplace();
+  explicit ToolSource(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
+    if (option.is_device(kMouse)) throw InputError("--device mouse", "needs the window: osteomill simulate");
+    if (option.is_device(kSpaceMouse)) space_mouse_.emplace();
   }
 
   const ConnectedDevice* hardware() const { return hardware_.get(); }
   // Puts the tool before the entry, and the hardware's limits into the setup.
   Device& take_tool(const TrialOptions& trial, MillingSetup& setup, const MillingEntry& entry) {
-    const Pose X_WT = pose_above(entry, setup.tool, kHeldAbove_mm);
+    const Pose X_WT = pose_above(entry, setup.tool, kStartHeight_mm);
     if (hardware_) {
       setup.guard.limits = hardware_->limits_W(setup.guard.limits);
       hardware_->put_at(X_WT);
@@ -111,7 +111,7 @@ class Holder {
   void close() {
     if (!hardware_) return;
     if (const std::string said = hardware_->close(); !said.empty())
-      warn_though_quiet(hardware_->capabilities().name + ": " + said);
+      warn_always(hardware_->capabilities().name + ": " + said);
   }
 
   void print() const {
@@ -125,7 +125,7 @@ class Holder {
   void describe(RunDescription& run) const { describe_device(run, option_.device, hardware_.get()); }
 
  private:
-  static constexpr double kHeldAbove_mm = 1;
+  static constexpr double kStartHeight_mm = 1;
 
   // Warns once when a fault has lasted for a while, and says once when it is over; shorter ones are only
   // counted.
@@ -149,45 +149,45 @@ class Holder {
   Pose X_W_target_;
 };
 
-Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const LabelMap>& labels,
-             Holder& holder, BoneSender* sender) {
+LiveFigures run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const LabelMap>& labels,
+                    ToolSource& tool_source, BoneSender* sender) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
-  Seen seen{.labels = LabelCount(labels)};
+  LiveFigures figures{.labels = LabelCount(labels)};
   const auto take = [&] {
     while (const auto record = milling.next_record()) {
-      seen.faults.add(*record);
-      if (const auto touched = seen.labels.add(*record)) warn_though_quiet(*touched);
+      figures.faults.add(*record);
+      if (const auto touched = figures.labels.add(*record)) warn_always(*touched);
     }
-    seen.bricks += milling.take_changed_bricks().size();
-    if (milling.has_recording_failed()) end_recording(milling, seen);
+    figures.bricks += milling.take_changed_bricks().size();
+    if (milling.has_recording_failed()) end_recording(milling, figures);
   };
   while (passed_s < seconds && milling.is_running()) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(kEvery_s));
+    std::this_thread::sleep_for(std::chrono::duration<double>(kUpdatePeriod_s));
     passed_s = std::chrono::duration<double>(Clock::now() - start).count();
     take();
-    holder.update(kEvery_s);
+    tool_source.update(kUpdatePeriod_s);
     if (sender != nullptr) sender->show_tool(milling.state().record);
     show_progress("live", passed_s / seconds);
   }
   milling.stop();
   take();
   end_progress();
-  return seen;
+  return figures;
 }
 
 void run_live(LiveOptions options, const std::string& command_line) {
   ScriptSettings& script = options.trial.hand.script;
   script.milling_s = script.holding_s = 0.5 * options.seconds;
-  Holder holder(options.device);
+  ToolSource tool_source(options.device);
   MillingSetup setup = options.trial.milling.setup;
   LoadedBone loaded = load_bone(options.scan);
   warn_of_settings(setup, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const std::shared_ptr<const LabelMap> labels = bone->labels();
   const MillingEntry entry = place_entry(*bone, options.trial);
-  Device& device = holder.take_tool(options.trial, setup, entry);
+  Device& device = tool_source.take_tool(options.trial, setup, entry);
   PreparedMilling prepared = prepare_milling(bone, setup);
   const BoneDensities densities = prepared.session->densities();
   LiveMilling milling(std::move(prepared), device);
@@ -197,7 +197,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   if (!options.record.empty()) {
     pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
     RunDescription run = milling.describe(loaded.name, command_line);
-    holder.describe(run);
+    tool_source.describe(run);
     const auto picture = [&](std::string_view name) {
       std::optional<std::vector<unsigned char>> png;
       milling.follower().read(
@@ -205,24 +205,24 @@ void run_live(LiveOptions options, const std::string& command_line) {
       return png;
     };
     if (const std::string kept = milling.start_recording(options.record, run, picture); !kept.empty())
-      warn_though_quiet(kept);
+      warn_always(kept);
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
-  Seen seen = run_for(milling, options.seconds, labels, holder, sender.get());
-  if (milling.is_recording()) end_recording(milling, seen);
+  LiveFigures figures = run_for(milling, options.seconds, labels, tool_source, sender.get());
+  if (milling.is_recording()) end_recording(milling, figures);
   if (sender && !sender->is_connected())
     warn("--send-bone " + options.send.address + ": the receiver has gone");
-  if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
+  if (const auto said = figures.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());
   fmt::print("removed      {:.2f} mm³, {} bricks of the surface meshed\n", milling.state().record.removed_mm3,
-             seen.bricks);
-  holder.print();
-  holder.close();
-  for (const std::string& line : label_lines(seen.labels)) fmt::print("label        {}\n", line);
+             figures.bricks);
+  tool_source.print();
+  tool_source.close();
+  for (const std::string& line : label_lines(figures.labels)) fmt::print("label        {}\n", line);
   if (const std::exception_ptr failure = milling.failure())
     throw InputError("--device " + options.device.device, "has failed: " + reason_of(failure));
-  if (seen.has_recording_failed) throw CLI::RuntimeError(EXIT_FAILURE);
+  if (figures.has_recording_failed) throw CLI::RuntimeError(EXIT_FAILURE);
 }
 
 }  // namespace

@@ -43,9 +43,9 @@ std::string without_dashes_before(std::string_view word) {
 
 // Returns how far two words differ. If one begins with the other, the rest of the longer one costs little.
 std::size_t distance(const std::string& word, const std::string& known) {
-  constexpr std::size_t kTelling = 3;
+  constexpr std::size_t kMaxDistance = 3;
   const std::size_t common = std::min(word.size(), known.size());
-  if (common >= kTelling && word.compare(0, common, known, 0, common) == 0) return 1;
+  if (common >= kMaxDistance && word.compare(0, common, known, 0, common) == 0) return 1;
   return edit_distance(word, known);
 }
 
@@ -90,9 +90,9 @@ bool is_option(std::string_view word) {
 }  // namespace
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
-  constexpr std::size_t kFew = 5;
+  constexpr std::size_t kMaxListed = 5;
   if (const auto near = nearest(word, known)) return fmt::format("; did you mean {}?", *near);
-  if (known.size() > kFew || known.empty()) return "";
+  if (known.size() > kMaxListed || known.empty()) return "";
   return fmt::format("; there {} {}", known.size() == 1 ? "is" : "are", with_and(known));
 }
 

@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 bool quiet = false;
 
-bool on_terminal() {
+bool is_on_terminal() {
   static const bool terminal = ::isatty(STDERR_FILENO) == 1;
   return terminal;
 }
@@ -26,7 +26,7 @@ struct Work {
   std::string what;
   Clock::time_point start;
   double fraction_done = 0;
-  int tenths_said = 0;
+  int tenths_printed = 0;
 };
 Work work;
 
@@ -57,40 +57,40 @@ void show_progress(std::string_view what, double fraction_done) {
   if (!(fraction_done > 0) || passed_s < kSilent_s) return;
   const std::string line = fmt::format("{} {:3.0f} %, {} left", what, 100 * fraction_done,
                                        time_text(passed_s * (1 - fraction_done) / fraction_done));
-  if (on_terminal()) {
-    say("\r\033[K" + line);
-  } else if (const int tenths = static_cast<int>(10 * fraction_done + 1e-9); tenths > work.tenths_said) {
-    work.tenths_said = tenths;
-    say(line + "\n");
+  if (is_on_terminal()) {
+    print_error("\r\033[K" + line);
+  } else if (const int tenths = static_cast<int>(10 * fraction_done + 1e-9); tenths > work.tenths_printed) {
+    work.tenths_printed = tenths;
+    print_error(line + "\n");
   }
 }
 
 void end_progress() {
   work = {};
-  if (quiet || !on_terminal()) return;
-  say("\r\033[K");
+  if (quiet || !is_on_terminal()) return;
+  print_error("\r\033[K");
 }
 
-void say(std::string_view text) {
+void print_error(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 void warn(std::string_view line) {
-  if (!quiet) warn_though_quiet(line);
+  if (!quiet) warn_always(line);
 }
 
-void say_tables(const std::vector<Table>& tables) {
+void print_tables(const std::vector<Table>& tables) {
   if (quiet) return;
-  for (const Table& table : tables) say(plain_text(table) + "\n");
+  for (const Table& table : tables) print_error(plain_text(table) + "\n");
 }
 
-void warn_though_quiet(std::string_view line) {
-  if (on_terminal()) say("\r\033[K");
-  say(fmt::format("osteomill: warning: {}\n", in_one_line(line)));
+void warn_always(std::string_view line) {
+  if (is_on_terminal()) print_error("\r\033[K");
+  print_error(fmt::format("osteomill: warning: {}\n", in_one_line(line)));
 }
 
 RunEvents events_on_terminal() {
-  return {show_progress, warn, warn_though_quiet};
+  return {show_progress, warn, warn_always};
 }
 
 }  // namespace osteomill::app

@@ -21,17 +21,17 @@ void show_progress(std::string_view what, double fraction_done);
 void end_progress();
 
 /// Writes to standard error. A text that cannot be written is dropped: that is no reason to end the program.
-void say(std::string_view text);
+void print_error(std::string_view text);
 
 /// Writes a warning, one line on standard error, which --quiet silences.
 void warn(std::string_view line);
 
 /// Writes tables to standard error, unless --quiet.
-void say_tables(const std::vector<Table>& tables);
+void print_tables(const std::vector<Table>& tables);
 
 /// Writes a warning that --quiet does not silence: a burr that has come into a no-go structure, a recording
 /// that cannot go on.
-void warn_though_quiet(std::string_view line);
+void warn_always(std::string_view line);
 
 /// Returns events that report progress and warnings as the functions above do.
 RunEvents events_on_terminal();

@@ -57,7 +57,7 @@ class Log {
   void add(const TickRecord& record) {
     log_.push_back(record);
     faults_.add(record);
-    if (const auto touched = labels_.add(record)) warn_though_quiet(*touched);
+    if (const auto touched = labels_.add(record)) warn_always(*touched);
     if (log_.size() % 1000 == 0)
       show_progress("replay", static_cast<double>(log_.size()) / static_cast<double>(ticks_));
   }
@@ -97,7 +97,7 @@ Volume scan_of(const ReplayOptions& options, const Recording& recording) {
   if (scan.scan.empty() && recording.description.scan_name != kBuiltinTooth)
     scan.scan = recording.description.scan_name;
   scan.isovalue = recording.description.isovalue;
-  scan.made_into = recording.description.scan_hash;
+  scan.bone_fingerprint = recording.description.scan_hash;
   LoadedBone bone = read_bone(scan);
   require_made_with(recording, bone.volume);
   const auto& labels = bone.volume.labels();
@@ -172,7 +172,7 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
     if (!recorder) {
       recorder.emplace(options.record, start.run, Recorder::FirstSession::begins_when_announced,
                        Recorder::UnfinishedFile::remove);
-      if (const std::string kept = recorder->leftover_note(); !kept.empty()) warn_though_quiet(kept);
+      if (const std::string kept = recorder->leftover_note(); !kept.empty()) warn_always(kept);
     }
     recorder->begin_session(session_number++, std::move(start));
   };

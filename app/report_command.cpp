@@ -42,7 +42,7 @@ void write_into(const std::filesystem::path& folder, const ReportOptions& option
   if (are_of_comparison(recordings)) {
     std::vector<Table> came_out;
     write_comparison_report(recordings, folder, {}, &came_out);
-    say_tables(came_out);
+    print_tables(came_out);
   } else {
     write_report(recordings, folder);
   }

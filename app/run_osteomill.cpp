@@ -31,12 +31,12 @@
 
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kInputAtFault = 1;
+constexpr int kSuccess = 0;
+constexpr int kBadInput = 1;
 constexpr int kWrongUsage = 2;
 
-int complain(const char* reason, int code) {
-  osteomill::app::say(fmt::format("osteomill: {}\n", osteomill::in_one_line(reason)));
+int report_error(const char* reason, int code) {
+  osteomill::app::print_error(fmt::format("osteomill: {}\n", osteomill::in_one_line(reason)));
   return code;
 }
 
@@ -48,8 +48,8 @@ void open_closed_streams() {
 
 // Flushes standard output, and returns an error's exit code if that or an earlier write failed.
 int end_output(int code) {
-  if (code != kDone || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
-  return complain(osteomill::with_reason("standard output: cannot be written").c_str(), kInputAtFault);
+  if (code != kSuccess || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
+  return report_error(osteomill::with_reason("standard output: cannot be written").c_str(), kBadInput);
 }
 
 // Returns how the program was called, as it would be typed into a shell, the program as "osteomill".
@@ -127,11 +127,11 @@ class HelpText : public CLI::Formatter {
 };
 
 int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
-  constexpr rlim_t kLeastStackBytes = 256 * 1024;
+  constexpr rlim_t kMinStackBytes = 256 * 1024;
   rlimit stack{};
-  if (::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < kLeastStackBytes) {
-    return complain("the stack is limited to less than 256 KB (ulimit -s), which is not enough",
-                    kInputAtFault);
+  if (::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < kMinStackBytes) {
+    return report_error("the stack is limited to less than 256 KB (ulimit -s), which is not enough",
+                        kBadInput);
   }
   CLI::App program("6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
   program.set_version_flag("--version", OSTEOMILL_VERSION);
@@ -156,32 +156,32 @@ int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
     osteomill::app::require_known_words(program, argc, argv);
     program.parse(argc, argv);
     if (program.get_subcommands().empty()) {
-      return complain("no command is given; osteomill --help lists them", kWrongUsage);
+      return report_error("no command is given; osteomill --help lists them", kWrongUsage);
     }
-    return kDone;
+    return kSuccess;
   } catch (const CLI::Success& help_or_version) {
     return program.exit(help_or_version);
   } catch (const CLI::RuntimeError& said) {
     return said.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    return complain(error.what(), kWrongUsage);
+    return report_error(error.what(), kWrongUsage);
   } catch (const osteomill::InputError& error) {
-    return complain(error.what(), kInputAtFault);
+    return report_error(error.what(), kBadInput);
   } catch (const std::invalid_argument& error) {
-    return complain(error.what(), kWrongUsage);
+    return report_error(error.what(), kWrongUsage);
   } catch (const std::bad_alloc&) {
-    return complain(osteomill::app::out_of_memory_text().c_str(), kInputAtFault);
+    return report_error(osteomill::app::out_of_memory_text().c_str(), kBadInput);
   } catch (const std::length_error&) {
-    return complain(osteomill::app::out_of_memory_text().c_str(), kInputAtFault);
+    return report_error(osteomill::app::out_of_memory_text().c_str(), kBadInput);
   } catch (const std::filesystem::filesystem_error& error) {
-    return complain((error.path1().string() + ": " + error.code().message()).c_str(), kInputAtFault);
+    return report_error((error.path1().string() + ": " + error.code().message()).c_str(), kBadInput);
   } catch (const std::system_error& error) {
     // That is told at the end.
-    if (std::ferror(stdout) != 0) return kDone;
+    if (std::ferror(stdout) != 0) return kSuccess;
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
-    return complain(no_thread ? "no more threads can be started (ulimit -u)" : error.what(), kInputAtFault);
+    return report_error(no_thread ? "no more threads can be started (ulimit -u)" : error.what(), kBadInput);
   } catch (const std::exception& error) {
-    return complain(error.what(), kInputAtFault);
+    return report_error(error.what(), kBadInput);
   }
 }
 

@@ -72,7 +72,7 @@ LoadedBone load_milled_bone(const WriteOptions& options) {
   const Recording recording = read_recording_chain(options.recording);
   ScanOptions scan = options.scan;
   if (!scan.isovalue) scan.isovalue = recording.description.isovalue;
-  scan.made_into = recording.description.scan_hash;
+  scan.bone_fingerprint = recording.description.scan_hash;
   LoadedBone bone = read_bone(scan);
   repeat_milling(bone.volume, recording);
   for (const std::string& warning : bone.warnings) warn(warning);

@@ -41,7 +41,7 @@ const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>() {
   using S = app::ScanOptions;
   static const std::vector<Field<S>> all{
       {{"", "density", NumberRange::finite(), "Isovalue: bone where the density is greater",
-        app::kOfWhatIsBone | app::kOfTheBone, "iso"},
+        app::kBoneChoiceField | app::kBoneField, "iso"},
        [](const S& s) { return s.isovalue.value_or(std::numeric_limits<double>::quiet_NaN()); },
        [](S& s, double value) { s.isovalue = value; }}};
   return all;
@@ -51,25 +51,25 @@ template <>
 const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOptions, std::string>() {
   using S = app::ScanOptions;
   const auto text = [](const char* option, const char* type, unsigned of, const char* doc) {
-    return FieldDescription{"", type, {}, doc, of | app::kOfTheBone, option};
+    return FieldDescription{"", type, {}, doc, of | app::kBoneField, option};
   };
   FieldDescription no_go =
-      text("no-go", "LABEL,...", app::kOfNoGo, "Labels that the burr must not touch, by name or value");
+      text("no-go", "LABEL,...", app::kNoGoField, "Labels that the burr must not touch, by name or value");
   no_go.range = NumberRange::count(1);
   static const std::vector<Field<S, std::string>> all{
       field<S>(
-          text("series", "SERIES", app::kOfTheSource,
+          text("series", "SERIES", app::kSourceField,
                "DICOM series to read if there are several: its number in what info lists (3, or 3.1 for one "
                "of several volumes in a series), or the beginning of its UID; else the largest CT"),
           [](auto& s) -> auto& { return s.read.series; }),
-      {text("spacing", "X,Y,Z", app::kOfTheSource,
+      {text("spacing", "X,Y,Z", app::kSourceField,
             "How far the voxels of a stack of PNG or TIFF pictures lie apart in mm: along columns, rows, "
             "slices"),
        [](const S& s) {
          return s.read.spacing_mm ? fmt::format("{}", fmt::join(*s.read.spacing_mm, ",")) : std::string();
        },
        [](S& s, const std::string& given) { s.read.spacing_mm = spacing_of(given); }},
-      {text("as", "scan|labels", app::kOfTheSource,
+      {text("as", "scan|labels", app::kSourceField,
             "Take the values as densities, or as labels, all of which are bone (default: by header and "
             "content, with --iso as densities)"),
        [](const S& s) { return s.as_labels ? *s.as_labels ? "labels" : "scan" : ""; },
@@ -79,11 +79,11 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
        }},
       field<S>(
           text(
-              "labels", "FILE", app::kOfWhatIsBone,
+              "labels", "FILE", app::kBoneChoiceField,
               "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage, DICOM segmentation), on any grid"),
           [](auto& s) -> auto& { return s.labels.map; }),
       field<S>(
-          text("label-table", "FILE", app::kOfWhatIsBone,
+          text("label-table", "FILE", app::kBoneChoiceField,
                "Names and colours of labels: a colour table of 3D Slicer's or a label file of ITK-SNAP's"),
           [](auto& s) -> auto& { return s.labels.table; }),
       {no_go, [](const S& s) { return fmt::format("{}", fmt::join(s.labels.no_go, ",")); },
@@ -99,8 +99,8 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
 namespace osteomill::app {
 
 void add_bone_options(CLI::App& command, ScanOptions& options) {
-  add_fields(command, options, kOfWhatIsBone, kOfWhatIsBone);
-  add_texts(command, options, kOfWhatIsBone);
+  add_fields(command, options, kBoneChoiceField, kBoneChoiceField);
+  add_texts(command, options, kBoneChoiceField);
 }
 
 void add_scan_source(CLI::App& command, ScanOptions& options) {
@@ -109,7 +109,7 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
                   "DICOM folder or file, NRRD, MetaImage, NIfTI, a folder of PNG or TIFF slices, or one of "
                   "them in a zip file; without one, the built-in tooth")
       ->check(not_empty());
-  add_texts(command, options, kOfTheSource);
+  add_texts(command, options, kSourceField);
   command
       .add_option_function<double>(
           "--max-memory",
@@ -126,7 +126,7 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
   command.option_defaults()->group("Scan");
   add_scan_source(command, options);
   add_bone_options(command, options);
-  add_texts(command, options, kOfNoGo);
+  add_texts(command, options, kNoGoField);
 }
 
 namespace {
@@ -135,9 +135,9 @@ namespace {
 LabelGuess held_by(const ScanOptions& options, const Scan& scan) {
   const auto of = [](bool labels) { return labels ? LabelGuess::labels : LabelGuess::densities; };
   if (options.as_labels) return of(*options.as_labels);
-  if (options.made_into != 0 && options.isovalue) {
-    return of(fingerprint_of(scan.grid) != options.made_into &&
-              fingerprint_of(bone_of_labels(scan.grid, *options.isovalue)) == options.made_into);
+  if (options.bone_fingerprint != 0 && options.isovalue) {
+    return of(fingerprint_of(scan.grid) != options.bone_fingerprint &&
+              fingerprint_of(bone_of_labels(scan.grid, *options.isovalue)) == options.bone_fingerprint);
   }
   if (options.isovalue) return LabelGuess::densities;
   return scan.is_labels ? LabelGuess::labels : guess_labels(scan.grid);
@@ -148,7 +148,7 @@ LabelGuess held_by(const ScanOptions& options, const Scan& scan) {
 Scan open_scan(const ScanOptions& options) {
   if (options.scan.empty()) return {builtin_tooth(options.refinement), kBuiltinTooth, "made up", {}};
   Scan scan = read_scan(options.scan, options.read);
-  const bool said = scan.is_labels || options.as_labels || options.made_into != 0;
+  const bool said = scan.is_labels || options.as_labels || options.bone_fingerprint != 0;
   const LabelGuess held = held_by(options, scan);
   scan.is_labels = held == LabelGuess::labels;
   const auto warn_first = [&](std::string warning) {

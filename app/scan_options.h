@@ -28,16 +28,16 @@ struct ScanOptions {
   std::optional<bool> as_labels{};
   /// The fingerprint (fingerprint_of) of the bone that an earlier run made of this scan, 0 for none. It tells
   /// whether the scan was then taken for densities or for labels.
-  std::uint64_t made_into = 0;
+  std::uint64_t bone_fingerprint = 0;
   /// The refinement of the built-in tooth (builtin_tooth).
   double refinement = 1;
 };
 
-/// Flags of the fields of a ScanOptions, and of structs that have one. kOfTheSource: how the scan is read.
-/// kOfWhatIsBone: which part of it is bone. kOfNoGo: what the burr must not touch. kOfTheBone: another value
-/// makes another bone.
-inline constexpr unsigned kOfTheSource = 1u << 8, kOfWhatIsBone = 1u << 9, kOfNoGo = 1u << 10,
-                          kOfTheBone = 1u << 11;
+/// Flags of the fields of a ScanOptions, and of structs that have one. kSourceField: how the scan is read.
+/// kBoneChoiceField: which part of it is bone. kNoGoField: what the burr must not touch. kBoneField: another
+/// value makes another bone.
+inline constexpr unsigned kSourceField = 1u << 8, kBoneChoiceField = 1u << 9, kNoGoField = 1u << 10,
+                          kBoneField = 1u << 11;
 
 }  // namespace osteomill::app
 

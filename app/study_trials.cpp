@@ -19,9 +19,9 @@ namespace osteomill::app {
 namespace {
 
 constexpr const char* kBuiltIn = "built-in";
-constexpr std::size_t kBonesKept = 8;
+constexpr std::size_t kMaxBones = 8;
 
-using Text = Field<AskedTrial, std::string>;
+using Text = Field<TrialSpec, std::string>;
 
 std::string tool_text(const MillingTool& tool) {
   return fmt::format("{} {} {}", tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm);
@@ -45,8 +45,8 @@ std::vector<std::string> trial_warnings(StudyTest test, const TrialPlan& trial) 
 }
 
 std::vector<Text> trial_texts() {
-  using A = AskedTrial;
-  const Text scan{{"", "", {}, "", kOfTheBone, "scan"},
+  using A = TrialSpec;
+  const Text scan{{"", "", {}, "", kBoneField, "scan"},
                   [](const A& a) { return a.scan.scan.empty() ? kBuiltIn : a.scan.scan; },
                   [](A& a, const std::string& name) { a.scan.scan = name == kBuiltIn ? "" : name; }};
   const Text algorithm{{"", "", {}, "", 0, "algorithm"},
@@ -61,12 +61,12 @@ std::vector<Text> trial_texts() {
                                  fields_within<A>(&A::trial, fields_of<TrialOptions, std::string>())});
 }
 
-std::vector<Field<AskedTrial>> trial_numbers() {
+std::vector<Field<TrialSpec>> trial_numbers() {
   // Whole numbers beyond this are not numbers of their own in a double.
   constexpr double kMaxSeed = 1ull << 53;
-  using A = AskedTrial;
+  using A = TrialSpec;
   const std::vector<Field<A>> own{
-      field<A>({"", "mm", {0.03, 1}, "Voxel size of the built-in tooth", kOfTheBone, "voxel"}, &A::voxel_mm),
+      field<A>({"", "mm", {0.03, 1}, "Voxel size of the built-in tooth", kBoneField, "voxel"}, &A::voxel_mm),
       field<A>({"", "Hz", {100, 20000}, "Rate of the haptic loop", 0, "rate"}, &A::rate_hz),
       field<A>(
           {"", "N s/mm", NumberRange::positive(), "Damping of the device on a wall", 0, "device-damping"},
@@ -94,12 +94,12 @@ double checked_number(const std::string& key, const std::string& text, const Num
   return value;
 }
 
-void set_one(AskedTrial& asked, const std::string& key, const std::string& text) {
+void set_one(TrialSpec& asked, const std::string& key, const std::string& text) {
   HapticSettings& haptics = asked.trial.milling.setup.haptics;
   if (text.empty()) throw std::invalid_argument(key + " is empty");
   if (is_own_setting(key)) {
     set_own(haptics, key, text);
-  } else if (const Field<AskedTrial>* number = field_of_option(numbers_of_a_trial(), key)) {
+  } else if (const Field<TrialSpec>* number = field_of_option(numbers_of_a_trial(), key)) {
     number->set(asked, checked_number(key, text, number->range));
   } else if (const Text* known = field_of_option(texts_of_a_trial(), key)) {
     known->set(asked, text);
@@ -112,7 +112,7 @@ void set_one(AskedTrial& asked, const std::string& key, const std::string& text)
 StudySettings options_and_units() {
   StudySettings options;
   for (const Text& text : texts_of_a_trial()) options.emplace_back(text.option, "");
-  for (const Field<AskedTrial>& field : numbers_of_a_trial()) options.emplace_back(field.option, field.unit);
+  for (const Field<TrialSpec>& field : numbers_of_a_trial()) options.emplace_back(field.option, field.unit);
   for (const std::string& option : shared_options()) options.emplace_back(option, "");
   return options;
 }
@@ -128,8 +128,8 @@ StudyDesign read_design(const std::string& file) {
 
 }  // namespace
 
-const std::vector<Field<AskedTrial>>& numbers_of_a_trial() {
-  static const std::vector<Field<AskedTrial>> all = trial_numbers();
+const std::vector<Field<TrialSpec>>& numbers_of_a_trial() {
+  static const std::vector<Field<TrialSpec>> all = trial_numbers();
   return all;
 }
 
@@ -138,31 +138,31 @@ const std::vector<Text>& texts_of_a_trial() {
   return all;
 }
 
-AskedTrial asked_trial(const StudySettings& settings) {
-  AskedTrial asked;
+TrialSpec trial_spec(const StudySettings& settings) {
+  TrialSpec asked;
   asked.trial.hand.script.until_leant = true;
   for (const auto& [key, text] : settings) set_one(asked, key, text);
   for (const auto& [key, text] : settings)
     if (asked.draw_hand && key.starts_with("hand-"))
       throw std::invalid_argument("draw-hand draws what " + key + " sets");
-  asked.scan.refinement = AskedTrial().voxel_mm / asked.voxel_mm;
+  asked.scan.refinement = TrialSpec().voxel_mm / asked.voxel_mm;
   return asked;
 }
 
-std::string bone_text(const AskedTrial& asked) {
+std::string bone_text(const TrialSpec& asked) {
   std::string words;
   const auto add = [&](const FieldDescription& field, const std::string& value) {
-    if (field.has(kOfTheBone)) words += fmt::format("{}{}={}", words.empty() ? "" : " ", field.option, value);
+    if (field.has(kBoneField)) words += fmt::format("{}{}={}", words.empty() ? "" : " ", field.option, value);
   };
   for (const Text& text : texts_of_a_trial()) add(text, text.get(asked));
-  for (const Field<AskedTrial>& field : numbers_of_a_trial()) add(field, fmt::format("{}", field.get(asked)));
+  for (const Field<TrialSpec>& field : numbers_of_a_trial()) add(field, fmt::format("{}", field.get(asked)));
   return words;
 }
 
 StudyTrials::StudyTrials(const std::string& file, std::filesystem::path scans_from)
     : file_(file), scans_from_(std::move(scans_from)), design_(read_design(file)) {}
 
-StudyTrials::Bone& StudyTrials::bone_of(const AskedTrial& asked) {
+StudyTrials::Bone& StudyTrials::bone_of(const TrialSpec& asked) {
   const std::string words = bone_text(asked);
   std::unique_ptr<Bone>& bone = bones_[words];
   if (bone) return *bone;
@@ -186,7 +186,7 @@ const Volume& StudyTrials::wall_of(const MillingTool& tool) {
 }
 
 TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
-  const AskedTrial asked = asked_trial(settings);
+  const TrialSpec asked = trial_spec(settings);
   TrialSettings set = trial_settings(asked.trial);
   set.tick_s = 1 / asked.rate_hz;
   set.device_damping_Ns_per_mm = asked.device_damping_Ns_per_mm;
@@ -211,7 +211,7 @@ std::string StudyTrials::settings_warning() const {
 }
 
 std::vector<TrialPlan> StudyTrials::make(std::size_t first, std::size_t count) {
-  if (bones_.size() > kBonesKept) bones_.clear();
+  if (bones_.size() > kMaxBones) bones_.clear();
   std::vector<TrialPlan> trials;
   for (std::size_t number = first; number < first + count; ++number) {
     try {

@@ -18,7 +18,7 @@
 namespace osteomill::app {
 
 /// The settings of a trial: the options of `compare`, and those that only a study has.
-struct AskedTrial {
+struct TrialSpec {
   ScanOptions scan;
   TrialOptions trial;
   /// The voxel size of the built-in tooth.
@@ -30,16 +30,16 @@ struct AskedTrial {
 };
 
 /// Returns the numbers and the texts of a trial, each under its option.
-const std::vector<Field<AskedTrial>>& numbers_of_a_trial();
-const std::vector<Field<AskedTrial, std::string>>& texts_of_a_trial();
+const std::vector<Field<TrialSpec>>& numbers_of_a_trial();
+const std::vector<Field<TrialSpec, std::string>>& texts_of_a_trial();
 
 /// Returns the settings that a study gives a trial. Throws std::invalid_argument, or a CLI::Error, if a value
 /// is out of its range.
-AskedTrial asked_trial(const StudySettings& settings);
+TrialSpec trial_spec(const StudySettings& settings);
 
-/// Returns which bone a trial has: its fields that have kOfTheBone, in words. Trials whose words are the same
+/// Returns which bone a trial has: its fields that have kBoneField, in words. Trials whose words are the same
 /// share a bone.
-std::string bone_text(const AskedTrial& asked);
+std::string bone_text(const TrialSpec& asked);
 
 /// A study as its file describes it, and its trials, each made of what is set of it. Opens every
 /// bone once.
@@ -77,7 +77,7 @@ class StudyTrials {
   };
 
   TrialPlan trial_of(const StudySettings& settings);
-  Bone& bone_of(const AskedTrial& asked);
+  Bone& bone_of(const TrialSpec& asked);
   const Volume& wall_of(const MillingTool& tool);
 
   std::string file_;

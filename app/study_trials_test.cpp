@@ -20,27 +20,27 @@ namespace {
 
 TEST(StudyTrials, AnAxisSetsEveryField) {
   std::set<std::string> options;
-  for (const Field<AskedTrial>& field : numbers_of_a_trial()) {
+  for (const Field<TrialSpec>& field : numbers_of_a_trial()) {
     EXPECT_TRUE(options.insert(field.option).second) << field.option << " is there twice";
     const bool is_switch = field.range == NumberRange::on_or_off();
     const double usual = std::max(0.75, 1.5 * field.range.min) + (field.range.whole ? 2.25 : 0);
     const double value = is_switch ? 1 : usual;
     const std::string text = is_switch ? "true" : fmt::format("{}", value);
-    EXPECT_EQ(field.get(asked_trial({{field.option, text}})), value) << field.option;
-    EXPECT_NE(field.get(AskedTrial()), value) << field.option;
+    EXPECT_EQ(field.get(trial_spec({{field.option, text}})), value) << field.option;
+    EXPECT_NE(field.get(TrialSpec()), value) << field.option;
   }
   EXPECT_GT(options.size(), 20u);
 }
 
 TEST(StudyTrials, NoNumberCanBeNotANumberOrAWord) {
-  for (const Field<AskedTrial>& field : numbers_of_a_trial()) {
+  for (const Field<TrialSpec>& field : numbers_of_a_trial()) {
     for (const char* text : {"nan", "-nan", "inf", "push", ""})
-      EXPECT_THROW(asked_trial({{field.option, text}}), std::invalid_argument) << field.option << " " << text;
+      EXPECT_THROW(trial_spec({{field.option, text}}), std::invalid_argument) << field.option << " " << text;
   }
-  EXPECT_ANY_THROW(asked_trial({{"stiffness", "nan"}}));
-  EXPECT_ANY_THROW(asked_trial({{"line-proxy.stiffness", "nan"}}));
-  EXPECT_THROW(asked_trial({{"algorithm", "nan"}}), std::invalid_argument);
-  EXPECT_THROW(asked_trial({{"entry", "1,2,nan"}}), std::invalid_argument);
+  EXPECT_ANY_THROW(trial_spec({{"stiffness", "nan"}}));
+  EXPECT_ANY_THROW(trial_spec({{"line-proxy.stiffness", "nan"}}));
+  EXPECT_THROW(trial_spec({{"algorithm", "nan"}}), std::invalid_argument);
+  EXPECT_THROW(trial_spec({{"entry", "1,2,nan"}}), std::invalid_argument);
 }
 
 class StudyOfScans : public ::testing::Test {
@@ -83,16 +83,16 @@ TEST_F(StudyOfScans, EachTrialHasTheBoneThatItsAxesName) {
 TEST_F(StudyOfScans, EveryFieldOfTheBoneTellsBonesApart) {
   std::size_t told = 0;
   for (const auto& field : texts_of_a_trial()) {
-    const bool of_the_bone = field.has(kOfTheBone);
+    const bool of_the_bone = field.has(kBoneField);
     const std::string value = field.option == "as"          ? "labels"
                               : "algorithm" == field.option ? "line-proxy"
                                                             : "1,2,3";
-    EXPECT_EQ(bone_text(asked_trial({{field.option, value}})) != bone_text({}), of_the_bone) << field.option;
+    EXPECT_EQ(bone_text(trial_spec({{field.option, value}})) != bone_text({}), of_the_bone) << field.option;
     told += of_the_bone ? 1 : 0;
   }
   EXPECT_EQ(told, 7u);
-  EXPECT_NE(bone_text(asked_trial({{"iso", "300"}})), bone_text(asked_trial({{"iso", "400"}})));
-  EXPECT_EQ(bone_text(asked_trial({{"push", "2"}, {"burr-radius", "2"}})), bone_text({}));
+  EXPECT_NE(bone_text(trial_spec({{"iso", "300"}})), bone_text(trial_spec({{"iso", "400"}})));
+  EXPECT_EQ(bone_text(trial_spec({{"push", "2"}, {"burr-radius", "2"}})), bone_text({}));
 }
 
 }  // namespace

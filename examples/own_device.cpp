@@ -16,7 +16,7 @@ class OwnDevice : public osteomill::Device {
   explicit OwnDevice(const osteomill::Pose& above) : X_WD_(above) {}
   osteomill::Pose read_pose() override { return X_WD_; }
   void write_wrench(const osteomill::Wrench& wrench) override { force_N_ = wrench.force_N; }
-  bool spindle_asked() const noexcept override { return true; }
+  bool is_spindle_requested() const noexcept override { return true; }
   // Stops where the bone presses against it.
   void tick_done(const osteomill::Pose&, double dt_s) noexcept override {
     if (force_N_.norm() < 2) X_WD_.position_mm -= 2 * dt_s * shaft_direction(X_WD_);

@@ -28,7 +28,7 @@ TEST(DeviceAllocation, NothingThatTheHapticThreadCallsAllocates) {
     const long before = allocations_of_this_thread();
     if (n % 70 == 0) device.put_at({{1, 2, 3}, Quat::Identity()});
     const Pose X_WD = device.read_pose();
-    device.write_wrench({{0, 0, device.spindle_asked() ? 3.0 : 1.0}, {0, 5, 0}});
+    device.write_wrench({{0, 0, device.is_spindle_requested() ? 3.0 : 1.0}, {0, 5, 0}});
     device.tick_done(X_WD, 1e-3);
     if (n == 2900) device.disengage();
     allocations += allocations_of_this_thread() - before;

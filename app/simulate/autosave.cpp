@@ -27,7 +27,7 @@ constexpr const char* kSeriesKey = "scan.series";
 constexpr const char* kSpacingKey = "scan.spacing";
 constexpr const char* kLabelMapKey = "scan.labels";
 constexpr const char* kLabelTableKey = "scan.label_table";
-constexpr auto kBetween = 5s;
+constexpr auto kInterval = 5s;
 constexpr int kWritingShare = 50;
 // 1 GiB.
 constexpr std::size_t kMaxBricks = (std::size_t{1} << 30) / sizeof(DensityBlock);
@@ -66,7 +66,7 @@ RunDescription describe(const ScanOptions& scan, const LiveMilling& milling) {
 
 }  // namespace
 
-std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& folder) {
+std::optional<AutosaveFile> AutosaveFile::try_lock(const fs::path& folder) {
   auto lock = FileLock::try_lock(folder);
   if (!lock) return std::nullopt;
   return AutosaveFile(folder, *std::move(lock));
@@ -81,14 +81,14 @@ std::optional<AutosaveFile> AutosaveFile::make() {
   for (int n = 0; n < 100; ++n) {
     std::string folder = all / fmt::format("{:%Y%m%d-%H%M%S}-XXXXXX", fmt::localtime(std::time(nullptr)));
     if (::mkdtemp(folder.data()) == nullptr) break;
-    if (auto file = locked(folder)) return file;
+    if (auto file = try_lock(folder)) return file;
   }
   return std::nullopt;
 }
 
 std::optional<LeftoverMilling> last_leftover_milling() {
   for (const fs::path& folder : folders_in(autosave_folder())) {
-    auto file = AutosaveFile::locked(folder);
+    auto file = AutosaveFile::try_lock(folder);
     if (!file) continue;
     std::error_code ignored;
     if (!fs::exists(file->path(), ignored)) {
@@ -130,7 +130,7 @@ ScanOptions scan_of(const SessionStart& leftover) {
   scan.labels = {text(kLabelMapKey), text(kLabelTableKey), {}};
   for (const Label& label : leftover.run.labels)
     if (label.no_go) scan.labels.no_go.push_back(std::to_string(label.value));
-  scan.made_into = leftover.run.scan_hash;
+  scan.bone_fingerprint = leftover.run.scan_hash;
   return scan;
 }
 
@@ -140,18 +140,18 @@ Autosave::Autosave(ScanOptions scan, std::optional<AutosaveFile> file)
 void Autosave::take_result() {
   try {
     const Clock::duration took = work_.get();
-    next_ = Clock::now() + std::max<Clock::duration>(kBetween, kWritingShare * took);
+    next_ = Clock::now() + std::max<Clock::duration>(kInterval, kWritingShare * took);
   } catch (const std::exception& error) {
     next_ = Clock::now() + 60s;
     kept_version_ = 0;
-    complaint_ = std::string("What is milled is not kept for the next start: ") + error.what();
+    error_ = std::string("What is milled is not kept for the next start: ") + error.what();
   }
 }
 
 void Autosave::update(LiveMilling& milling) {
   if (work_.valid() && work_.wait_for(0s) == std::future_status::ready) take_result();
   if (work_.valid()) return;
-  if (!unsaved(milling)) {
+  if (!has_unsaved(milling)) {
     if (std::exchange(kept_, false)) {
       file_->clear();
       next_ = {};
@@ -163,8 +163,8 @@ void Autosave::update(LiveMilling& milling) {
   if (!file_) file_ = AutosaveFile::make();
   if (!file_) {
     next_ = Clock::time_point::max();
-    complaint_ = "What is milled is not kept for the next start, since its folder cannot be written: " +
-                 autosave_folder().string();
+    error_ = "What is milled is not kept for the next start, since its folder cannot be written: " +
+             autosave_folder().string();
     return;
   }
   kept_version_ = version;

@@ -25,7 +25,7 @@ class AutosaveFile {
   /// Makes a file in a new folder; nothing if that cannot be made, or the user has no state folder.
   static std::optional<AutosaveFile> make();
   /// Takes the file in this folder; nothing if another program has it locked.
-  static std::optional<AutosaveFile> locked(const std::filesystem::path& folder);
+  static std::optional<AutosaveFile> try_lock(const std::filesystem::path& folder);
 
   std::filesystem::path path() const { return folder_ / "milled.h5"; }
   /// Removes the file, and what a program left that was killed while it wrote.
@@ -60,15 +60,15 @@ class Autosave {
   /// Call once for each picture. Removes the file if nothing is unsaved.
   void update(LiveMilling& milling);
   /// The bone of this version (BoneFollower::version) was saved by the user.
-  void saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
+  void mark_saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
   /// Returns whether bone was milled that is not saved.
-  bool unsaved(const LiveMilling& milling) const {
+  bool has_unsaved(const LiveMilling& milling) const {
     return milling.follower().is_touched() && milling.follower().version() != saved_version_;
   }
   /// Removes the file: the user does not want what was milled.
   void discard();
   /// Returns the reason why nothing can be kept, once; otherwise an empty text.
-  std::string take_complaint() { return std::exchange(complaint_, {}); }
+  std::string take_error() { return std::exchange(error_, {}); }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -80,7 +80,7 @@ class Autosave {
   std::uint64_t kept_version_ = 0;
   bool kept_ = false;
   Clock::time_point next_;
-  std::string complaint_;
+  std::string error_;
   // The work under way, which returns how long it took. Last, so that it is waited for at the end.
   std::future<Clock::duration> work_;
 };

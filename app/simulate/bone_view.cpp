@@ -45,7 +45,7 @@ std::string tool_fault(const MillingTool& tool, const BoneBox& box) {
                      tool.burr_radius_mm == radius_mm ? "a burr" : "a shaft", radius_mm, widest_mm);
 }
 
-Camera with_whole(Camera camera, const BoneBox& box, const PixelSize& size) {
+Camera showing_whole(Camera camera, const BoneBox& box, const PixelSize& size) {
   camera.focus_W = box.centre_W();
   const double up = std::tan(0.5 * camera.field_of_view_rad) * kFilled;
   // In a narrow window the panels would leave no room.
@@ -72,11 +72,11 @@ Camera first_camera(const BoneBox& box, const PixelSize& size) {
   const Vec3 level = from_left ? Vec3(std::cos(kAside_rad) * left + std::sin(kAside_rad) * front)
                                : Vec3(std::cos(kAside_rad) * front + std::sin(kAside_rad) * left);
   const Vec3 towards_viewer = std::cos(kAbove_rad) * level + std::sin(kAbove_rad) * Vec3::UnitZ();
-  return with_whole(camera_on(box.bounds(), -towards_viewer, Vec3::UnitZ()), box, size);
+  return showing_whole(camera_on(box.bounds(), -towards_viewer, Vec3::UnitZ()), box, size);
 }
 
-std::optional<Pose> tool_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                                const PixelSize& size, double x_px, double y_px) {
+std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                                     const PixelSize& size, double x_px, double y_px) {
   const Vec3 ray_W = ray_through(camera, size, x_px, y_px);
   const GridGeometry& geometry = bone.geometry();
   const Vec3 last = Vec3(geometry.dims[0] - 1, geometry.dims[1] - 1, geometry.dims[2] - 1);
@@ -93,11 +93,12 @@ std::optional<Pose> tool_before(const Volume& bone, const MillingTool& tool, con
   return free_pose_before(bone, tool, *point_W, -ray_W, -ray_W.cross(right_W));
 }
 
-Pose tool_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                        const PixelSize& size, double above_px) {
-  const auto X_WT = tool_before(bone, tool, camera, size, 0.5 * size.width, 0.5 * size.height - above_px);
+Pose tool_pose_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                             const PixelSize& size, double above_px) {
+  const auto X_WT =
+      tool_pose_before(bone, tool, camera, size, 0.5 * size.width, 0.5 * size.height - above_px);
   if (X_WT) return *X_WT;
-  if (above_px != 0) return tool_before_middle(bone, tool, camera, size);
+  if (above_px != 0) return tool_pose_before_middle(bone, tool, camera, size);
   return free_pose_before(bone, tool, camera.focus_W, camera.towards_viewer_W(), camera.up_W());
 }
 

@@ -24,18 +24,18 @@ BoneBox box_of_bone(const Volume& bone);
 std::string tool_fault(const MillingTool& tool, const BoneBox& box);
 
 /// The camera turned as it is, with all of the bone between the panels.
-Camera with_whole(Camera camera, const BoneBox& box, const PixelSize& size);
+Camera showing_whole(Camera camera, const BoneBox& box, const PixelSize& size);
 
 /// All of the bone upright by the patient's axes: from the front, or from the left if the bone is deeper
 /// than wide, a little from above and aside.
 Camera first_camera(const BoneBox& box, const PixelSize& size);
 
 /// The tool free of bone, before the point of bone that is seen at a pixel; nothing if no bone is.
-std::optional<Pose> tool_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                                const PixelSize& size, double x_px, double y_px);
+std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                                     const PixelSize& size, double x_px, double y_px);
 /// Returns the same in the middle of the view, or `above_px` above it; if there is no bone, the pose as if
 /// there were.
-Pose tool_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                        const PixelSize& size, double above_px = 0);
+Pose tool_pose_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                             const PixelSize& size, double above_px = 0);
 
 }  // namespace osteomill::app

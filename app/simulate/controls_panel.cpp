@@ -29,15 +29,16 @@ bool settle(const char* label, double& value, float min, float max, const char* 
 
 // A slider for a field of what is wanted: its values from `min` to `max`, which are those of usual tools. The
 // command line takes the field's whole range.
-bool settle_field(std::string_view option, MillingSetup& wanted, float min, float max, int decimals) {
+bool settle_field(std::string_view option, MillingSetup& requested_setup, float min, float max,
+                  int decimals) {
   const Field<MillingSetup>& field = *field_of_option(fields_of<MillingSetup>(), option);
   std::string label = field.option;
   std::ranges::replace(label, '-', ' ');
-  double value = field.get(wanted);
+  double value = field.get(requested_setup);
   const bool settled =
       settle(label.c_str(), value, min, max, fmt::format("%.{}f {}", decimals, field.unit).c_str());
-  ui::hint(field.doc);
-  field.set(wanted, value);
+  ui::tooltip(field.doc);
+  field.set(requested_setup, value);
   return settled;
 }
 
@@ -56,43 +57,43 @@ std::string end_that_fits(const std::string& name) {
 
 void draw_scan(ViewState& view, const std::string& name) {
   ImGui::TextUnformatted(end_that_fits(name).c_str());
-  ui::hint(name);
+  ui::tooltip(name);
   const bool entered = ui::text_field("scan", view.scan_path.data(), view.scan_path.size());
-  ui::hint("Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window");
+  ui::tooltip("Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window");
   ImGui::SameLine();
   const bool pressed = ui::button("Open");
-  if ((entered || pressed) && view.scan_path[0] != 0) view.scan_asked = view.scan_path.data();
+  if ((entered || pressed) && view.scan_path[0] != 0) view.scan_requested = view.scan_path.data();
 }
 
-void draw_algorithm(MillingSetup& wanted, bool& changed) {
+void draw_algorithm(MillingSetup& requested_setup, bool& changed) {
   if (!ui::header("Algorithm", true)) return;
   bool left = true;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     if (!std::exchange(left, !left)) ImGui::SameLine(ui::px(kWidth_px / 2));
-    if (ui::radio(algorithm.id.label.c_str(), wanted.algorithm.id == algorithm.id)) {
-      wanted.algorithm = algorithm;
-      wanted.haptics.clear_option(kStiffnessOption);
+    if (ui::radio(algorithm.id.label.c_str(), requested_setup.algorithm.id == algorithm.id)) {
+      requested_setup.algorithm = algorithm;
+      requested_setup.haptics.clear_option(kStiffnessOption);
       changed = true;
     }
   }
-  const auto before = stiffness_of(wanted);
+  const auto before = stiffness_of(requested_setup);
   if (!before) return;
   double stiffness = *before;
   const bool settled = settle("stiffness", stiffness, 0.5f, 30.0f, "%.1f N/mm");
-  if (stiffness != *before) wanted.haptics.set_option(kStiffnessOption, stiffness);
+  if (stiffness != *before) requested_setup.haptics.set_option(kStiffnessOption, stiffness);
   changed = changed || settled;
 }
 
-void draw_tool(MillingSetup& wanted, bool& sound, bool& changed) {
+void draw_tool(MillingSetup& requested_setup, bool& sound, bool& changed) {
   if (!ui::header("Tool", true)) return;
-  changed = settle_field("burr-radius", wanted, 0.5f, 4.0f, 1) || changed;
-  changed = settle_field("shaft-radius", wanted, 0.3f, 3.0f, 1) || changed;
-  changed = settle_field("spindle-speed", wanted, 5000, 120000, 0) || changed;
-  changed = ui::checkbox("vibration", &wanted.vibration.on) || changed;
-  ui::hint("You feel the burr's teeth in the hand");
+  changed = settle_field("burr-radius", requested_setup, 0.5f, 4.0f, 1) || changed;
+  changed = settle_field("shaft-radius", requested_setup, 0.3f, 3.0f, 1) || changed;
+  changed = settle_field("spindle-speed", requested_setup, 5000, 120000, 0) || changed;
+  changed = ui::checkbox("vibration", &requested_setup.vibration.on) || changed;
+  ui::tooltip("You feel the burr's teeth in the hand");
   ImGui::SameLine();
-  changed = ui::checkbox("burr pulls", &wanted.cutting_reaction) || changed;
-  ui::hint("Cutting pulls the burr sideways, as it turns, and twists the handle");
+  changed = ui::checkbox("burr pulls", &requested_setup.cutting_reaction) || changed;
+  ui::tooltip("Cutting pulls the burr sideways, as it turns, and twists the handle");
   ImGui::SameLine();
   ui::checkbox("sound", &sound);
 }
@@ -100,7 +101,7 @@ void draw_tool(MillingSetup& wanted, bool& sound, bool& changed) {
 void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if (!ui::header("Milling", true)) return;
   // A device's own button turns it on as well.
-  bool spindle = milling.spindle_asked() || milling.state().spindle_on;
+  bool spindle = milling.is_spindle_requested() || milling.state().spindle_on;
   if (ui::checkbox("spindle on", &spindle)) milling.set_spindle(spindle);
   ImGui::SameLine();
   bool paused = milling.state().record.paused;
@@ -112,11 +113,11 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
     }
   }
   const bool free = !milling.is_preparing();
-  if (ui::button("Undo cut", free && milling.follower().cuts() > 0)) view.undo_asked = true;
-  ui::hint(
+  if (ui::button("Undo cut", free && milling.follower().cuts() > 0)) view.undo_requested = true;
+  ui::tooltip(
       "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are kept)");
   ImGui::SameLine();
-  if (ui::button("Reset bone", free && milling.follower().is_touched())) view.reset_asked = true;
+  if (ui::button("Reset bone", free && milling.follower().is_touched())) view.reset_requested = true;
   ImGui::SameLine();
   const auto cuts = static_cast<int>(milling.follower().cuts());
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
@@ -132,8 +133,9 @@ void draw_boundaries(ViewState& view, Simulation& simulation) {
     const std::string label = fmt::format("{:.4g}", boundary.density);
     const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
-    if (ui::button(label.c_str(), !simulation.milling.is_preparing())) view.isovalue_asked = boundary.density;
-    ui::hint(
+    if (ui::button(label.c_str(), !simulation.milling.is_preparing()))
+      view.isovalue_requested = boundary.density;
+    ui::tooltip(
         fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above));
   }
 }
@@ -160,10 +162,10 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   }
   const bool moved = ImGui::IsItemActive();
   if (ImGui::IsItemDeactivatedAfterEdit() && view.isovalue)
-    view.isovalue_asked = static_cast<double>(*view.isovalue);
-  ui::hint("What is denser than this is bone. Drag, or hold Ctrl and click to type a number");
+    view.isovalue_requested = static_cast<double>(*view.isovalue);
+  ui::tooltip("What is denser than this is bone. Drag, or hold Ctrl and click to type a number");
   ImGui::EndDisabled();
-  if (!moved && !milling.is_preparing() && !view.isovalue_asked) view.isovalue.reset();
+  if (!moved && !milling.is_preparing() && !view.isovalue_requested) view.isovalue.reset();
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
   for (const std::string& warning : simulation.warnings) ui::warning(warning);
 }
@@ -194,17 +196,17 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   for (const auto& [from, direction_W, up_W] : kPatientViews) {
     const std::string letter(1, static_cast<char>(std::toupper(from.front())));
     if (ui::button((letter + "##view").c_str()))
-      view.camera = with_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
-    ui::hint(fmt::format("From {}", from));
+      view.camera = showing_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
+    ui::tooltip(fmt::format("From {}", from));
     ImGui::SameLine();
   }
-  if (ui::button("Whole")) view.camera = with_whole(view.camera, view.box, size);
-  ui::hint("Shows all of the bone from the same side");
+  if (ui::button("Whole")) view.camera = showing_whole(view.camera, view.box, size);
+  ui::tooltip("Shows all of the bone from the same side");
   if (ui::button("Find tool")) view.camera.focus_W = tool_W;
-  ui::hint("Moves the view so that the burr is in its middle");
+  ui::tooltip("Moves the view so that the burr is in its middle");
   ImGui::SameLine();
-  if (ui::button("Bring it here (B)##bring")) view.bring_asked = true;
-  ui::hint(
+  if (ui::button("Bring it here (B)##bring")) view.bring_requested = true;
+  ui::tooltip(
       "Brings the tool to just before the bone in the middle of the view; the key B, to just before the "
       "bone under the pointer");
   ui::checkbox("ghost", &view.ghost);
@@ -248,21 +250,22 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   draw_scan(view, simulation.scan.name);
   bool changed = false;
   draw_isovalue(view, simulation);
-  draw_session(view, simulation.milling, simulation.holder.is_pointer());
-  draw_algorithm(view.wanted, changed);
-  draw_tool(view.wanted, view.sound, changed);
+  draw_session(view, simulation.milling, simulation.tool_source.is_pointer());
+  draw_algorithm(view.requested_setup, changed);
+  draw_tool(view.requested_setup, view.sound, changed);
   draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);
   draw_cuts(view, simulation);
   files.draw(view, simulation);
-  view.wanted_is_new = view.wanted_is_new || changed;
+  view.setup_changed = view.setup_changed || changed;
   view.changes += changed ? 1 : 0;
-  if (view.wanted_is_new && !simulation.milling.is_preparing()) {
-    view.wanted_is_new = false;
-    if (const std::string fault = tool_fault(view.wanted.tool, view.box); !fault.empty()) {
-      view.dialogues.complain(fault);
-      view.wanted = simulation.milling.setup();
+  if (view.setup_changed && !simulation.milling.is_preparing()) {
+    view.setup_changed = false;
+    if (const std::string fault = tool_fault(view.requested_setup.tool, view.box); !fault.empty()) {
+      view.dialogues.add_error(fault);
+      view.requested_setup = simulation.milling.setup();
     } else {
-      view.dialogues.attempt([&] { view.wanted_is_new = !simulation.milling.change(view.wanted); });
+      view.dialogues.run_reporting_errors(
+          [&] { view.setup_changed = !simulation.milling.change(view.requested_setup); });
     }
   }
   ImGui::PopItemWidth();

@@ -21,16 +21,16 @@ void DialogueQueue::add(Dialogue dialogue) {
   if (std::none_of(dialogues_.begin(), dialogues_.end(), same)) dialogues_.push_back(std::move(dialogue));
 }
 
-void DialogueQueue::complain(const std::string& what) {
+void DialogueQueue::add_error(const std::string& what) {
   add({kComplaint, what, {{"Close", {}}}, {}, {}});
 }
 
-bool DialogueQueue::attempt(const std::function<void()>& work) {
+bool DialogueQueue::run_reporting_errors(const std::function<void()>& work) {
   try {
     work();
     return true;
   } catch (const std::exception& error) {
-    complain(error.what());
+    add_error(error.what());
     return false;
   }
 }
@@ -45,7 +45,7 @@ void DialogueQueue::proceed() {
   if (action) action();
 }
 
-std::vector<std::string> DialogueQueue::complaints() const {
+std::vector<std::string> DialogueQueue::errors() const {
   std::vector<std::string> complaints;
   for (const Dialogue& dialogue : dialogues_) {
     if (dialogue.title == kComplaint) complaints.push_back(dialogue.text);
@@ -54,12 +54,12 @@ std::vector<std::string> DialogueQueue::complaints() const {
 }
 
 Dialogue unsaved_question(const std::string& what, std::function<bool()> is_saved, Dialogue::Action save,
-                          Dialogue::Action go_on, Dialogue::Action stay) {
+                          Dialogue::Action on_proceed, Dialogue::Action stay) {
   return {"Save the milled bone?",
           what + " loses what was milled and not saved.",
-          {{"Save", std::move(save)}, {"Discard", go_on}, {"Cancel", std::move(stay)}},
+          {{"Save", std::move(save)}, {"Discard", on_proceed}, {"Cancel", std::move(stay)}},
           std::move(is_saved),
-          go_on};
+          on_proceed};
 }
 
 Dialogue report_question(Dialogue::Action report, Dialogue::Action close) {

@@ -33,12 +33,12 @@ class DialogueQueue {
   /// Does nothing if one with the same title and text is there already.
   void add(Dialogue dialogue);
   /// Says what went wrong, until somebody has read it.
-  void complain(const std::string& what);
+  void add_error(const std::string& what);
   /// Does the work and complains of what it throws. Returns whether it threw nothing.
-  bool attempt(const std::function<void()>& work);
+  bool run_reporting_errors(const std::function<void()>& work);
 
   /// The dialogue to be drawn; null if there is none.
-  const Dialogue* shown() const { return dialogues_.empty() ? nullptr : &dialogues_.front(); }
+  const Dialogue* current() const { return dialogues_.empty() ? nullptr : &dialogues_.front(); }
   /// Notes which of its choices was pressed; `proceed` does it.
   void choose(std::size_t choice) { chosen_ = choice; }
   /// Closes the dialogue shown, if it was answered or need not wait any longer, and does what that means. To
@@ -46,7 +46,7 @@ class DialogueQueue {
   void proceed();
 
   /// The complaints that the user has not read yet.
-  std::vector<std::string> complaints() const;
+  std::vector<std::string> errors() const;
 
  private:
   std::deque<Dialogue> dialogues_;
@@ -54,9 +54,9 @@ class DialogueQueue {
 };
 
 /// Asks whether to save the milled bone before `what` ("Closing the window") would lose it. Once it is saved
-/// the question closes by itself and `go_on` is done.
+/// the question closes by itself and `on_proceed` is done.
 Dialogue unsaved_question(const std::string& what, std::function<bool()> is_saved, Dialogue::Action save,
-                          Dialogue::Action go_on, Dialogue::Action stay);
+                          Dialogue::Action on_proceed, Dialogue::Action stay);
 
 /// Asks whether to make the report of what was recorded before the window closes.
 Dialogue report_question(Dialogue::Action report, Dialogue::Action close);

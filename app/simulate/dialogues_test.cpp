@@ -12,8 +12,8 @@ std::vector<Dialogue> dialogues_of_the_window(int& acted) {
   const auto act = [&acted] { ++acted; };
   const auto never = [] { return false; };
   DialogueQueue complaints;
-  complaints.complain("no-such-scan: cannot be read");
-  return {*complaints.shown(),
+  complaints.add_error("no-such-scan: cannot be read");
+  return {*complaints.current(),
           unsaved_question("Closing the window", never, act, act, act),
           unsaved_question("Resetting the bone", never, act, act, act),
           report_question(act, act),
@@ -32,8 +32,8 @@ TEST(DialogueQueue, OfEveryPairOneIsSeenAfterTheOtherAndBothCanBeAnswered) {
         queue.add(first);
         queue.add(second);
         for (const Dialogue* expected : {&first, &second}) {
-          ASSERT_NE(queue.shown(), nullptr);
-          EXPECT_EQ(queue.shown()->text, expected->text);
+          ASSERT_NE(queue.current(), nullptr);
+          EXPECT_EQ(queue.current()->text, expected->text);
           const auto buttons = expected->choices.size();
           const bool acts =
               buttons == 0 || expected->choices[std::min(choice, buttons - 1)].action != nullptr;
@@ -42,7 +42,7 @@ TEST(DialogueQueue, OfEveryPairOneIsSeenAfterTheOtherAndBothCanBeAnswered) {
           queue.proceed();
           EXPECT_EQ(acted, before + (acts ? 1 : 0));
         }
-        EXPECT_EQ(queue.shown(), nullptr);
+        EXPECT_EQ(queue.current(), nullptr);
       }
     }
   }
@@ -50,20 +50,20 @@ TEST(DialogueQueue, OfEveryPairOneIsSeenAfterTheOtherAndBothCanBeAnswered) {
 
 TEST(DialogueQueue, WithoutAnAnswerItStays) {
   DialogueQueue queue;
-  queue.complain("no-such-scan: cannot be read");
+  queue.add_error("no-such-scan: cannot be read");
   queue.proceed();
-  EXPECT_EQ(queue.complaints(), std::vector<std::string>{"no-such-scan: cannot be read"});
+  EXPECT_EQ(queue.errors(), std::vector<std::string>{"no-such-scan: cannot be read"});
   queue.choose(0);
   queue.proceed();
-  EXPECT_TRUE(queue.complaints().empty());
+  EXPECT_TRUE(queue.errors().empty());
 }
 
 TEST(DialogueQueue, TheSameIsSaidOnce) {
   DialogueQueue queue;
-  queue.complain("a");
-  queue.complain("b");
-  queue.complain("a");
-  EXPECT_EQ(queue.complaints(), (std::vector<std::string>{"a", "b"}));
+  queue.add_error("a");
+  queue.add_error("b");
+  queue.add_error("a");
+  EXPECT_EQ(queue.errors(), (std::vector<std::string>{"a", "b"}));
 }
 
 TEST(DialogueQueue, WhatIsSettledMeanwhileIsNotAskedAnyMore) {
@@ -81,18 +81,18 @@ TEST(DialogueQueue, WhatIsSettledMeanwhileIsNotAskedAnyMore) {
   queue.choose(0);
   queue.proceed();
   queue.proceed();
-  EXPECT_EQ(queue.shown(), nullptr);
+  EXPECT_EQ(queue.current(), nullptr);
   EXPECT_EQ(went_on, 1);
 }
 
 // An action may ask on: what it asks comes after what waits already.
 TEST(DialogueQueue, AnActionMayAddAnother) {
   DialogueQueue queue;
-  queue.add(report_question([&] { queue.complain("disk full"); }, {}));
-  queue.complain("before");
+  queue.add(report_question([&] { queue.add_error("disk full"); }, {}));
+  queue.add_error("before");
   queue.choose(0);
   queue.proceed();
-  EXPECT_EQ(queue.complaints(), (std::vector<std::string>{"before", "disk full"}));
+  EXPECT_EQ(queue.errors(), (std::vector<std::string>{"before", "disk full"}));
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ fs::path FilesPanel::name(const std::string& what) const {
 }
 
 void FilesPanel::record(ViewState& view, Simulation& simulation) {
-  view.dialogues.attempt([&] {
+  view.dialogues.run_reporting_errors([&] {
     create_folder(folder_);
     if (simulation.milling.is_recording()) {
       last_recording_ = simulation.milling.stop_recording();
@@ -81,19 +81,19 @@ void FilesPanel::close(ViewState& view, Simulation& simulation) {
 
 template <typename Write>
 void FilesPanel::begin(const fs::path& path, Write write) {
-  written_ = false;
+  is_written_ = false;
   create_folder(folder_);
   work_ = std::async(std::launch::async, [path, write = std::move(write)] {
     write(path);
-    return Done{"Saved " + path.string(), path, {}};
+    return WriteResult{"Saved " + path.string(), path, {}};
   });
 }
 
 void FilesPanel::make_report() {
-  written_ = false;
+  is_written_ = false;
   work_ = std::async(std::launch::async, [recording = last_recording_, folder = name("report")] {
     const fs::path page = write_report(split_by_setup(read_recording(recording)), folder);
-    return Done{"Report in " + page.string(), page, recording};
+    return WriteResult{"Report in " + page.string(), page, recording};
   });
 }
 
@@ -103,7 +103,7 @@ void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
 }
 
 void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
-  view.dialogues.attempt([&] {
+  view.dialogues.run_reporting_errors([&] {
     DensityGrid grid;
     std::uint64_t version = 0;
     simulation.milling.follower().read([&](const Volume& bone) {
@@ -118,16 +118,16 @@ void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
 void FilesPanel::take_result(ViewState& view, Simulation& simulation) {
   if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   const auto version = std::exchange(saving_version_, std::nullopt);
-  view.dialogues.attempt([&] {
-    Done done = work_.get();
+  view.dialogues.run_reporting_errors([&] {
+    WriteResult done = work_.get();
     view.message = std::move(done.message);
     view.result = std::move(done.result);
-    written_ = true;
+    is_written_ = true;
     if (!done.recording.empty()) {
       view.report = view.result;
       reported_ = done.recording;
     }
-    if (version) simulation.autosave.saved(*version);
+    if (version) simulation.autosave.mark_saved(*version);
   });
 }
 
@@ -139,26 +139,26 @@ std::optional<double> FilesPanel::recording_s(const Simulation& simulation) cons
 float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, const PixelSize& size) {
   const bool preparing = simulation.milling.is_preparing();
   const float bottom_px = static_cast<float>(size.height) - ui::px(8);
-  if (view.message.empty() && !busy() && !preparing) return bottom_px;
-  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), bottom_px},
+  if (view.message.empty() && !is_busy() && !preparing) return bottom_px;
+  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kSidePanelWidth_px + 8), bottom_px},
                           ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSize({ui::px(ui::kRightWidth_px), 0});
+  ImGui::SetNextWindowSize({ui::px(ui::kSidePanelWidth_px), 0});
   ImGui::Begin("##said", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                    ImGuiWindowFlags_NoFocusOnAppearing);
   const ImVec4 going_on(0.55f, 0.80f, 1.0f, 1);
   if (preparing) ImGui::TextColored(going_on, "preparing ...");
-  if (busy()) ImGui::TextColored(going_on, "writing ...");
+  if (is_busy()) ImGui::TextColored(going_on, "writing ...");
   if (!view.message.empty()) {
     ImGui::TextWrapped("%s", view.message.c_str());
     if (!view.report.empty()) {
-      if (ui::button("Open report")) view.dialogues.attempt([&] { open_outside(view.report); });
+      if (ui::button("Open report")) view.dialogues.run_reporting_errors([&] { open_outside(view.report); });
       ImGui::SameLine();
     }
     if (!view.result.empty()) {
       if (ui::button("Open folder"))
-        view.dialogues.attempt([&] { open_outside(fs::absolute(view.result).parent_path()); });
-      ui::hint("The folder that holds it");
+        view.dialogues.run_reporting_errors([&] { open_outside(fs::absolute(view.result).parent_path()); });
+      ui::tooltip("The folder that holds it");
       ImGui::SameLine();
     }
     if (ui::button("Hide")) {
@@ -175,20 +175,20 @@ float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, co
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   // After a failure, as on a full disk, the ticks recorded so far stay in the unfinished file.
   if (simulation.milling.has_recording_failed()) {
-    view.dialogues.attempt([&] { simulation.milling.stop_recording(); });
+    view.dialogues.run_reporting_errors([&] { simulation.milling.stop_recording(); });
     view.message.clear();
   }
   if (!ui::header("Record and save", true)) return;
   if (ui::button(simulation.milling.is_recording() ? "Stop recording##r" : "Record##r"))
     record(view, simulation);
   ImGui::SameLine();
-  const bool free = !busy();
+  const bool free = !is_busy();
   if (ui::button("Report", free && !last_recording_.empty())) make_report();
-  ui::hint("Writes a page of figures and tables about the last recording");
+  ui::tooltip("Writes a page of figures and tables about the last recording");
   if (ui::button("Save scan", free)) save_scan(view, simulation);
   ImGui::SameLine();
   if (ui::button("Save surface", free)) {
-    view.dialogues.attempt([&] {
+    view.dialogues.run_reporting_errors([&] {
       BrickMesh mesh;
       simulation.milling.follower().read(
           [&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });
@@ -197,7 +197,7 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
     });
   }
   ImGui::SameLine();
-  if (ui::button("Save picture")) view.picture_asked = true;
+  if (ui::button("Save picture")) view.picture_requested = true;
 }
 
 }  // namespace osteomill::app

@@ -32,11 +32,11 @@ class FilesPanel {
   void close(ViewState& view, Simulation& simulation);
   /// Ends a recording that still goes on.
   void end_recording(ViewState& view, Simulation& simulation);
-  bool busy() const { return work_.valid(); }
+  bool is_busy() const { return work_.valid(); }
   /// Returns whether the last file was written without an error.
-  bool written() const { return written_; }
+  bool is_written() const { return is_written_; }
   /// Returns whether there is a recording without a report.
-  bool unreported(const Simulation& simulation) const {
+  bool has_unreported(const Simulation& simulation) const {
     return simulation.milling.is_recording() || last_recording_ != reported_;
   }
   /// Ends a recording that goes on and begins the report of the last one. Not while busy.
@@ -63,15 +63,15 @@ class FilesPanel {
   std::filesystem::path last_recording_;
   // The last recording of which there is a report.
   std::filesystem::path reported_;
-  bool written_ = false;
-  struct Done {
+  bool is_written_ = false;
+  struct WriteResult {
     std::string message;
     std::filesystem::path result;
     /// The recording of which the result is the report; empty for any other file.
     std::filesystem::path recording;
   };
   std::chrono::steady_clock::time_point recording_since_;
-  std::future<Done> work_;
+  std::future<WriteResult> work_;
   // The version of the bone that is being saved (BoneFollower::version).
   std::optional<std::uint64_t> saving_version_;
 };

@@ -42,14 +42,14 @@ void draw(ImDrawList& list, Annotation annotation) {
   constexpr ImU32 kLight = IM_COL32(236, 238, 242, 255);
   for (Annotation::Line& line : annotation.lines)
     line = {static_cast<double>(ui::px(1)) * line.from, static_cast<double>(ui::px(1)) * line.to};
-  annotation.place *= static_cast<double>(ui::px(1));
+  annotation.text_centre_px *= static_cast<double>(ui::px(1));
   for (const Annotation::Line& line : annotation.lines)
     list.AddLine(at(line.from), at(line.to), kDark, ui::px(4));
   for (const Annotation::Line& line : annotation.lines)
     list.AddLine(at(line.from), at(line.to), kLight, ui::px(2));
   const char* text = annotation.text.c_str();
   const ImVec2 size = ImGui::CalcTextSize(text);
-  const ImVec2 middle = at(annotation.place);
+  const ImVec2 middle = at(annotation.text_centre_px);
   const ImVec2 place(middle.x - 0.5f * size.x, middle.y - 0.5f * size.y);
   const float aside = ui::px(1);
   for (const float x : {-aside, aside})
@@ -67,19 +67,19 @@ void draw_annotations(const ViewState& view, const PixelSize& size, bool patient
   draw(list, scale_bar_annotation(view.camera, usual));
   if (!patient) return;
   // Beside the right column, which may reach down to the corner.
-  const int column = static_cast<int>(ui::kRightWidth_px) + 8;
+  const int column = static_cast<int>(ui::kSidePanelWidth_px) + 8;
   for (const Annotation& letter : orientation_letters(view.camera, {usual.width - column, usual.height}))
     draw(list, letter);
 }
 
-void draw_help(ViewState& view, const PixelSize& size, const Room& room) {
+void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span) {
   if (!view.help) return;
   // Beside the bone and the tool, which it explains.
-  const float width = ui::px(ui::kRightWidth_px);
+  const float width = ui::px(ui::kSidePanelWidth_px);
   const auto width_px = static_cast<float>(size.width);
-  ImGui::SetNextWindowPos({width_px - width - ui::px(8), room.top_px});
+  ImGui::SetNextWindowPos({width_px - width - ui::px(8), span.top_px});
   ImGui::SetNextWindowSizeConstraints({width, 0},
-                                      {width, std::max(room.bottom_px - room.top_px, ui::px(60))});
+                                      {width, std::max(span.bottom_px - span.top_px, ui::px(60))});
   ImGui::Begin("How to mill", nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoFocusOnAppearing);
@@ -102,8 +102,8 @@ void draw_help(ViewState& view, const PixelSize& size, const Room& room) {
   ImGui::PopStyleVar();
   ImGui::PopTextWrapPos();
   ImGui::End();
-  if (dialogue_open() || ImGui::GetIO().WantTextInput) return;
-  if (ui::pressed(GLFW_KEY_ENTER) || ui::pressed(GLFW_KEY_ESCAPE)) view.help = false;
+  if (is_dialogue_open() || ImGui::GetIO().WantTextInput) return;
+  if (ui::is_key_pressed(GLFW_KEY_ENTER) || ui::is_key_pressed(GLFW_KEY_ESCAPE)) view.help = false;
 }
 
 std::string recording_text(double recording_s) {
@@ -116,13 +116,13 @@ void draw_recording(double recording_s) {
   ui::badge(recording_text(recording_s), ui::px(8), margin_px, IM_COL32(200, 30, 30, 255), true);
 }
 
-bool dialogue_open() {
+bool is_dialogue_open() {
   return ImGui::IsPopupOpen(kPopup);
 }
 
 void draw_dialogue(DialogueQueue& dialogues) {
-  const Dialogue* const shown = dialogues.shown();
-  if (shown != nullptr && !dialogue_open()) ImGui::OpenPopup(kPopup);
+  const Dialogue* const shown = dialogues.current();
+  if (shown != nullptr && !is_dialogue_open()) ImGui::OpenPopup(kPopup);
   const ImVec2 middle = ImGui::GetMainViewport()->GetCenter();
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
   const std::string title = (shown != nullptr ? shown->title : "") + kPopup;
@@ -153,7 +153,7 @@ bool draw_loading(const std::string& what, double share_done, double passed_s, c
   ImGui::ProgressBar(static_cast<float>(share_done), {ui::px(360), 0});
   ImGui::Text("%.0f s", passed_s);
   ImGui::SameLine();
-  const bool given_up = ui::button("Cancel") || (!dialogue_open() && ui::pressed(GLFW_KEY_ESCAPE));
+  const bool given_up = ui::button("Cancel") || (!is_dialogue_open() && ui::is_key_pressed(GLFW_KEY_ESCAPE));
   ImGui::End();
   return given_up;
 }

@@ -17,7 +17,7 @@ namespace osteomill::app {
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
 /// The free part of the right column, pixels from the top.
-struct Room {
+struct VerticalSpan {
   float top_px;
   float bottom_px;
 };
@@ -28,10 +28,10 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
 
 /// Below it, if the bone has labels: a legend, and how much of each was removed; what has no room is
 /// scrolled to.
-float draw_labels(ViewState& view, const Simulation& simulation, const Room& room);
+float draw_labels(ViewState& view, const Simulation& simulation, const VerticalSpan& span);
 
 /// Below all of that, until it is sent away: how everything is done.
-void draw_help(ViewState& view, const PixelSize& size, const Room& room);
+void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span);
 
 /// While the burr touches a no-go label and some seconds after: a red line across the top that says so.
 void draw_no_go(Simulation& simulation);
@@ -44,7 +44,7 @@ std::string recording_text(double recording_s);
 void draw_recording(double recording_s);
 
 /// Returns whether a dialogue is open, which alone takes pointer and keys then.
-bool dialogue_open();
+bool is_dialogue_open();
 /// The dialogue that is to be seen, if any. Takes down what is chosen.
 void draw_dialogue(DialogueQueue& dialogues);
 

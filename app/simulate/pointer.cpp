@@ -21,12 +21,12 @@ constexpr double kPointerReach_px = 12;
 constexpr double kTouching_N = 0.15;
 constexpr int kSteps = 100;
 
-bool held(int key) {
+bool is_key_down(int key) {
   return ImGui::IsKeyDown(key);
 }
 
-double held_way(int forwards, int backwards) {
-  return (held(forwards) ? 1.0 : 0.0) - (held(backwards) ? 1.0 : 0.0);
+double key_axis(int forwards, int backwards) {
+  return (is_key_down(forwards) ? 1.0 : 0.0) - (is_key_down(backwards) ? 1.0 : 0.0);
 }
 
 // Returns how far the pointer moved since the last picture.
@@ -77,11 +77,11 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   // How the normal is seen, in pixels a mm. A cut that faces the viewer hardly moves in the picture: then
   // dragging upwards moves it along its normal.
   const Vec3 anchor_W = view.box.centre_W();
-  Eigen::Vector2d seen =
+  Eigen::Vector2d normal_px =
       pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);
   const double full = 1 / mm_per_pixel(view.camera, size, depth_of(view.camera, anchor_W));
-  if (seen.norm() < 0.2 * full) seen = Eigen::Vector2d(0, -full);
-  cut.offset_mm += static_cast<float>(pointer_dragged_px().dot(seen) / seen.squaredNorm());
+  if (normal_px.norm() < 0.2 * full) normal_px = Eigen::Vector2d(0, -full);
+  cut.offset_mm += static_cast<float>(pointer_dragged_px().dot(normal_px) / normal_px.squaredNorm());
   return true;
 }
 
@@ -124,22 +124,22 @@ ToolInput keys_for_tool() {
   input.turning = io.KeyShift;
   input.passed_s = static_cast<double>(io.DeltaTime);
   if (io.WantTextInput) return input;
-  input.keys = {held_way(GLFW_KEY_RIGHT, GLFW_KEY_LEFT), held_way(GLFW_KEY_UP, GLFW_KEY_DOWN),
-                held_way(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN)};
+  input.keys = {key_axis(GLFW_KEY_RIGHT, GLFW_KEY_LEFT), key_axis(GLFW_KEY_UP, GLFW_KEY_DOWN),
+                key_axis(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN)};
   return input;
 }
 
 void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput) return;
-  using ui::pressed;
-  if (pressed(GLFW_KEY_T) && by_pointer) view.holding_tool = !view.holding_tool;
-  if (pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
-  if (pressed(GLFW_KEY_SPACE)) milling.set_spindle(!milling.spindle_asked());
-  if (pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().record.paused);
-  if (pressed(GLFW_KEY_F1)) view.help = !view.help;
-  if (pressed(GLFW_KEY_F11)) view.full_screen_asked = true;
-  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.follower().cuts() > 0) view.undo_asked = true;
+  using ui::is_key_pressed;
+  if (is_key_pressed(GLFW_KEY_T) && by_pointer) view.holding_tool = !view.holding_tool;
+  if (is_key_pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
+  if (is_key_pressed(GLFW_KEY_SPACE)) milling.set_spindle(!milling.is_spindle_requested());
+  if (is_key_pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().record.paused);
+  if (is_key_pressed(GLFW_KEY_F1)) view.help = !view.help;
+  if (is_key_pressed(GLFW_KEY_F11)) view.full_screen_requested = true;
+  if (io.KeyCtrl && is_key_pressed(GLFW_KEY_Z) && milling.follower().cuts() > 0) view.undo_requested = true;
 }
 
 // Places the tool before the bone that is seen at the pixel, or else before the bone in the middle.
@@ -149,24 +149,24 @@ void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
   const MillingTool& tool = milling.setup().tool;
   milling.set_spindle(false);
   milling.follower().read([&](const Volume& bone) {
-    if (pixel) view.X_W_brought = tool_before(bone, tool, view.camera, size, pixel->x(), pixel->y());
-    if (!view.X_W_brought) view.X_W_brought = tool_before_middle(bone, tool, view.camera, size);
+    if (pixel) view.X_W_destination = tool_pose_before(bone, tool, view.camera, size, pixel->x(), pixel->y());
+    if (!view.X_W_destination) view.X_W_destination = tool_pose_before_middle(bone, tool, view.camera, size);
   });
-  milling.place(*view.X_W_brought);
+  milling.place(*view.X_W_destination);
 }
 
 void pull_tool(ViewState& view, Simulation& simulation, const ToolInput& input, const PixelSize& size) {
-  if (view.X_W_brought) {
+  if (view.X_W_destination) {
     if (simulation.milling.is_placing()) return;
-    view.X_W_target = *std::exchange(view.X_W_brought, std::nullopt);
+    view.X_W_target = *std::exchange(view.X_W_destination, std::nullopt);
   }
-  if (!simulation.holder.is_pointer()) return;
+  if (!simulation.tool_source.is_pointer()) return;
   const Pose& X_WD = simulation.milling.state().record.X_WD;
   view.X_W_target = moved_target(view.X_W_target, X_WD, view.camera, size, input);
   simulation.hand.pull_to(view.X_W_target);
 }
 
-void let_go_of_buttons(ViewState& view, LiveMilling& milling) {
+void release_buttons(ViewState& view, LiveMilling& milling) {
   if (view.pedal_down) milling.set_spindle(false);
   view.pedal_down = view.dragging_tool = view.dragging_view = false;
 }
@@ -174,8 +174,8 @@ void let_go_of_buttons(ViewState& view, LiveMilling& milling) {
 }  // namespace
 
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size) {
-  if (dialogue_open()) {
-    let_go_of_buttons(view, simulation.milling);
+  if (is_dialogue_open()) {
+    release_buttons(view, simulation.milling);
     return;
   }
   if (drag_cut(view, size)) return;
@@ -185,33 +185,34 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
   const MillingTool& tool = milling.setup().tool;
   if (ImGui::IsMouseClicked(0)) {
     const bool on_picture = !io.WantCaptureMouse;
-    view.dragging_tool = on_picture && !view.holding_tool && !io.KeyShift && simulation.holder.is_pointer() &&
+    view.dragging_tool = on_picture && !view.holding_tool && !io.KeyShift &&
+                         simulation.tool_source.is_pointer() &&
                          on_tool(view, state.record.X_WT, tool, size, io.MousePos);
     view.dragging_view = on_picture && !view.dragging_tool && !view.holding_tool;
     view.pedal_down = on_picture && view.holding_tool;
     if (view.pedal_down) milling.set_spindle(true);
   }
-  if (ImGui::IsMouseReleased(0)) let_go_of_buttons(view, milling);
+  if (ImGui::IsMouseReleased(0)) release_buttons(view, milling);
   const bool on_picture = !io.WantCaptureMouse || view.dragging_view || view.dragging_tool;
   if (on_picture) move_camera(view, size, !view.dragging_view);
 
   ToolInput input = keys_for_tool();
   input.space_mouse = space_mouse.read();
-  if (input.space_mouse.presses % 2 == 1) milling.set_spindle(!milling.spindle_asked());
+  if (input.space_mouse.presses % 2 == 1) milling.set_spindle(!milling.is_spindle_requested());
   input.touching = state.record.wrench.force_N.norm() > kTouching_N;
   if (on_picture && (view.holding_tool || view.dragging_tool) && !io.MouseDown[1] && !io.MouseDown[2]) {
     input.moved_px = view.holding_tool ? pointer_moved_px() : pointer_dragged_px();
   }
   if (on_picture && view.holding_tool) input.wheel = static_cast<double>(io.MouseWheel);
   pull_tool(view, simulation, input, size);
-  if (ConnectedDevice* hardware = simulation.holder.hardware) {
+  if (ConnectedDevice* hardware = simulation.tool_source.hardware) {
     hardware->set_view(view.camera.orientation);
-    const bool clutched = !io.WantTextInput && held(GLFW_KEY_C);
+    const bool clutched = !io.WantTextInput && is_key_down(GLFW_KEY_C);
     hardware->set_clutched(clutched || view.calibration.step != ViewState::Calibration::Step::none);
   }
-  take_keys(view, milling, simulation.holder.is_pointer());
-  const bool by_key = !io.WantTextInput && ui::pressed(GLFW_KEY_B);
-  if ((std::exchange(view.bring_asked, false) || by_key) && !milling.is_placing()) {
+  take_keys(view, milling, simulation.tool_source.is_pointer());
+  const bool by_key = !io.WantTextInput && ui::is_key_pressed(GLFW_KEY_B);
+  if ((std::exchange(view.bring_requested, false) || by_key) && !milling.is_placing()) {
     std::optional<Eigen::Vector2d> pointer;
     if (by_key && !io.WantCaptureMouse)
       pointer = {static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y)};

@@ -49,7 +49,7 @@ void plot(const char* name, const char* unit, const std::deque<TickRecord>& hist
   const double scale = round_up(std::max(max, min_scale));
   const double now = history.empty() ? 0 : magnitude(history.back());
   ImGui::Text("%s  %.2f %s, at most %.2f", name, now, unit, max);
-  ui::hint("Now, and the greatest of the last 5 s");
+  ui::tooltip("Now, and the greatest of the last 5 s");
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const float width_px = ImGui::GetContentRegionAvail().x;
   ImGui::Dummy({width_px, height_px});
@@ -88,7 +88,7 @@ void draw_faults(const std::deque<TickRecord>& history) {
                                          : "as computed";
   row("hand gets", text,
       held_back || zero + limited > 0 ? ui::kWarning : ImGui::GetStyleColorVec4(ImGuiCol_Text));
-  ui::hint(fmt::format(
+  ui::tooltip(fmt::format(
       "Of the last {} ticks, {} would have been stronger than the limits of force and torque. {} had "
       "none: in {} the hand was moved too fast, or the tick came too late, to be safe, and in {} "
       "there was no number to send. {} had none since the tool was in bone when the device began to be "
@@ -102,7 +102,7 @@ void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
   const DeviceCapabilities& can = device.capabilities();
   const auto turn_deg = turn_by_moves_deg(can, view.calibration.right_D_mm, up_D_mm);
   if (!turn_deg) {
-    view.dialogues.complain(
+    view.dialogues.add_error(
         "The two moves were shorter than 10 mm, or both went the same way. What is known of the device stays "
         "as it was.");
     return;
@@ -111,7 +111,7 @@ void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
   settings.turn_V_deg = *turn_deg;
   device.set_workspace(settings);
   const std::filesystem::path path = workspace_path(can.name);
-  view.dialogues.attempt([&] {
+  view.dialogues.run_reporting_errors([&] {
     if (!path.empty()) save_workspace(path, settings);
     view.message = "How the device stands before you is kept in " + path.string();
   });
@@ -122,7 +122,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   if (calibration.step == Step::none) {
     ImGui::SameLine(ui::px(kCalibrate_px));
     if (ui::button("Calibrate")) calibration = {Step::right, handle_D_mm, Vec3::Zero()};
-    ui::hint("Two moves of your hand tell how the device stands before you; the tool stays meanwhile");
+    ui::tooltip("Two moves of your hand tell how the device stands before you; the tool stays meanwhile");
     return;
   }
   const bool to_the_right = calibration.step == Step::right;
@@ -162,8 +162,8 @@ void draw_device(ViewState& view, ConnectedDevice& device) {
 
 const ImVec4 kNoGo{1.0f, 0.38f, 0.30f, 1};
 // Most rows that are shown; a longer list is scrolled.
-constexpr float kMostRows = 12;
-constexpr float kFewestRows = 2;
+constexpr float kMaxRows = 12;
+constexpr float kMinRows = 2;
 // Height of the help below the rows, and of title and box above them, at the usual size of text.
 constexpr float kHelp_px = 110;
 constexpr float kHead_px = 62;
@@ -183,7 +183,7 @@ void draw_row(const Simulation& simulation, std::size_t n) {
   ImGui::TextColored(text, "%s%s", label.name.c_str(), label.no_go ? " (no-go)" : "");
   const LabelCount::Entry& entry = simulation.label_count.entries()[n];
   if (entry.contacts > 0) {
-    ui::hint(
+    ui::tooltip(
         fmt::format("The burr touched it for {:.1f} s, first at {:.1f} s, and pressed with {:.2f} N on "
                     "average and {:.2f} N at most",
                     entry.time_s, entry.first_s, entry.force_mean_N, entry.force_max_N));
@@ -198,7 +198,7 @@ void draw_row(const Simulation& simulation, std::size_t n) {
 }  // namespace
 
 float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size) {
-  ui::begin_right("Readings", ui::px(8));
+  ui::begin_side_panel("Readings", ui::px(8));
   const TimingSummary timing = simulation.milling.timing();
   const LiveState& state = simulation.milling.state();
   row("haptic rate", fmt::format("{:.0f} ticks/s", timing.recent_ticks_per_s));
@@ -207,7 +207,7 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
   row("pictures", fmt::format("{:.0f} / s", pictures_per_s));
   draw_faults(simulation.history);
   row("removed", fmt::format("{:.2f} mm³", state.record.removed_mm3));
-  if (simulation.holder.hardware != nullptr) draw_device(view, *simulation.holder.hardware);
+  if (simulation.tool_source.hardware != nullptr) draw_device(view, *simulation.tool_source.hardware);
   ImGui::Separator();
   const auto& history = simulation.history;
   // Lower in a low window, where the text needs the room.
@@ -220,24 +220,25 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
       {0.98f, 0.76f, 0.25f, 1}, height_px);
   if (const std::string& refused = simulation.milling.refused_real_time(); !refused.empty())
     ui::warning(refused);
-  return ui::end_right();
+  return ui::end_side_panel();
 }
 
-float draw_labels(ViewState& view, const Simulation& simulation, const Room& room) {
+float draw_labels(ViewState& view, const Simulation& simulation, const VerticalSpan& span) {
   const std::size_t count = simulation.label_count.labels().size();
-  if (count == 0) return room.top_px;
+  if (count == 0) return span.top_px;
   const float line_px = ImGui::GetTextLineHeightWithSpacing();
-  const float rows_px = room.bottom_px - room.top_px - ui::px(kHead_px) - (view.help ? ui::px(kHelp_px) : 0);
-  const float rows = std::min({static_cast<float>(count), kMostRows, rows_px / line_px});
+  const float rows_px = span.bottom_px - span.top_px - ui::px(kHead_px) - (view.help ? ui::px(kHelp_px) : 0);
+  const float rows = std::min({static_cast<float>(count), kMaxRows, rows_px / line_px});
   // Once help was read there is room for them.
-  if (view.help && rows < kFewestRows) return room.top_px;
-  ui::begin_right("Labels", room.top_px, ImGuiWindowFlags_NoFocusOnAppearing);
+  if (view.help && rows < kMinRows) return span.top_px;
+  ui::begin_side_panel("Labels", span.top_px, ImGuiWindowFlags_NoFocusOnAppearing);
   ui::checkbox("label colours", &view.labels);
-  ui::hint("Shows bone in the colours of its label map. Beside each label stands how much of it was removed");
-  ImGui::BeginChild("##labels", {0, std::floor(std::max(rows, kFewestRows) * line_px)});
+  ui::tooltip(
+      "Shows bone in the colours of its label map. Beside each label stands how much of it was removed");
+  ImGui::BeginChild("##labels", {0, std::floor(std::max(rows, kMinRows) * line_px)});
   for (std::size_t n = 0; n < count; ++n) draw_row(simulation, n);
   ImGui::EndChild();
-  return ui::end_right();
+  return ui::end_side_panel();
 }
 
 void draw_no_go(Simulation& simulation) {

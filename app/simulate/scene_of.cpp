@@ -9,8 +9,8 @@ namespace {
 // Pictures from one sampling of a cut to the next while bone is milled.
 constexpr int kPicturesBetween = 8;
 // If hand and tool are closer than this, the hand's ghost would only tint the tool.
-constexpr double kApart_mm = 0.03;
-constexpr double kApart_rad = 0.01;
+constexpr double kMinMove_mm = 0.03;
+constexpr double kMinTurn_rad = 0.01;
 
 // The cut as a plane; its `other_side` turned round.
 ClipPlane plane_of(const ViewState::Cut& cut) {
@@ -68,7 +68,7 @@ ViewScene scene_of(const ViewState& view, Simulation& simulation) {
   scene.X_WT = record.X_WT;
   const double apart_mm = (record.X_WD.position_mm - record.X_WT.position_mm).norm();
   const double apart_rad = record.X_WD.orientation.angularDistance(record.X_WT.orientation);
-  if (view.ghost && (apart_mm > kApart_mm || apart_rad > kApart_rad)) scene.X_WD = record.X_WD;
+  if (view.ghost && (apart_mm > kMinMove_mm || apart_rad > kMinTurn_rad)) scene.X_WD = record.X_WD;
   if (view.arrows) {
     scene.wrench = record.wrench;
     scene.intersection_W = state.intersection_W;

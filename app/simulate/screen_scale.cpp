@@ -16,8 +16,8 @@ constexpr int kManyRows = 2000;
 constexpr double kOrdinaryRows = 1080;
 constexpr double kStep = 0.25;
 // Both columns, the view between them, and the rows that cannot scroll, at scale 1.
-constexpr double kLeastWidth_px = 760;
-constexpr double kLeastHeight_px = 430;
+constexpr double kMinWidth_px = 760;
+constexpr double kMinHeight_px = 430;
 constexpr double kFineStep = 0.05;
 
 double stepped(double scale, double step) {
@@ -39,7 +39,7 @@ double scale_for(const Screen& screen) {
 }
 
 double fitting_scale(double asked, const PixelSize& window) {
-  const double room = std::min(window.width / kLeastWidth_px, window.height / kLeastHeight_px);
+  const double room = std::min(window.width / kMinWidth_px, window.height / kMinHeight_px);
   if (asked <= room) return std::clamp(asked, kMinScale, kMaxScale);
   return std::clamp(stepped(room, kFineStep), kMinScale, kMaxScale);
 }

@@ -30,7 +30,8 @@ std::string isovalue_from(const ScanOptions& scan, const LoadedBone& loaded, boo
 
 }  // namespace
 
-OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled) {
+PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
+                              const SessionStart& milled) {
   LoadedBone loaded = [&] {
     const WorkProgress::Part reading(0.4);
     return load_bone(scan);
@@ -50,11 +51,11 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, 
           std::move(prepared)};
 }
 
-Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder_,
+Simulation::Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source_,
                        const std::string& command_line_, std::optional<AutosaveFile> autosave_file)
     : scan(std::move(opened.scan)),
       command_line(command_line_),
-      holder(holder_),
+      tool_source(tool_source_),
       hand(handle_settings(opened.milling.session->setup()), pointing_hand(), X_WT),
       device(take_tool(opened.milling.session->setup(), opened.milling.session->volume(), X_WT)),
       milling(std::move(opened.milling), device),
@@ -69,11 +70,11 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder
 }
 
 Device& Simulation::take_tool(const MillingSetup& setup, const Volume& bone, const Pose& X_WT) {
-  if (holder.hardware != nullptr) {
-    holder.hardware->put_at(X_WT);
-    return *holder.hardware;
+  if (tool_source.hardware != nullptr) {
+    tool_source.hardware->put_at(X_WT);
+    return *tool_source.hardware;
   }
-  if (holder.is_pointer()) return hand;
+  if (tool_source.is_pointer()) return hand;
   OperatorSettings settings;
   settings.handle = handle_settings(setup);
   return simulated.emplace(settings, setup.tool, place_entry(bone, setup.tool));
@@ -81,7 +82,7 @@ Device& Simulation::take_tool(const MillingSetup& setup, const Volume& bone, con
 
 RunDescription Simulation::describe() const {
   RunDescription run = milling.describe(scan.name, command_line);
-  describe_device(run, holder.name, holder.hardware);
+  describe_device(run, tool_source.name, tool_source.hardware);
   return run;
 }
 
@@ -94,18 +95,18 @@ void Simulation::update() {
   milling.update();
   autosave.update(milling);
   count_labels();
-  look_for_warnings();
+  update_warnings();
 }
 
 // Looks for warnings on a thread of its own, because it goes through every voxel.
-void Simulation::look_for_warnings() {
-  if (warnings_to_come_.valid()) {
-    if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();
+void Simulation::update_warnings() {
+  if (pending_warnings_.valid()) {
+    if (pending_warnings_.wait_for(0s) == std::future_status::ready) warnings = pending_warnings_.get();
   } else if (std::tuple now(milling.isovalue(), milling.setup().tool.burr_radius_mm,
                             setting_warnings(milling.setup(), milling.geometry()));
-             now != looked_at_) {
-    looked_at_ = now;
-    warnings_to_come_ = std::async(std::launch::async, [this, now, tool = milling.setup().tool] {
+             now != warned_inputs_) {
+    warned_inputs_ = now;
+    pending_warnings_ = std::async(std::launch::async, [this, now, tool = milling.setup().tool] {
       std::vector<std::string> found = std::get<2>(now);
       milling.follower().read([&](const Volume& bone) {
         for (const auto& more :

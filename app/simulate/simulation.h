@@ -25,7 +25,7 @@
 namespace osteomill::app {
 
 /// A scan that is open, and what the window shows of it beside its surface.
-struct OpenScan {
+struct ScanInfo {
   std::string name;
   ScanOptions source;
   /// The isovalue it was opened with, where that came from, half a sentence, and " HU" if that is its
@@ -42,18 +42,18 @@ struct OpenScan {
 };
 
 /// A scan that was opened and made ready for milling, but is not milled yet.
-struct OpenedScan {
-  OpenScan scan;
+struct PreparedScan {
+  ScanInfo scan;
   PreparedMilling milling;
 };
 
 /// Opens a scan, and puts into it what was milled of it before (`milled`), if anything was. Takes seconds;
 /// any thread, also while another scan is milled. Throws InputError as `load_bone` does and if `milled` is
 /// of another scan, and std::invalid_argument for settings out of range.
-OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled);
+PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled);
 
 /// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
-struct Holder {
+struct ToolSource {
   std::string name = kMouse;
   ConnectedDevice* hardware = nullptr;
 
@@ -65,8 +65,8 @@ struct Holder {
 struct Simulation {
   /// The tool begins at `X_WT`; with the simulated operator where they begin. What was milled before may
   /// already be kept in `autosave_file`.
-  Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder, const std::string& command_line,
-             std::optional<AutosaveFile> autosave_file = std::nullopt);
+  Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source,
+             const std::string& command_line, std::optional<AutosaveFile> autosave_file = std::nullopt);
 
   /// Calls LiveMilling::update, and updates the ticks' history, the counts and the autosave. Call once for
   /// each picture.
@@ -74,12 +74,12 @@ struct Simulation {
   /// Returns what a recording that is begun now says about it.
   RunDescription describe() const;
 
-  OpenScan scan;
+  ScanInfo scan;
   std::string command_line;
   /// Warnings about this isovalue, tool and settings (isovalue_warnings,
   /// coarseness_warnings, setting_warnings).
   std::vector<std::string> warnings;
-  Holder holder;
+  ToolSource tool_source;
   /// Holds the tool where mouse, keyboard or SpaceMouse move it.
   VirtualHand hand;
   std::optional<SimulatedOperator> simulated;
@@ -98,11 +98,11 @@ struct Simulation {
  private:
   Device& take_tool(const MillingSetup& setup, const Volume& bone, const Pose& X_WT);
   void count_labels();
-  void look_for_warnings();
+  void update_warnings();
 
   // The isovalue, the burr's radius (mm) and the lines of setting_warnings that the warnings are for.
-  std::optional<std::tuple<double, double, std::vector<std::string>>> looked_at_;
-  std::future<std::vector<std::string>> warnings_to_come_;
+  std::optional<std::tuple<double, double, std::vector<std::string>>> warned_inputs_;
+  std::future<std::vector<std::string>> pending_warnings_;
   std::uint64_t counted_version_ = 0;
   std::chrono::steady_clock::time_point counted_;
 };

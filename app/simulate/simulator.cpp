@@ -83,7 +83,7 @@ class Opening {
   Opening& operator=(const Opening&) = delete;
 
   // Stops what is being opened, if anything is, and begins to open another scan.
-  void begin(std::function<OpenedScan()> open) {
+  void begin(std::function<PreparedScan()> open) {
     stop();
     work_ = std::make_shared<Work>();
     result_ = std::async(std::launch::async, [work = work_, open = std::move(open)] {
@@ -112,7 +112,7 @@ class Opening {
   bool valid() const { return result_.valid(); }
   std::future_status wait_for(std::chrono::milliseconds time) const { return result_.wait_for(time); }
   // Returns the opened scan, or throws the exception of opening it. Call once for each scan.
-  OpenedScan get() { return result_.get(); }
+  PreparedScan get() { return result_.get(); }
   // Returns how much of opening is done, 0 to 1.
   double share_done() const { return work_ ? work_->share_done.load() : 0; }
 
@@ -122,8 +122,8 @@ class Opening {
     std::atomic<bool> stopped = false;
   };
   std::shared_ptr<Work> work_;
-  std::future<OpenedScan> result_;
-  std::vector<std::future<OpenedScan>> stopped_;
+  std::future<PreparedScan> result_;
+  std::vector<std::future<PreparedScan>> stopped_;
 };
 
 struct SimulatorOptions {
@@ -142,7 +142,7 @@ struct SimulatorOptions {
 };
 
 constexpr PixelSize kWindowSize{1280, 800};
-constexpr int kMostPictures = 500;
+constexpr int kMaxPictures = 500;
 
 // Everything between opening the window and closing it.
 class Simulator {
@@ -166,7 +166,7 @@ class Simulator {
     } else {
       begin_opening(options_.scan);
     }
-    while (!over()) {
+    while (!update_closing()) {
       begin();
       if (simulation_) {
         work();
@@ -181,8 +181,8 @@ class Simulator {
       files_.close(view_, *simulation_);
       simulation_->autosave.discard();
     }
-    for (const std::string& complaint : view_.dialogues.complaints())
-      app::say(fmt::format("osteomill: {}\n", complaint));
+    for (const std::string& complaint : view_.dialogues.errors())
+      app::print_error(fmt::format("osteomill: {}\n", complaint));
     if (reported_) {
       fmt::print("{}\n{}\n", files_.last_recording().string(), view_.message);
     } else if (!files_.last_recording().empty()) {
@@ -195,40 +195,40 @@ class Simulator {
     return options_.driver != nullptr && (simulation_ || leftover_ || options_.driver->starts_before_scan());
   }
 
-  bool unsaved() const { return simulation_ && simulation_->autosave.unsaved(simulation_->milling); }
+  bool has_unsaved() const { return simulation_ && simulation_->autosave.has_unsaved(simulation_->milling); }
 
-  // Does `go_on` at once if nothing unsaved would be lost by it; else asks first.
-  void ask_before(const char* what, const Dialogue::Action& go_on, const Dialogue::Action& stay = {}) {
-    if (!unsaved()) return go_on();
+  // Does `on_proceed` at once if nothing unsaved would be lost by it; else asks first.
+  void ask_before(const char* what, const Dialogue::Action& on_proceed, const Dialogue::Action& stay = {}) {
+    if (!has_unsaved()) return on_proceed();
     simulation_->milling.set_spindle(false);
-    const auto save = [this, go_on, stay] {
+    const auto save = [this, on_proceed, stay] {
       write(
-          "Saving ...", [this] { files_.save_scan(view_, *simulation_); }, go_on, stay);
+          "Saving ...", [this] { files_.save_scan(view_, *simulation_); }, on_proceed, stay);
     };
     view_.dialogues.add(unsaved_question(
-        what, [this] { return !unsaved(); }, save, go_on, stay));
+        what, [this] { return !has_unsaved(); }, save, on_proceed, stay));
   }
 
-  void once_written(const char* doing, const Dialogue::Action& then) {
-    if (!files_.busy()) return then();
-    view_.dialogues.add({"osteomill", doing, {}, [this] { return !files_.busy(); }, then});
+  void after_writing(const char* doing, const Dialogue::Action& then) {
+    if (!files_.is_busy()) return then();
+    view_.dialogues.add({"osteomill", doing, {}, [this] { return !files_.is_busy(); }, then});
   }
 
   // Begins to write as soon as nothing else is being written. Once it is written `then` follows; if that
   // failed, `stay`: a dialogue then says why.
   void write(const char* doing, const Dialogue::Action& begin, const Dialogue::Action& then,
              const Dialogue::Action& stay) {
-    once_written(doing, [=, this] {
+    after_writing(doing, [=, this] {
       begin();
-      once_written(doing, [=, this] {
-        const Dialogue::Action& next = files_.written() ? then : stay;
+      after_writing(doing, [=, this] {
+        const Dialogue::Action& next = files_.is_written() ? then : stay;
         if (next) next();
       });
     });
   }
 
   void close() {
-    if (!simulation_ || !files_.unreported(*simulation_)) {
+    if (!simulation_ || !files_.has_unreported(*simulation_)) {
       closing_ = true;
       return;
     }
@@ -239,7 +239,7 @@ class Simulator {
     view_.dialogues.add(report_question(report, [this] { closing_ = true; }));
   }
 
-  bool over() {
+  bool update_closing() {
     if (window_.take_close_asked()) ask_before("Closing the window", [this] { close(); });
     // Also while the window is too small to be drawn.
     if (simulation_) files_.take_result(view_, *simulation_);
@@ -250,9 +250,10 @@ class Simulator {
   void begin() {
     window_.begin_frame();
     const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.is_preparing() &&
-                         !simulation_->milling.is_placing() && !view_.X_W_brought && !view_.wanted_is_new &&
-                         !view_.undo_asked && !view_.reset_confirmed && !view_.isovalue_asked &&
-                         !files_.busy() && (!opening() || view_.dialogues.shown() != nullptr);
+                         !simulation_->milling.is_placing() && !view_.X_W_destination &&
+                         !view_.setup_changed && !view_.undo_requested && !view_.reset_confirmed &&
+                         !view_.isovalue_requested && !files_.is_busy() &&
+                         (!opening() || view_.dialogues.current() != nullptr);
     if (is_driven()) options_.driver->give_input(seconds_since(last_picture_), settled, window_);
     last_picture_ = Clock::now();
     ImGui::NewFrame();
@@ -294,19 +295,19 @@ class Simulator {
     opened_scan_ = scan;
     opening_since_ = Clock::now();
     changes_before_ = view_.changes;
-    const MillingSetup setup = simulation_ ? view_.wanted : setup_;
+    const MillingSetup setup = simulation_ ? view_.requested_setup : setup_;
     opening_.begin(
         [scan, setup, milled = std::move(milled)] { return open_for_milling(scan, setup, milled); });
   }
 
   void draw_opening() {
     const std::string what = opened_scan_.scan.empty() ? kBuiltinTooth : opened_scan_.scan;
-    const bool given_up = draw_loading(what, opening_.share_done(), seconds_since(opening_since_),
-                                       window_.size(), simulation_ != nullptr);
-    if (given_up) give_up_opening(what);
+    const bool is_cancelled = draw_loading(what, opening_.share_done(), seconds_since(opening_since_),
+                                           window_.size(), simulation_ != nullptr);
+    if (is_cancelled) cancel_opening(what);
   }
 
-  void give_up_opening(const std::string& what) {
+  void cancel_opening(const std::string& what) {
     opening_.stop();
     opened_milled_.reset();
     view_.message = "Opening " + what + " was given up";
@@ -314,33 +315,33 @@ class Simulator {
     if (!simulation_) closing_ = true;
   }
 
-  ScanOptions another(const std::string& scan) const {
+  ScanOptions scan_options_for(const std::string& scan) const {
     return {scan, std::nullopt, {.series = "", .max_memory_bytes = options_.scan.read.max_memory_bytes}};
   }
 
   // Milling goes on until another scan was read and takes its place.
   void open_another() {
     std::vector<std::string> asked = window_.take_dropped();
-    if (!view_.scan_asked.empty()) asked.push_back(std::exchange(view_.scan_asked, {}));
+    if (!view_.scan_requested.empty()) asked.push_back(std::exchange(view_.scan_requested, {}));
     if (asked.size() > 1) {
-      view_.dialogues.complain("One scan at a time: a file, or the folder of a series");
+      view_.dialogues.add_error("One scan at a time: a file, or the folder of a series");
     } else if (!asked.empty() && !opened_) {
-      begin_opening(another(asked.front()));
+      begin_opening(scan_options_for(asked.front()));
     }
     if (!opening_.valid() || opening_.wait_for(0s) != std::future_status::ready) return;
-    if (!view_.dialogues.attempt([this] { opened_ = opening_.get(); })) return;
-    const auto take = [this] { once_written("Writing ...", [this] { take_scan(); }); };
+    if (!view_.dialogues.run_reporting_errors([this] { opened_ = opening_.get(); })) return;
+    const auto take = [this] { after_writing("Writing ...", [this] { take_scan(); }); };
     ask_before("Opening another scan", take, [this] { opened_.reset(); });
   }
 
   void take_scan() {
-    OpenedScan opened = std::move(*opened_);
+    PreparedScan opened = std::move(*opened_);
     opened_.reset();
-    const OpenScan& scan = opened.scan;
+    const ScanInfo& scan = opened.scan;
     if (simulation_) {
       files_.end_recording(view_, *simulation_);
       simulation_->autosave.discard();
-      view_.wanted_is_new = view_.changes != changes_before_;
+      view_.setup_changed = view_.changes != changes_before_;
       options_.command_line += " # then opened in the window: " + scan.name;
       view_.message = fmt::format("Opened {}: isovalue {:.4g}{}, {}", scan.name, scan.isovalue, scan.unit,
                                   scan.isovalue_from);
@@ -348,7 +349,7 @@ class Simulator {
       sender_.reset();
       simulation_.reset();
     } else {
-      view_.wanted = opened.milling.session->setup();
+      view_.requested_setup = opened.milling.session->setup();
       view_.help = view_.help && first_time_of_help();
     }
     options_.scan = scan.source;
@@ -358,13 +359,14 @@ class Simulator {
     view_.camera = first_camera(view_.box, size);
     const Volume& bone = opened.milling.session->volume();
     // In front of the bone's upper half, so that the shaft does not hide the bone.
-    const Pose X_WT = tool_before_middle(bone, opened.milling.session->setup().tool, view_.camera, size,
-                                         0.15 * size.height);
-    const Holder holder{options_.device.device, hardware_.get()};
-    simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, holder, options_.command_line,
+    const Pose X_WT = tool_pose_before_middle(bone, opened.milling.session->setup().tool, view_.camera, size,
+                                              0.15 * size.height);
+    const ToolSource tool_source{options_.device.device, hardware_.get()};
+    simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, tool_source, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));
     // If nothing listens there, milling goes on without sending.
-    view_.dialogues.attempt([&] { sender_ = send_bone(simulation_->milling.follower(), options_.send); });
+    view_.dialogues.run_reporting_errors(
+        [&] { sender_ = send_bone(simulation_->milling.follower(), options_.send); });
     show_from_the_beginning();
   }
 
@@ -372,8 +374,8 @@ class Simulator {
     LiveMilling& milling = simulation_->milling;
     view_.X_W_target = milling.state().record.X_WD;
     view_.isovalue.reset();
-    forget_what_is_asked();
-    view_.X_W_brought.reset();
+    drop_requests();
+    view_.X_W_destination.reset();
     view_.holding_tool = view_.dragging_tool = view_.dragging_view = view_.pedal_down = false;
     view_.dragged_cut = -1;
     reset_cuts(view_);
@@ -385,7 +387,8 @@ class Simulator {
 
   void wait_for_scan() {
     // If several paths were dropped, the last one counts.
-    if (const auto asked = window_.take_dropped(); !asked.empty()) begin_opening(another(asked.back()));
+    if (const auto asked = window_.take_dropped(); !asked.empty())
+      begin_opening(scan_options_for(asked.back()));
     if (opening_.wait_for(0s) == std::future_status::ready) take_first_scan();
     draw_opening();
   }
@@ -396,7 +399,7 @@ class Simulator {
     } catch (const std::exception& error) {
       if (!opened_milled_) throw;
       // The milled bone is kept for another start, when its scan may be there again.
-      view_.dialogues.complain(error.what());
+      view_.dialogues.add_error(error.what());
       begin_opening(options_.scan);
       return;
     }
@@ -404,20 +407,20 @@ class Simulator {
   }
 
   // Begins the requested changes; each waits until nothing else is being prepared.
-  void begin_what_is_asked() {
+  void start_requests() {
     LiveMilling& milling = simulation_->milling;
-    const bool begun = view_.dialogues.attempt([&] {
-      if (view_.undo_asked) view_.undo_asked = !milling.undo();
+    const bool begun = view_.dialogues.run_reporting_errors([&] {
+      if (view_.undo_requested) view_.undo_requested = !milling.undo();
       if (view_.reset_confirmed) view_.reset_confirmed = !milling.reset();
-      if (view_.isovalue_asked && milling.change_isovalue(*view_.isovalue_asked))
-        view_.isovalue_asked.reset();
+      if (view_.isovalue_requested && milling.change_isovalue(*view_.isovalue_requested))
+        view_.isovalue_requested.reset();
     });
-    if (!begun) forget_what_is_asked();
+    if (!begun) drop_requests();
   }
 
-  void forget_what_is_asked() {
-    view_.undo_asked = view_.reset_confirmed = false;
-    view_.isovalue_asked.reset();
+  void drop_requests() {
+    view_.undo_requested = view_.reset_confirmed = false;
+    view_.isovalue_requested.reset();
   }
 
   // A device that throws ends the milling, not the window.
@@ -425,32 +428,32 @@ class Simulator {
     const std::exception_ptr failure = simulation_->milling.failure();
     if (failure == nullptr || failure == device_failure_) return;
     device_failure_ = failure;
-    view_.dialogues.complain("The device has failed: " + reason_of(failure));
+    view_.dialogues.add_error("The device has failed: " + reason_of(failure));
   }
 
   void work() {
     const PixelSize size = window_.size();
     if (size.width < 1 || size.height < 1) return;
     open_another();
-    if (std::exchange(view_.reset_asked, false)) {
+    if (std::exchange(view_.reset_requested, false)) {
       ask_before("Resetting the bone", [this] { view_.reset_confirmed = true; });
     }
-    begin_what_is_asked();
-    const bool updated = view_.dialogues.attempt([&] {
+    start_requests();
+    const bool updated = view_.dialogues.run_reporting_errors([&] {
       const bool prepared = simulation_->milling.is_preparing();
       simulation_->update();
       if (sender_) sender_->show_tool(simulation_->milling.state().record);
       if (prepared && !simulation_->milling.is_preparing()) free_tool(view_, *simulation_, size);
     });
-    if (!updated) view_.wanted = simulation_->milling.setup();
+    if (!updated) view_.requested_setup = simulation_->milling.setup();
     complain_of_device();
-    if (view_.message.empty()) view_.message = simulation_->autosave.take_complaint();
+    if (view_.message.empty()) view_.message = simulation_->autosave.take_error();
     take_input(view_, *simulation_, space_mouse_, size);
     take_surface();
     cuts_.update(view_, *simulation_, *renderer_);
     renderer_->draw(scene_of(view_, *simulation_), size);
     renderer_->copy_to_window();
-    if (std::exchange(view_.picture_asked, false)) save_picture();
+    if (std::exchange(view_.picture_requested, false)) save_picture();
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
     const float bottom_px = files_.draw_message(view_, *simulation_, size);
@@ -493,12 +496,12 @@ class Simulator {
     ViewScene scene = scene_of(view_, *simulation_);
     scene.camera = camera;
     renderer_->draw(scene, window_.size());
-    for (int n = 0; n < kMostPictures && !renderer_->settled(); ++n) renderer_->draw(scene, window_.size());
+    for (int n = 0; n < kMaxPictures && !renderer_->is_settled(); ++n) renderer_->draw(scene, window_.size());
     return renderer_->picture();
   }
 
   void save_picture() {
-    view_.dialogues.attempt([this] {
+    view_.dialogues.run_reporting_errors([this] {
       Image picture = this->picture(view_.camera);
       annotate(picture, view_.camera, !options_.scan.scan.empty(), kInkOnDark, window_.ui_scale());
       create_folder(options_.folder);
@@ -517,7 +520,7 @@ class Simulator {
     }
     window_.show();
     pictures_.count();
-    if (std::exchange(view_.full_screen_asked, false)) window_.toggle_full_screen();
+    if (std::exchange(view_.full_screen_requested, false)) window_.toggle_full_screen();
     if (const int steps = std::exchange(view_.text_steps, 0); steps != 0) {
       constexpr double kStep = 0.25;
       window_.ask_ui_scale(std::clamp(window_.ui_scale() + kStep * steps, kMinScale, kMaxScale));
@@ -538,7 +541,7 @@ class Simulator {
   // Milled bone of an earlier run that is offered to the user.
   std::optional<LeftoverMilling> leftover_;
   // A scan that was read, and waits for the answer to what becomes of the one that is milled.
-  std::optional<OpenedScan> opened_;
+  std::optional<PreparedScan> opened_;
   std::optional<AutosaveFile> opened_milled_;
   ScanOptions opened_scan_;
   Clock::time_point opening_since_;

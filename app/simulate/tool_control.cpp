@@ -10,9 +10,9 @@ constexpr double kKeys_mm_s = 6;
 constexpr double kKeysAway_mm_s = 3;
 constexpr double kKeysTurn_rad_s = 0.6;
 // Against bone the hand's springs push no harder beyond these; free of it, the tool is on its way.
-constexpr double kFarthest_mm = 6;
-constexpr double kFarthestFree_mm = 25;
-constexpr double kFarthestTurn_rad = 0.35;
+constexpr double kMaxLead_mm = 6;
+constexpr double kMaxLeadFree_mm = 25;
+constexpr double kMaxLead_rad = 0.35;
 
 }  // namespace
 
@@ -35,12 +35,12 @@ Pose moved_target(const Pose& X_W_target, const Pose& X_WD, const Camera& camera
                        (quaternion_from_rotation_vector(turn) * X_W_target.orientation).normalized()},
                       input.space_mouse, camera.orientation, input.passed_s);
   const Vec3 ahead = target.position_mm - X_WD.position_mm;
-  const double farthest_mm = input.touching ? kFarthest_mm : kFarthestFree_mm;
-  if (ahead.norm() > farthest_mm) target.position_mm = X_WD.position_mm + farthest_mm * ahead.normalized();
+  const double max_lead_mm = input.touching ? kMaxLead_mm : kMaxLeadFree_mm;
+  if (ahead.norm() > max_lead_mm) target.position_mm = X_WD.position_mm + max_lead_mm * ahead.normalized();
   const Vec3 turned = rotation_vector(target.orientation * X_WD.orientation.conjugate());
-  if (turned.norm() > kFarthestTurn_rad) {
+  if (turned.norm() > kMaxLead_rad) {
     target.orientation =
-        quaternion_from_rotation_vector(kFarthestTurn_rad * turned.normalized()) * X_WD.orientation;
+        quaternion_from_rotation_vector(kMaxLead_rad * turned.normalized()) * X_WD.orientation;
   }
   return target;
 }

@@ -22,8 +22,8 @@ struct ViewState {
   BoneBox box;
   Pose X_W_target;
   /// The pose that the tool is brought to, until it is there.
-  std::optional<Pose> X_W_brought;
-  bool bring_asked = false;
+  std::optional<Pose> X_W_destination;
+  bool bring_requested = false;
   /// The pointer moves the tool without a button.
   bool holding_tool = false;
   /// Whether the left button drags the tool; decided by the place where it was pressed.
@@ -40,9 +40,9 @@ struct ViewState {
   };
   Calibration calibration;
   /// The setup that the controls are set to, and whether milling is still to be changed to it.
-  MillingSetup wanted;
-  bool wanted_is_new = false;
-  /// The number of changes of `wanted`.
+  MillingSetup requested_setup;
+  bool setup_changed = false;
+  /// The number of changes of `requested_setup`.
   int changes = 0;
   bool ghost = true;
   bool arrows = true;
@@ -51,16 +51,16 @@ struct ViewState {
   bool help = true;
   /// The text in the field for the scan to open, and the scan to be opened once its button was pressed.
   std::array<char, 4096> scan_path{};
-  std::string scan_asked;
+  std::string scan_requested;
   /// By how many steps text is to become larger; negative: smaller.
   int text_steps = 0;
-  bool reset_asked = false;
+  bool reset_requested = false;
   /// Requests that wait until nothing else is being prepared.
-  bool undo_asked = false;
+  bool undo_requested = false;
   bool reset_confirmed = false;
-  std::optional<double> isovalue_asked;
-  bool full_screen_asked = false;
-  bool picture_asked = false;
+  std::optional<double> isovalue_requested;
+  bool full_screen_requested = false;
+  bool picture_requested = false;
   DialogueQueue dialogues;
   /// The text on what was done last, and the file or folder that it made, if any.
   std::string message;

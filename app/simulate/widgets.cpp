@@ -20,8 +20,8 @@ void set_scale(double scale) {
   scale_of_all = static_cast<float>(scale);
 }
 
-std::map<std::string, Place>& places() {
-  static std::map<std::string, Place> kept;
+std::map<std::string, WidgetState>& widget_states() {
+  static std::map<std::string, WidgetState> kept;
   return kept;
 }
 
@@ -33,24 +33,24 @@ bool remember(const char* label, bool acted) {
   text.erase(std::min(text.find("##"), text.size()));
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
-  Place& place = places()[text];
-  place = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)}, ImGui::GetFrameCount(), place.worked || acted};
+  WidgetState& state = widget_states()[text];
+  state = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)}, ImGui::GetFrameCount(), state.was_used || acted};
   return acted;
 }
 
 }  // namespace
 
-bool pressed(int key) {
+bool is_key_pressed(int key) {
   return ImGui::IsKeyPressed(key, false);
 }
 
-void begin_right(const char* title, float y_px, ImGuiWindowFlags flags) {
-  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - px(kRightWidth_px + 8), y_px});
-  ImGui::SetNextWindowSize({px(kRightWidth_px), 0});
+void begin_side_panel(const char* title, float y_px, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - px(kSidePanelWidth_px + 8), y_px});
+  ImGui::SetNextWindowSize({px(kSidePanelWidth_px), 0});
   ImGui::Begin(title, nullptr, flags | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
 }
 
-float end_right() {
+float end_side_panel() {
   const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + px(8);
   ImGui::End();
   return below_px;
@@ -58,9 +58,9 @@ float end_right() {
 
 bool button(const char* label, bool enabled) {
   if (!enabled) ImGui::BeginDisabled();
-  const bool pressed = remember(label, ImGui::Button(label) && enabled);
+  const bool acted = remember(label, ImGui::Button(label) && enabled);
   if (!enabled) ImGui::EndDisabled();
-  return pressed;
+  return acted;
 }
 
 bool checkbox(const char* label, bool* value) {
@@ -95,24 +95,25 @@ std::optional<std::size_t> choice(const std::vector<std::string>& labels) {
   if (labels.empty()) return chosen;
   // The key that led to the dialogue may still be going down.
   if (ImGui::IsWindowAppearing()) return chosen;
-  if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
-  if (pressed(GLFW_KEY_ESCAPE)) chosen = labels.size() - 1;
-  if (chosen) places()[labels[*chosen]].worked = true;
+  if (is_key_pressed(GLFW_KEY_ENTER) || is_key_pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
+  if (is_key_pressed(GLFW_KEY_ESCAPE)) chosen = labels.size() - 1;
+  if (chosen) widget_states()[labels[*chosen]].was_used = true;
   return chosen;
 }
 
 void badge(const std::string& text, float top_px, float margin_px, ImU32 ground, bool dot) {
   constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
   const ImVec2 text_px = ImGui::CalcTextSize(text.c_str());
-  const ImVec2 place(0.5f * (ImGui::GetIO().DisplaySize.x - text_px.x), top_px + margin_px);
+  const ImVec2 corner(0.5f * (ImGui::GetIO().DisplaySize.x - text_px.x), top_px + margin_px);
   const float before = (dot ? 3 : 2) * margin_px, after = (dot ? 1 : 2) * margin_px;
   ImDrawList& list = *ImGui::GetForegroundDrawList();
-  list.AddRectFilled({place.x - before, place.y - margin_px},
-                     {place.x + text_px.x + after, place.y + text_px.y + margin_px}, ground, margin_px);
+  list.AddRectFilled({corner.x - before, corner.y - margin_px},
+                     {corner.x + text_px.x + after, corner.y + text_px.y + margin_px}, ground, margin_px);
   if (dot) {
-    list.AddCircleFilled({place.x - 1.6f * margin_px, place.y + 0.5f * text_px.y}, 0.6f * margin_px, kWhite);
+    list.AddCircleFilled({corner.x - 1.6f * margin_px, corner.y + 0.5f * text_px.y}, 0.6f * margin_px,
+                         kWhite);
   }
-  list.AddText(place, kWhite, text.c_str());
+  list.AddText(corner, kWhite, text.c_str());
 }
 
 void warning(const std::string& text) {
@@ -121,7 +122,7 @@ void warning(const std::string& text) {
   ImGui::PopStyleColor();
 }
 
-void hint(const std::string& text) {
+void tooltip(const std::string& text) {
   if (!ImGui::IsItemHovered()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(25 * ImGui::GetFontSize());

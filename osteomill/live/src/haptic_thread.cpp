@@ -145,15 +145,15 @@ std::optional<TickRecord> HapticThread::next_record() {
 
 // Again at every tick until one has placed the tool, since the session may be replaced meanwhile and the
 // device may give no pose for a while.
-void HapticThread::place_when_at_rest() {
+void HapticThread::place_if_at_rest() {
   if (!fading_out_ || !session_->guard().is_at_rest()) return;
   device_.put_at(X_WD_place_);
   session_->place();
 }
 
 TickRecord HapticThread::tick(double late_s) {
-  place_when_at_rest();
-  const bool spindle_on = !paused_ && !fading_out_ && (spindle_ || device_.spindle_asked());
+  place_if_at_rest();
+  const bool spindle_on = !paused_ && !fading_out_ && (spindle_ || device_.is_spindle_requested());
   TickRecord record = session_->tick(device_, {.time_s = time_s_,
                                                .dt_s = kTick_s,
                                                .late_s = late_s,

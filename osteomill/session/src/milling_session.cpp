@@ -103,7 +103,7 @@ TickRecord MillingSession::begin_record(Device& device, const TickInput& input) 
   record.delivered_fraction = device.delivered_fraction();
   record.driven = device.is_driven() && !std::exchange(hold_back_requested_, false);
   if (!record.driven) guard_.hold_back();
-  record.spindle_on = !input.paused && input.spindle_on.value_or(device.spindle_asked());
+  record.spindle_on = !input.paused && input.spindle_on.value_or(device.is_spindle_requested());
   if (place_requested_ && is_finite(record.X_WD)) {
     place_requested_ = false;
     record.placed = true;

@@ -157,7 +157,7 @@ class AskedDevice final : public Device {
     return {{0, 0, 1.0}, Quat::Identity()};
   }
   void write_wrench(const Wrench&) override { asked += "wrench "; }
-  bool spindle_asked() const noexcept override { return wants_spindle; }
+  bool is_spindle_requested() const noexcept override { return wants_spindle; }
   void tick_done(const Pose& X_WT, double dt_s) noexcept override {
     asked += "done ";
     shown_mm = X_WT.position_mm;

@@ -15,8 +15,8 @@ T& a() noexcept;
 static_assert(noexcept(a<HapticAlgorithm>().step(a<const Pose>(), 1e-3)));
 static_assert(noexcept(a<HapticAlgorithm>().volume_changed(a<const VolumeChange>())));
 static_assert(noexcept(a<HapticAlgorithm>().reset()));
-static_assert(noexcept(a<Device>().delivered_fraction()) && noexcept(a<Device>().spindle_asked()) && noexcept(
-    a<Device>().is_driven()));
+static_assert(noexcept(a<Device>().delivered_fraction()) && noexcept(
+    a<Device>().is_spindle_requested()) && noexcept(a<Device>().is_driven()));
 static_assert(noexcept(a<Device>().tick_done(a<const Pose>(),
                                              1e-3)) && noexcept(a<Device>().put_at(a<const Pose>())));
 static_assert(noexcept(a<Device>().disengage()) && noexcept(a<Device>().engage()));

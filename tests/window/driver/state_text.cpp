@@ -38,10 +38,10 @@ class Lines {
 // All that can be clicked now, and where.
 void add_controls(Lines& lines) {
   std::string labels;
-  for (const auto& [label, place] : ui::places()) {
-    if (place.frame < ImGui::GetFrameCount() - 1) continue;
+  for (const auto& [label, state] : ui::widget_states()) {
+    if (state.frame < ImGui::GetFrameCount() - 1) continue;
     labels += "[" + label + "]";
-    const Eigen::Vector2d middle(static_cast<double>(place.middle.x), static_cast<double>(place.middle.y));
+    const Eigen::Vector2d middle(static_cast<double>(state.middle.x), static_cast<double>(state.middle.y));
     lines.add("place of " + label, fmt::format("{:.0f} {:.0f}", middle.x(), middle.y()));
   }
   lines.add("shown", labels);
@@ -114,8 +114,8 @@ std::string state_text(const std::string& name, const WindowContents& window) {
               fmt::format("{:.3f}", counted ? simulation.removed_by_label_mm3[n + 1] : 0));
   }
   lines.add("no_go", simulation.no_go_text);
-  const ConnectedDevice* hardware = simulation.holder.hardware;
-  lines.add("device", hardware != nullptr ? hardware->capabilities().name : simulation.holder.name);
+  const ConnectedDevice* hardware = simulation.tool_source.hardware;
+  lines.add("device", hardware != nullptr ? hardware->capabilities().name : simulation.tool_source.name);
   lines.add("device_fault", hardware != nullptr ? hardware->report().complaint() : "");
   lines.add("unsaved", simulation.autosave.unsaved(milling));
   lines.add("recording", milling.is_recording());

@@ -122,8 +122,8 @@ void UiScript::begin(const Action& action, Window& window) {
   } else if (name == "click" || name == "drag") {
     std::string label = action.text;
     if (name == "drag") label = label.substr(0, label.rfind(' '));
-    const auto found = ui::places().find(label);
-    if (found == ui::places().end() || found->second.frame < ImGui::GetFrameCount() - 1) {
+    const auto found = ui::widget_states().find(label);
+    if (found == ui::widget_states().end() || found->second.frame < ImGui::GetFrameCount() - 1) {
       throw InputError(path_.string(),
                        fmt::format("line {}: nothing is called '{}' now", action.line, label));
     }
@@ -198,9 +198,9 @@ void UiScript::give_input(double passed_s, bool is_settled, Window& window) {
 void UiScript::finish() {
   if (controls_path_.empty()) return;
   std::ofstream file(controls_path_, std::ios::app);
-  for (const auto& [label, place] : ui::places()) file << "drawn " << label << '\n';
-  for (const auto& [label, place] : ui::places())
-    if (place.worked) file << "worked " << label << '\n';
+  for (const auto& [label, state] : ui::widget_states()) file << "drawn " << label << '\n';
+  for (const auto& [label, state] : ui::widget_states())
+    if (state.was_used) file << "worked " << label << '\n';
 }
 
 void UiScript::read(const WindowContents& contents) {

@@ -304,13 +304,13 @@ TEST_F(ConnectedDeviceTest, AClutchMovesTheHandleWithoutTheTool) {
   trembles_ = false;
   hardware_.input.buttons = ConnectedDevice::kSpindleButton;
   run(3);
-  EXPECT_TRUE(device_.spindle_asked());
+  EXPECT_TRUE(device_.is_spindle_requested());
   const Pose held = pose_;
   hardware_.input.buttons |= ConnectedDevice::kClutchButton;
   asked_.force_N = {0, 0, 1};
   run(3);
   EXPECT_FALSE(is_finite(pose_));
-  EXPECT_FALSE(device_.spindle_asked());
+  EXPECT_FALSE(device_.is_spindle_requested());
   EXPECT_EQ(felt_N(), 0);
   hardware_.input.X_DH = {{40, -30, 20}, quaternion_from_rotation_vector({1, 0, 0})};
   run(3);

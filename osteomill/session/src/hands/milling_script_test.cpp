@@ -55,10 +55,10 @@ std::vector<Sample> run(const OperatorSettings& settings, const MillingEntry& en
   std::vector<Sample> samples;
   while (!person.finished()) {
     const Pose X_WD = person.read_pose();
-    const auto step = hole.step(X_WD, person.spindle_asked(), kTick_s);
+    const auto step = hole.step(X_WD, person.is_spindle_requested(), kTick_s);
     person.write_wrench(step.wrench);
     const auto depth_mm = [&](const Pose& X) { return entry.direction_W.dot(X.position_mm - entry.point_W); };
-    samples.push_back({person.time_s(), person.stage(), person.spindle_asked(), person.target(), X_WD,
+    samples.push_back({person.time_s(), person.stage(), person.is_spindle_requested(), person.target(), X_WD,
                        person.hand_wrench(), depth_mm(step.X_WT) + kTool.burr_radius_mm, depth_mm(X_WD),
                        std::acos(std::min(1.0, -shaft_direction(X_WD).dot(entry.direction_W)))});
     person.tick_done(step.X_WT, kTick_s);
@@ -265,7 +265,7 @@ TEST(MillingScript, MillsUntilTheShaftHasLeantAndHoldsWhatItFeels) {
           rotation_vector(device.orientation * pose_above({}, kTool, 0).orientation.conjugate());
       person.write_wrench({{0, 0, std::max(0.0, 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z()))},
                            -wall_Nmm_per_rad * turn});
-      if (person.spindle_asked()) milled_s = person.time_s();
+      if (person.is_spindle_requested()) milled_s = person.time_s();
       person.tick_done(device, kTick_s);
     }
     return std::pair(milled_s, person.time_s() - milled_s);

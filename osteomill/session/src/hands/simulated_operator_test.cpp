@@ -58,7 +58,7 @@ std::vector<Pose> poses_of_a_run(const OperatorSettings& settings, double tick_s
   std::vector<Pose> poses;
   while (!person.finished()) {
     poses.push_back(person.read_pose());
-    const auto step = hole.step(poses.back(), person.spindle_asked(), tick_s);
+    const auto step = hole.step(poses.back(), person.is_spindle_requested(), tick_s);
     person.write_wrench(step.wrench);
     person.tick_done(step.X_WT, tick_s);
   }
@@ -122,7 +122,7 @@ TEST(SimulatedOperator, TremblesByTheTremorAskedForWhileItHolds) {
   settings.script.settle_s = 0;
   settings.script.holding_s = 20;
   SimulatedOperator person(settings, kTool, {});
-  EXPECT_FALSE(person.spindle_asked());
+  EXPECT_FALSE(person.is_spindle_requested());
   Vec3 sum = Vec3::Zero();
   Vec3 squares = Vec3::Zero();
   int count = 0;
@@ -145,7 +145,7 @@ TEST(SimulatedOperator, ATickAllocatesNothing) {
   SimulatedOperator person(short_run(), kTool, entry);
   const long before = allocations;
   while (!person.finished()) {
-    const auto step = hole.step(person.read_pose(), person.spindle_asked(), 1e-3);
+    const auto step = hole.step(person.read_pose(), person.is_spindle_requested(), 1e-3);
     person.write_wrench(step.wrench);
     person.tick_done(step.X_WT, 1e-3);
   }

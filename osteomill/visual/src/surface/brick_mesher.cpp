@@ -51,7 +51,7 @@ BrickMesher::BrickMesher(const DensityView& view)
   bone_.fill(0);
 }
 
-bool BrickMesher::may_hold_surface(std::size_t brick) const {
+bool BrickMesher::can_hold_surface(std::size_t brick) const {
   constexpr int kRange = BlockRanges::kBrickVoxels;
   const VoxelBox cells = layout_.cells(brick);
   const std::array<int, 3>& dims = view_.ranges.dims();
@@ -75,7 +75,7 @@ const BrickMesh& BrickMesher::mesh(std::size_t brick) {
   mesh_.vertices.clear();
   vertex_edge_.clear();
   mesh_.indices.clear();
-  if (!may_hold_surface(brick)) return mesh_;
+  if (!can_hold_surface(brick)) return mesh_;
   load(brick);
   find_bone();
   add_vertices();
@@ -261,7 +261,7 @@ std::uint64_t BrickMesher::edge_of(std::size_t vertex) const {
   return 3 * (i + columns * (j + rows * k)) + static_cast<std::uint64_t>(edge / kBlockVoxels);
 }
 
-bool BrickMesher::on_brick_border(std::size_t vertex) const {
+bool BrickMesher::is_on_brick_border(std::size_t vertex) const {
   const auto edge = static_cast<int>(vertex_edge_[vertex]);
   const int place = edge % kBlockVoxels;
   const std::array<int, 3> at{place % kBlock, place / kBlock % kBlock, place / kStride[2]};

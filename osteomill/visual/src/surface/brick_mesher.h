@@ -23,7 +23,7 @@ class BrickMesher {
   /// The grid edge on which each vertex lies: one number for every edge of the grid, the same in all bricks.
   std::uint64_t edge_of(std::size_t vertex) const;
   /// Returns whether other bricks may have this vertex too.
-  bool on_brick_border(std::size_t vertex) const;
+  bool is_on_brick_border(std::size_t vertex) const;
 
  private:
   using Vec3f = Eigen::Vector3f;
@@ -35,7 +35,7 @@ class BrickMesher {
   static constexpr int kBlockVoxels = kBlock * kBlock * kBlock;
   static_assert(kBlock <= 32, "a row of the block is a word of bits");
 
-  bool may_hold_surface(std::size_t brick) const;
+  bool can_hold_surface(std::size_t brick) const;
   void load(std::size_t brick);
   void load_row(const VoxelIndex& first, float* row) const;
   void find_bone();

@@ -19,7 +19,7 @@ VoxelBox SurfaceBricks::cells(std::size_t brick) const {
           {last_cell(bi, voxel_dims_[0]), last_cell(bj, voxel_dims_[1]), last_cell(bk, voxel_dims_[2])}};
 }
 
-VoxelBox SurfaceBricks::touched_by(const VoxelBox& voxels) const {
+VoxelBox SurfaceBricks::bricks_depending_on(const VoxelBox& voxels) const {
   if (voxels.empty()) return {};
   // A vertex between voxels n and n + 1 depends on n - 1 to n + 2: its normal and its density do.
   const auto first_brick = [](int v) { return std::max(v - 2, 0) / kBrickCells; };

@@ -58,7 +58,7 @@ BrickMesh mesh_in_one_piece(const DensityView& view) {
     const BrickMesh& mesh = mesher.mesh(brick);
     const auto base = static_cast<std::uint32_t>(whole.vertices.size());
     for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
-      if (mesher.on_brick_border(n))
+      if (mesher.is_on_brick_border(n))
         shared.push_back({mesher.edge_of(n), base + static_cast<std::uint32_t>(n)});
     }
     whole.vertices.insert(whole.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());

@@ -250,13 +250,13 @@ TEST(SurfaceBricks, NameAllBricksThatAChangeReaches) {
     const VoxelIndex voxel{below(50), below(33), below(40)};
     changed.lower_density(voxel, -5);
     const SurfaceMesh after = mesh_surface(DensityView(changed));
-    const VoxelBox touched = before.layout.touched_by({voxel, voxel});
+    const VoxelBox touched = before.layout.bricks_depending_on({voxel, voxel});
     for (std::size_t brick = 0; brick < after.bricks.size(); ++brick) {
       const auto [bi, bj, bk] = before.layout.coordinates(brick);
       EXPECT_TRUE(touched.contains({bi, bj, bk}) || before.bricks[brick] == after.bricks[brick]);
     }
   }
-  EXPECT_TRUE(before.layout.touched_by({}).empty());
+  EXPECT_TRUE(before.layout.bricks_depending_on({}).empty());
 }
 
 TEST(SurfaceMesh, OfTheBuiltinToothIsClosedAndOfItsSize) {

@@ -16,7 +16,7 @@ void SurfaceUpkeep::mark_all() {
 }
 
 void SurfaceUpkeep::mark(const VoxelBox& voxels) {
-  for_each(layout_.touched_by(voxels), [&](const VoxelIndex& brick) {
+  for_each(layout_.bricks_depending_on(voxels), [&](const VoxelIndex& brick) {
     const std::size_t number = layout_.index(brick.i, brick.j, brick.k);
     to_mesh_.insert(number);
     changing_[number] = calls_;
@@ -28,7 +28,7 @@ ChangedBricks SurfaceUpkeep::remesh(const DensityView& view) {
   ++calls_;
   std::erase_if(changing_, [&](const auto& brick_and_call) {
     const auto& [brick, call] = brick_and_call;
-    if (calls_ - call < kCallsAtRest || at_rest++ >= kMostAtRest) return false;
+    if (calls_ - call < kCallsUntilRest || at_rest++ >= kMaxRefinedPerCall) return false;
     to_mesh_.insert(brick);
     return true;
   });

@@ -66,19 +66,19 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   const VoxelBox row{{12, 25, 45}, {40, 25, 45}};
   for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, 45}, 0);
   std::size_t milled = 0;  // more than come to rest at once
-  for (int n = 0; n < 2 * SurfaceUpkeep::kCallsAtRest; ++n) {
+  for (int n = 0; n < 2 * SurfaceUpkeep::kCallsUntilRest; ++n) {
     upkeep.mark(row);
     const ChangedBricks changed = upkeep.remesh(DensityView(volume));
     milled = changed.size();
-    EXPECT_GT(milled, SurfaceUpkeep::kMostAtRest);
+    EXPECT_GT(milled, SurfaceUpkeep::kMaxRefinedPerCall);
     EXPECT_TRUE(std::none_of(changed.begin(), changed.end(), has_levels));
   }
-  for (int n = 2; n < SurfaceUpkeep::kCallsAtRest; ++n)
+  for (int n = 2; n < SurfaceUpkeep::kCallsUntilRest; ++n)
     EXPECT_TRUE(upkeep.remesh(DensityView(volume)).empty());
   // A few a call, so that none takes long.
   for (std::size_t left = milled; left > 0;) {
     const ChangedBricks at_rest = upkeep.remesh(DensityView(volume));
-    EXPECT_EQ(at_rest.size(), std::min(left, SurfaceUpkeep::kMostAtRest));
+    EXPECT_EQ(at_rest.size(), std::min(left, SurfaceUpkeep::kMaxRefinedPerCall));
     EXPECT_TRUE(std::all_of(at_rest.begin(), at_rest.end(), has_levels));
     ASSERT_FALSE(at_rest.empty());
     left -= at_rest.size();

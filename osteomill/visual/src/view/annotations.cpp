@@ -142,7 +142,7 @@ void draw_annotation(Image& image, const Annotation& annotation, const Ink& ink,
   for (const Annotation::Line& line : lines) draw_line(image, line, 4 * scale, ink.edge);
   for (const Annotation::Line& line : lines) draw_line(image, line, 2 * scale, ink.level);
   const Letters letters(static_cast<float>(scale) * kFontSize_px);
-  const Vector2d pen = scale * annotation.place - 0.5 * letters.size_of(annotation.text);
+  const Vector2d pen = scale * annotation.text_centre_px - 0.5 * letters.size_of(annotation.text);
   for (const Vector2d& aside : {Vector2d(1, 1), Vector2d(-1, 1), Vector2d(1, -1), Vector2d(-1, -1)}) {
     letters.draw(image, annotation.text, pen + scale * aside, ink.edge);
   }

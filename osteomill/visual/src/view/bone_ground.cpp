@@ -48,8 +48,8 @@ using Clock = std::chrono::steady_clock;
 // At rest the depths are read only once in this number of pictures: reading makes a processor that draws wait
 // for itself, and milling changes the depths little.
 constexpr unsigned kPicturesPerBlur = 4;
-constexpr double kCoarsest_px = 64;
-constexpr int kWidestPixels = 4;
+constexpr double kMaxCell_px = 64;
+constexpr int kMaxCoarseness = 4;
 
 std::size_t pixels_of(const PixelSize& size) {
   return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
@@ -168,20 +168,20 @@ void BoneGround::draw(const ViewScene& scene, const PixelSize& size) {
   if (same && draw_changed(scene, projection_of(scene, shown_->size()))) {
     if (!settled_) refine(scene, projection_of(scene, size));
   } else {
-    draw_at_once(scene, size_in_time(size));
+    draw_at_once(scene, affordable_size(size));
   }
   scene_ = scene;
   ++drawn_;
 }
 
 // The most pixels that there is time for. As with triangles, more only if that leaves some time.
-PixelSize BoneGround::size_in_time(const PixelSize& size) {
+PixelSize BoneGround::affordable_size(const PixelSize& size) {
   const auto coarse = [&](int n) { return PixelSize{(size.width + n - 1) / n, (size.height + n - 1) / n}; };
-  const auto allowed = static_cast<double>(pixels_.allowed());
+  const auto budget = static_cast<double>(pixels_.budget());
   int n = 1;
-  for (; n < kWidestPixels && pixels_of(coarse(n + 1)) >= pixels_.fewest(); ++n) {
+  for (; n < kMaxCoarseness && pixels_of(coarse(n + 1)) >= pixels_.min_count(); ++n) {
     const auto count = static_cast<double>(pixels_of(coarse(n)));
-    if (count <= (n < coarseness_ ? 0.75 : 1.0) * allowed) break;
+    if (count <= (n < coarseness_ ? 0.75 : 1.0) * budget) break;
   }
   coarseness_ = n;
   return coarse(n);
@@ -192,16 +192,16 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   if (!moving_ || moving_->size() != size) moving_.emplace(size);
   shown_ = &*moving_;
   const Projection projection = projection_of(scene, size);
-  const std::vector<SeenBrick> seen = seen_in_time(scene, projection);
+  const std::vector<VisibleBrick> visible = visible_in_budget(scene, projection);
   clear_depths(*shown_);
-  bone_.draw(scene, projection, *cavities_, seen);
-  draw_around(scene, projection);
-  look_for_cavities(projection);
+  bone_.draw(scene, projection, *cavities_, visible);
+  draw_surroundings(scene, projection);
+  update_cavities(projection);
   // Else drawing would go on after its time was taken.
   glFinish();
   const double passed_s = seconds_since(start);
-  triangles_.drew(bone_.triangle_count(seen), passed_s);
-  pixels_.drew(pixels_of(size), passed_s);
+  triangles_.record_draw(bone_.triangle_count(visible), passed_s);
+  pixels_.record_draw(pixels_of(size), passed_s);
   settled_ = refining_ = false;
   changed_.clear();
   to_shade_.clear();
@@ -209,24 +209,25 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
 
 // Returns the bricks in the finest detail for which there is time. It gets finer than before only if that
 // leaves some time, so that it does not alternate.
-std::vector<SeenBrick> BoneGround::seen_in_time(const ViewScene& scene, const Projection& projection) {
+std::vector<VisibleBrick> BoneGround::visible_in_budget(const ViewScene& scene,
+                                                        const Projection& projection) {
   Detail detail = kFullDetail;
   if (scene.X_WT) detail.sharp = Sphere{scene.X_WT->position_mm, 2 * scene.tool.burr_radius_mm};
-  std::vector<SeenBrick> seen = bone_.seen(scene, projection, detail);
-  const auto allowed = static_cast<double>(triangles_.allowed());
-  while (detail.cell_px < kCoarsest_px) {
-    const auto count = static_cast<double>(bone_.triangle_count(seen));
-    if (count <= (detail.cell_px < cell_px_ ? 0.75 : 1.0) * allowed) break;
+  std::vector<VisibleBrick> visible = bone_.visible_bricks(scene, projection, detail);
+  const auto budget = static_cast<double>(triangles_.budget());
+  while (detail.cell_px < kMaxCell_px) {
+    const auto count = static_cast<double>(bone_.triangle_count(visible));
+    if (count <= (detail.cell_px < cell_px_ ? 0.75 : 1.0) * budget) break;
     detail.cell_px *= std::numbers::sqrt2;
-    bone_.choose_levels(seen, detail);
+    bone_.choose_levels(visible, detail);
   }
   cell_px_ = detail.cell_px;
-  return seen;
+  return visible;
 }
 
 void BoneGround::begin_refining(const ViewScene& scene, const Projection& projection) {
-  look_for_cavities(projection);
-  to_refine_ = bone_.seen(scene, projection, kFullDetail);
+  update_cavities(projection);
+  to_refine_ = bone_.visible_bricks(scene, projection, kFullDetail);
   refined_ = 0;
   refining_ = true;
   changed_since_.clear();
@@ -241,25 +242,25 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
   glEnable(GL_DEPTH_TEST);
   std::optional<DepthTiles> before;
   if (refined_ > 0) before.emplace(*resting_, projection, scene.camera);
-  std::vector<SeenBrick> slice;
+  std::vector<VisibleBrick> slice;
   std::size_t triangles = 0;
-  for (; refined_ < to_refine_.size() && triangles < triangles_.allowed(); ++refined_) {
-    const SeenBrick& seen = to_refine_[refined_];
-    if (before && before->hide(bone_.bounds(seen.brick))) continue;
-    slice.push_back(seen);
-    triangles += bone_.triangle_count({&seen, 1});
+  for (; refined_ < to_refine_.size() && triangles < triangles_.budget(); ++refined_) {
+    const VisibleBrick& visible = to_refine_[refined_];
+    if (before && before->is_hidden(bone_.bounds(visible.brick))) continue;
+    slice.push_back(visible);
+    triangles += bone_.triangle_count({&visible, 1});
   }
   resting_->bind();
   bone_.draw(scene, projection, *cavities_, slice);
   if (refined_ == to_refine_.size()) {
-    draw_around(scene, projection);
+    draw_surroundings(scene, projection);
     shown_ = &*resting_;
     settled_ = true;
     refining_ = false;
     changed_ = std::exchange(changed_since_, {});
   }
   glFinish();
-  triangles_.drew(triangles, seconds_since(start));
+  triangles_.record_draw(triangles, seconds_since(start));
 }
 
 // Draws the part of the picture in which bone changed; once more when nothing changes any longer, since what
@@ -268,24 +269,24 @@ bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projecti
   const bool last = changed_.empty();
   if (last && to_shade_.empty()) return true;
   const auto start = Clock::now();
-  if (last || drawn_ % kPicturesPerBlur == 0) look_for_cavities(projection);
+  if (last || drawn_ % kPicturesPerBlur == 0) update_cavities(projection);
   to_shade_.insert(changed_.begin(), changed_.end());
   const Eigen::AlignedBox2i part = changed_part(last ? to_shade_ : changed_, scene, projection);
   const Eigen::AlignedBox2d box = part.cast<double>();
-  std::vector<SeenBrick> seen = bone_.seen(scene, projection, kFullDetail);
-  std::erase_if(seen, [&](const SeenBrick& brick) {
+  std::vector<VisibleBrick> visible = bone_.visible_bricks(scene, projection, kFullDetail);
+  std::erase_if(visible, [&](const VisibleBrick& brick) {
     return !box.intersects(drawn_within(scene, projection, bone_.bounds(brick.brick)));
   });
-  const std::size_t triangles = bone_.triangle_count(seen);
-  if (triangles > triangles_.allowed()) return false;
+  const std::size_t triangles = bone_.triangle_count(visible);
+  if (triangles > triangles_.budget()) return false;
   glEnable(GL_SCISSOR_TEST);
   glScissor(part.min().x(), part.min().y(), part.sizes().x(), part.sizes().y());
   clear_depths(*shown_);
-  bone_.draw(scene, projection, *cavities_, seen);
-  draw_around(scene, projection);
+  bone_.draw(scene, projection, *cavities_, visible);
+  draw_surroundings(scene, projection);
   glDisable(GL_SCISSOR_TEST);
   glFinish();
-  triangles_.drew(triangles, seconds_since(start));
+  triangles_.record_draw(triangles, seconds_since(start));
   changed_.clear();
   if (last) to_shade_.clear();
   return true;
@@ -303,12 +304,12 @@ Eigen::AlignedBox2i BoneGround::changed_part(const std::set<std::size_t>& bricks
   return {first.cast<int>().matrix(), last.cast<int>().matrix()};
 }
 
-void BoneGround::look_for_cavities(const Projection& projection) {
+void BoneGround::update_cavities(const Projection& projection) {
   cavities_->blur(shown_->depths(), projection.near_mm, projection.far_mm);
 }
 
 // Into the picture that is bound.
-void BoneGround::draw_around(const ViewScene& scene, const Projection& projection) {
+void BoneGround::draw_surroundings(const ViewScene& scene, const Projection& projection) {
   glDepthFunc(GL_LEQUAL);
   background_.draw();
   glDepthFunc(GL_LESS);

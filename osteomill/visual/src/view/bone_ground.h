@@ -23,23 +23,26 @@ class DrawingPace {
   /// For the bone of one picture: in a thirtieth of a second it leaves time for all else.
   static constexpr double kBone_s = 0.018;
 
-  /// There is always time for `fewest`, and at first for `expected`.
-  DrawingPace(std::size_t fewest, double expected) : fewest_(fewest), s_each_(kBone_s / expected) {}
+  /// There is always time for `min_count`, and at first for `expected`.
+  DrawingPace(std::size_t min_count, double expected)
+      : min_count_(min_count), seconds_per_item_(kBone_s / expected) {}
 
-  std::size_t fewest() const { return fewest_; }
-  std::size_t allowed() const { return std::max(fewest_, static_cast<std::size_t>(kBone_s / s_each_)); }
-  /// Records that drawing `count` took `passed_s`. Fewer than `fewest` count as that number, because a few do
-  /// not predict many.
-  void drew(std::size_t count, double passed_s) {
+  std::size_t min_count() const { return min_count_; }
+  std::size_t budget() const {
+    return std::max(min_count_, static_cast<std::size_t>(kBone_s / seconds_per_item_));
+  }
+  /// Records that drawing `count` took `passed_s`. Fewer than `min_count` count as that number, because a few
+  /// do not predict many.
+  void record_draw(std::size_t count, double passed_s) {
     constexpr double kWeight = 0.3;
-    const double here = passed_s / static_cast<double>(std::max(count, fewest_));
+    const double here = passed_s / static_cast<double>(std::max(count, min_count_));
     // One that others of the machine held up counts little.
-    s_each_ += kWeight * (std::min(here, 2 * s_each_) - s_each_);
+    seconds_per_item_ += kWeight * (std::min(here, 2 * seconds_per_item_) - seconds_per_item_);
   }
 
  private:
-  std::size_t fewest_;
-  double s_each_;
+  std::size_t min_count_;
+  double seconds_per_item_;
 };
 
 /// Draws what cuts lay open: grey values, tinted by labels.
@@ -78,11 +81,11 @@ class BoneGround {
   void draw(const ViewScene& scene, const PixelSize& size);
   const FrameTarget& picture() const { return *shown_; }
   /// Returns true if nothing is left to draw while neither view nor bone changes.
-  bool settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
+  bool is_settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
 
  private:
   void fit(const PixelSize& size);
-  PixelSize size_in_time(const PixelSize& size);
+  PixelSize affordable_size(const PixelSize& size);
   void draw_at_once(const ViewScene& scene, const PixelSize& size);
   void begin_refining(const ViewScene& scene, const Projection& projection);
   void refine(const ViewScene& scene, const Projection& projection);
@@ -90,9 +93,9 @@ class BoneGround {
   /// Pixels from the lower left.
   Eigen::AlignedBox2i changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
                                    const Projection& projection) const;
-  std::vector<SeenBrick> seen_in_time(const ViewScene& scene, const Projection& projection);
-  void draw_around(const ViewScene& scene, const Projection& projection);
-  void look_for_cavities(const Projection& projection);
+  std::vector<VisibleBrick> visible_in_budget(const ViewScene& scene, const Projection& projection);
+  void draw_surroundings(const ViewScene& scene, const Projection& projection);
+  void update_cavities(const Projection& projection);
 
   BoneLayer bone_;
   ClipFaces cut_faces_;
@@ -109,7 +112,7 @@ class BoneGround {
   DrawingPace triangles_{20'000, 150'000};
   DrawingPace pixels_{500'000, 2'000'000};
   double cell_px_ = kFullDetail.cell_px;
-  std::vector<SeenBrick> to_refine_;
+  std::vector<VisibleBrick> to_refine_;
   std::size_t refined_ = 0;
   bool refining_ = false;
   bool settled_ = false;

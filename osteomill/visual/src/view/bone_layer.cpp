@@ -92,7 +92,7 @@ void main() {
 
 // Beyond the bone there is the tool.
 constexpr double kRoomAround_mm = 60;
-constexpr double kNearestDepth_mm = 1;
+constexpr double kMinDepth_mm = 1;
 // Sunk by this share of the blur's reach is as dark as it gets.
 constexpr double kDarkestAt = 0.55;
 
@@ -174,7 +174,7 @@ Projection projection_of(const ViewScene& scene, const PixelSize& size) {
   Projection projection{size, 0, 0, view_matrix(scene.camera), {}};
   const double depth_mm = depth_of(scene.camera, scene.bounds.centre_W);
   const double reach_mm = scene.bounds.radius_mm + kRoomAround_mm;
-  projection.near_mm = std::max(depth_mm - reach_mm, kNearestDepth_mm);
+  projection.near_mm = std::max(depth_mm - reach_mm, kMinDepth_mm);
   projection.far_mm = std::max(depth_mm + reach_mm, projection.near_mm + reach_mm);
   projection.clip_from_camera = projection_matrix(scene.camera, size, projection.near_mm, projection.far_mm);
   return projection;
@@ -211,7 +211,7 @@ DepthTiles::DepthTiles(const FrameTarget& target, const Projection& projection, 
   }
 }
 
-bool DepthTiles::hide(const Sphere& sphere) const {
+bool DepthTiles::is_hidden(const Sphere& sphere) const {
   const double front_mm = depth_of(camera_, sphere.centre_W) - sphere.radius_mm;
   if (front_mm <= projection_.near_mm) return false;
   const auto front = static_cast<float>(projection_.far_mm * (front_mm - projection_.near_mm) /
@@ -295,7 +295,7 @@ void BoneLayer::set_label_colours(Brick& brick, const std::vector<MeshVertex>& v
 }
 
 // Returns whether all of its triangles show their backs.
-bool BoneLayer::Brick::turned_away(const Vec3& eye_W) const {
+bool BoneLayer::Brick::is_facing_away(const Vec3& eye_W) const {
   const Vec3 sight = bounds.centre_W - eye_W;
   const double way_mm = sight.norm();
   if (way_mm <= bounds.radius_mm) return false;
@@ -304,8 +304,8 @@ bool BoneLayer::Brick::turned_away(const Vec3& eye_W) const {
 }
 
 template <typename Wanted>
-std::vector<std::size_t> BoneLayer::in_view(const ViewScene& scene, const Projection& projection,
-                                            const Wanted& wanted) const {
+std::vector<std::size_t> BoneLayer::bricks_in_view(const ViewScene& scene, const Projection& projection,
+                                                   const Wanted& wanted) const {
   const auto planes = view_planes(projection);
   const Vec3 eye_W = scene.camera.eye_W();
   std::vector<std::pair<double, std::size_t>> found;
@@ -320,20 +320,21 @@ std::vector<std::size_t> BoneLayer::in_view(const ViewScene& scene, const Projec
   return numbers;
 }
 
-std::vector<std::size_t> BoneLayer::in_view(const ViewScene& scene, const Projection& projection) const {
-  return in_view(scene, projection, [](const Brick&) { return true; });
+std::vector<std::size_t> BoneLayer::bricks_in_view(const ViewScene& scene,
+                                                   const Projection& projection) const {
+  return bricks_in_view(scene, projection, [](const Brick&) { return true; });
 }
 
 // The nearest first, so that what they hide need not be coloured.
-std::vector<SeenBrick> BoneLayer::seen(const ViewScene& scene, const Projection& projection,
-                                       const Detail& detail) const {
+std::vector<VisibleBrick> BoneLayer::visible_bricks(const ViewScene& scene, const Projection& projection,
+                                                    const Detail& detail) const {
   const Vec3 eye_W = scene.camera.eye_W();
   const bool cut = is_cut(scene);
   const auto faces_us = [&](const Brick& brick) {
-    return !brick.empty() && (cut || !brick.turned_away(eye_W));
+    return !brick.empty() && (cut || !brick.is_facing_away(eye_W));
   };
-  std::vector<SeenBrick> bricks;
-  for (const std::size_t n : in_view(scene, projection, faces_us)) {
+  std::vector<VisibleBrick> bricks;
+  for (const std::size_t n : bricks_in_view(scene, projection, faces_us)) {
     const Brick& brick = bricks_[n];
     const double front_mm =
         std::max(depth_of(scene.camera, brick.bounds.centre_W) - brick.bounds.radius_mm, projection.near_mm);
@@ -347,25 +348,25 @@ std::vector<SeenBrick> BoneLayer::seen(const ViewScene& scene, const Projection&
   return bricks;
 }
 
-void BoneLayer::choose_levels(std::span<SeenBrick> bricks, const Detail& detail) const {
-  for (SeenBrick& seen : bricks) {
-    const double widest_px = seen.sharp ? std::min(detail.cell_px, 1.0) : detail.cell_px;
-    seen.level = 0;
-    for (double cell_px = 2 * seen.cell_px; seen.level + 1 < BrickLevels::kCount && cell_px <= widest_px;
-         cell_px *= 2) {
-      ++seen.level;
+void BoneLayer::choose_levels(std::span<VisibleBrick> bricks, const Detail& detail) const {
+  for (VisibleBrick& visible : bricks) {
+    const double widest_px = visible.sharp ? std::min(detail.cell_px, 1.0) : detail.cell_px;
+    visible.level = 0;
+    for (double cell_px = 2 * visible.cell_px;
+         visible.level + 1 < BrickLevels::kCount && cell_px <= widest_px; cell_px *= 2) {
+      ++visible.level;
     }
   }
 }
 
-std::size_t BoneLayer::triangle_count(std::span<const SeenBrick> bricks) const {
+std::size_t BoneLayer::triangle_count(std::span<const VisibleBrick> bricks) const {
   std::size_t count = 0;
-  for (const SeenBrick& seen : bricks) count += bricks_[seen.brick].levels[seen.level].count / 3;
+  for (const VisibleBrick& visible : bricks) count += bricks_[visible.brick].levels[visible.level].count / 3;
   return count;
 }
 
 void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
-                     std::span<const SeenBrick> bricks) const {
+                     std::span<const VisibleBrick> bricks) const {
   const bool cut = is_cut(scene);
   const GLuint program = (cut ? cut_ : whole_).get();
   glUseProgram(program);
@@ -376,9 +377,9 @@ void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const
   if (!cut) glEnable(GL_CULL_FACE);
   // Colour of vertices without labels.
   glVertexAttrib4f(3, 0, 0, 0, 0);
-  for (const SeenBrick& seen : bricks) {
-    glBindVertexArray(bricks_[seen.brick].vertex_array.get());
-    const BrickLevels::Range& range = bricks_[seen.brick].levels[seen.level];
+  for (const VisibleBrick& visible : bricks) {
+    glBindVertexArray(bricks_[visible.brick].vertex_array.get());
+    const BrickLevels::Range& range = bricks_[visible.brick].levels[visible.level];
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_SHORT,
                    reinterpret_cast<const void*>(range.first * sizeof(GLushort)));
   }

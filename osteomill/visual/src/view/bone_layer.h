@@ -42,7 +42,7 @@ class DepthTiles {
   DepthTiles(const FrameTarget& target, const Projection& projection, const Camera& camera);
 
   /// Returns whether all of the sphere lies behind what was drawn.
-  bool hide(const Sphere& sphere) const;
+  bool is_hidden(const Sphere& sphere) const;
 
  private:
   static constexpr int kTile_px = 16;
@@ -70,7 +70,7 @@ struct Detail {
 inline const Detail kFullDetail{0.5, std::nullopt};
 
 /// A brick that the camera may see.
-struct SeenBrick {
+struct VisibleBrick {
   std::size_t brick;
   /// The level of BrickLevels to draw it at.
   std::size_t level;
@@ -98,16 +98,16 @@ class BoneLayer {
   void set_brick(std::size_t brick, const BrickLevels& levels);
 
   /// Returns all bricks, empty ones too, that lie at least in part where the camera looks, the nearest first.
-  std::vector<std::size_t> in_view(const ViewScene& scene, const Projection& projection) const;
+  std::vector<std::size_t> bricks_in_view(const ViewScene& scene, const Projection& projection) const;
   /// Returns those of them whose triangles the camera may see.
-  std::vector<SeenBrick> seen(const ViewScene& scene, const Projection& projection,
-                              const Detail& detail) const;
+  std::vector<VisibleBrick> visible_bricks(const ViewScene& scene, const Projection& projection,
+                                           const Detail& detail) const;
   /// Sets the levels of these bricks for another detail.
-  void choose_levels(std::span<SeenBrick> bricks, const Detail& detail) const;
-  std::size_t triangle_count(std::span<const SeenBrick> bricks) const;
+  void choose_levels(std::span<VisibleBrick> bricks, const Detail& detail) const;
+  std::size_t triangle_count(std::span<const VisibleBrick> bricks) const;
   /// Draws back faces too if the scene is cut open.
   void draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
-            std::span<const SeenBrick> bricks) const;
+            std::span<const VisibleBrick> bricks) const;
   /// Returns the number of triangles in full detail.
   std::size_t triangle_count() const;
   const Sphere& bounds(std::size_t brick) const { return bricks_[brick].bounds; }
@@ -123,11 +123,11 @@ class BoneLayer {
     Sphere bounds;
     Facing facing;
     bool empty() const { return levels[0].count == 0; }
-    bool turned_away(const Vec3& eye_W) const;
+    bool is_facing_away(const Vec3& eye_W) const;
   };
   template <typename Wanted>
-  std::vector<std::size_t> in_view(const ViewScene& scene, const Projection& projection,
-                                   const Wanted& wanted) const;
+  std::vector<std::size_t> bricks_in_view(const ViewScene& scene, const Projection& projection,
+                                          const Wanted& wanted) const;
   void set_label_colours(Brick& brick, const std::vector<MeshVertex>& vertices);
 
   // Without cuts and with them, since clipping costs time at every vertex.

@@ -71,7 +71,7 @@ ViewScene scene_with(const Volume& bone, double reference_density, const Camera&
 // A still picture has time for normals that are averaged over a voxel to all sides, so that voxels do not
 // show as terraces in glancing light, and for colours from deeper below the surface, where the scanner's blur
 // has ended.
-void look_closer(const Volume& bone, MeshVertex& vertex) {
+void refine_vertex(const Volume& bone, MeshVertex& vertex) {
   const Vec3 point_W = vec3_of(vertex.position_mm);
   const GridGeometry& geometry = bone.geometry();
   Vec3 slope = density_gradient(bone.grid(), point_W);
@@ -106,36 +106,36 @@ class BonePainter {
     glClearColor(1, 1, 1, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     // Once for the depths, which tell what is hidden and what is sunk, and once more to be seen.
-    const std::vector<std::size_t> seen = draw(layer_.in_view(scene_, projection_), For::depths);
+    const std::vector<std::size_t> visible = draw(layer_.bricks_in_view(scene_, projection_), Pass::depths);
     cavities_.blur(target_.depths(), projection_.near_mm, projection_.far_mm);
     target_.bind();
-    draw(seen, For::eyes);
+    draw(visible, Pass::image);
     Image image = target_.read();
     if (glGetError() != GL_NO_ERROR) throw std::runtime_error("OpenGL cannot draw the bone");
     return image;
   }
 
  private:
-  enum class For : unsigned char { depths, eyes };
+  enum class Pass : unsigned char { depths, image };
 
   // Draws these bricks in their order, leaving out those that are hidden by then; returns those that it drew.
-  std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks, For whom) {
+  std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks, Pass pass) {
     const DensityView view(bone_);
     std::vector<std::size_t> drawn;
     std::size_t done = 0;
     DepthTiles depths(target_, projection_, scene_.camera);
     const auto flush = [&] {
-      layer_.draw(scene_, projection_, cavities_, layer_.seen(scene_, projection_, kFullDetail));
+      layer_.draw(scene_, projection_, cavities_, layer_.visible(scene_, projection_, kFullDetail));
       for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {});
       depths = DepthTiles(target_, projection_, scene_.camera);
     };
     std::size_t triangles = 0;
     for (const std::size_t brick : bricks) {
-      if (depths.hide(layer_.bounds(brick))) continue;
+      if (depths.is_hidden(layer_.bounds(brick))) continue;
       BrickMesh mesh = mesh_brick(view, brick);
       if (mesh.empty()) continue;
-      if (whom == For::eyes) {
-        for (MeshVertex& vertex : mesh.vertices) look_closer(bone_, vertex);
+      if (pass == Pass::image) {
+        for (MeshVertex& vertex : mesh.vertices) refine_vertex(bone_, vertex);
       }
       drawn.push_back(brick);
       triangles += mesh.triangle_count();

@@ -13,15 +13,15 @@ constexpr double kTurnAcross_rad = 200.0 / 180.0 * std::numbers::pi;
 constexpr double kZoomBase = 1.1;
 constexpr double kZoomAcrossHalf = 10.0;
 constexpr double kZoomPerWheelStep = 2.0;
-constexpr double kNearest_mm = 2.0;
-constexpr double kFarthest_mm = 5000.0;
+constexpr double kMinDistance_mm = 2.0;
+constexpr double kMaxDistance_mm = 5000.0;
 
 double half_height_per_depth(const Camera& camera) {
   return std::tan(0.5 * camera.field_of_view_rad);
 }
 
-void come_closer(Camera& camera, double factor) {
-  camera.distance_mm = std::clamp(camera.distance_mm / factor, kNearest_mm, kFarthest_mm);
+void scale_distance(Camera& camera, double factor) {
+  camera.distance_mm = std::clamp(camera.distance_mm / factor, kMinDistance_mm, kMaxDistance_mm);
 }
 
 Vec3 in_camera(const Camera& camera, const Vec3& point_W) {
@@ -55,11 +55,11 @@ void pan(Camera& camera, const PixelSize& size, double right_px, double down_px)
 }
 
 void zoom_by_drag(Camera& camera, const PixelSize& size, double down_px) {
-  come_closer(camera, std::pow(kZoomBase, -kZoomAcrossHalf * down_px / (0.5 * size.height)));
+  scale_distance(camera, std::pow(kZoomBase, -kZoomAcrossHalf * down_px / (0.5 * size.height)));
 }
 
 void zoom_by_wheel(Camera& camera, double steps) {
-  come_closer(camera, std::pow(kZoomBase, kZoomPerWheelStep * steps));
+  scale_distance(camera, std::pow(kZoomBase, kZoomPerWheelStep * steps));
 }
 
 double mm_per_pixel(const Camera& camera, const PixelSize& size, double depth_mm) {

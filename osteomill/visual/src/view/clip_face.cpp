@@ -29,8 +29,8 @@ std::vector<Vec3> crossings(const GridGeometry& geometry, const ClipPlane& plane
 
 // A label's colour over the grey value, and never quite dark: a nerve's canal may be as dark as air.
 std::array<unsigned char, 3> tinted(unsigned char grey, const std::array<std::uint8_t, 3>& label) {
-  constexpr double kLabel = 0.55, kLeast = 0.35;
-  const double light = kLeast + (1 - kLeast) * grey / 255;
+  constexpr double kLabel = 0.55, kMinBlackShare = 0.35;
+  const double light = kMinBlackShare + (1 - kMinBlackShare) * grey / 255;
   std::array<unsigned char, 3> pixel{};
   for (std::size_t c = 0; c < 3; ++c)
     pixel[c] = static_cast<unsigned char>((1 - kLabel) * grey + kLabel * light * label[c]);

@@ -14,20 +14,20 @@ namespace osteomill::gl {
 
 /// Owns an OpenGL object of the context that is current when it is made and when it is destroyed.
 template <auto& Create, auto& Delete>
-class Handle {
+class GlObject {
  public:
   /// No object: its name is 0.
-  Handle() = default;
-  static Handle make() {
-    Handle made;
+  GlObject() = default;
+  static GlObject make() {
+    GlObject made;
     Create(1, &made.name_);
     return made;
   }
-  ~Handle() {
+  ~GlObject() {
     if (name_ != 0) Delete(1, &name_);
   }
-  Handle(Handle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
-  Handle& operator=(Handle&& other) noexcept {
+  GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlObject& operator=(GlObject&& other) noexcept {
     std::swap(name_, other.name_);
     return *this;
   }
@@ -44,11 +44,11 @@ inline void delete_program(GLsizei, const GLuint* name) {
   glDeleteProgram(*name);
 }
 
-using Buffer = Handle<glGenBuffers, glDeleteBuffers>;
-using VertexArray = Handle<glGenVertexArrays, glDeleteVertexArrays>;
-using Texture = Handle<glGenTextures, glDeleteTextures>;
-using Framebuffer = Handle<glGenFramebuffers, glDeleteFramebuffers>;
-using Program = Handle<create_program, delete_program>;
+using Buffer = GlObject<glGenBuffers, glDeleteBuffers>;
+using VertexArray = GlObject<glGenVertexArrays, glDeleteVertexArrays>;
+using Texture = GlObject<glGenTextures, glDeleteTextures>;
+using Framebuffer = GlObject<glGenFramebuffers, glDeleteFramebuffers>;
+using Program = GlObject<create_program, delete_program>;
 
 /// A texture without mipmaps; outside it the pixels of its edge go on.
 Texture make_texture(GLint internal_format, GLenum format, GLenum type, int width, int height, GLint filter);

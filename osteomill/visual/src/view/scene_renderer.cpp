@@ -311,8 +311,8 @@ void SceneRenderer::copy_to_window() const {
   glEnable(GL_DEPTH_TEST);
 }
 
-bool SceneRenderer::settled() const {
-  return impl_->ground.settled();
+bool SceneRenderer::is_settled() const {
+  return impl_->ground.is_settled();
 }
 
 std::size_t SceneRenderer::triangle_count() const {

@@ -147,7 +147,7 @@ TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
 // If bone is milled while the view stands still, only that part of the picture is drawn again.
 TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   scene_.camera = camera_on({Vec3(0, 0, 4), 9}, {0.3, 1, -0.5}, Vec3::UnitZ());
-  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  while (!renderer_->is_settled()) renderer_->draw(scene_, kSize);
   const Image before = renderer_->picture();
   Volume milled = bone_;
   const GridGeometry& geometry = milled.geometry();
@@ -161,7 +161,7 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
     if (mesh.bricks[n] != old.bricks[n]) set_brick(n, mesh.bricks[n]);
   }
-  EXPECT_FALSE(renderer_->settled());
+  EXPECT_FALSE(renderer_->is_settled());
   for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
   const Image pieces = renderer_->picture();
   // Another view in between makes everything be drawn again.
@@ -170,7 +170,7 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   renderer_->draw(scene_, kSize);
   scene_.camera = camera;
   renderer_->draw(scene_, kSize);
-  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  while (!renderer_->is_settled()) renderer_->draw(scene_, kSize);
   const Image whole = renderer_->picture();
   std::size_t milled_away = 0;
   std::size_t others = 0;
@@ -185,7 +185,7 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
 // Pictures of a moving view with fewer triangles look much like the ones with all.
 TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
   scene_.camera.distance_mm *= 9;
-  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  while (!renderer_->is_settled()) renderer_->draw(scene_, kSize);
   const Image all = renderer_->picture();
   const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
@@ -202,28 +202,28 @@ TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
 
 TEST(DrawingPace, HasFewerTrianglesTheLongerTheyTakeAndMoreAgainLater) {
   DrawingPace pace(20'000, 150'000);
-  const std::size_t first = pace.allowed();
-  for (int n = 0; n < 20; ++n) pace.drew(pace.allowed(), 2e-6 * static_cast<double>(pace.allowed()));
-  EXPECT_LT(pace.allowed(), first / 2);
-  EXPECT_GE(pace.allowed(), 20'000u);
-  for (int n = 0; n < 60; ++n) pace.drew(pace.allowed(), 1e-8 * static_cast<double>(pace.allowed()));
-  EXPECT_NEAR(static_cast<double>(pace.allowed()), DrawingPace::kBone_s / 1e-8, 2e5);
+  const std::size_t first = pace.budget();
+  for (int n = 0; n < 20; ++n) pace.record_draw(pace.budget(), 2e-6 * static_cast<double>(pace.budget()));
+  EXPECT_LT(pace.budget(), first / 2);
+  EXPECT_GE(pace.budget(), 20'000u);
+  for (int n = 0; n < 60; ++n) pace.record_draw(pace.budget(), 1e-8 * static_cast<double>(pace.budget()));
+  EXPECT_NEAR(static_cast<double>(pace.budget()), DrawingPace::kBone_s / 1e-8, 2e5);
 }
 
 TEST(DrawingPace, OnePictureThatWasHeldUpCountsLittle) {
   DrawingPace pace(20'000, 150'000);
-  const std::size_t first = pace.allowed();
-  pace.drew(pace.allowed(), 1.0);
-  EXPECT_GT(pace.allowed(), first / 2);
+  const std::size_t first = pace.budget();
+  pace.record_draw(pace.budget(), 1.0);
+  EXPECT_GT(pace.budget(), first / 2);
 }
 
 TEST(DrawingPace, HasFewerPixelsWhereTheyTakeLong) {
   DrawingPace pace(500'000, 2'000'000);
-  EXPECT_GT(pace.allowed(), 1'500'000u);
-  for (int n = 0; n < 20; ++n) pace.drew(1'000'000, 0.1);
-  EXPECT_EQ(pace.allowed(), 500'000u);
-  for (int n = 0; n < 20; ++n) pace.drew(8'000'000, 0.01);
-  EXPECT_GT(pace.allowed(), 8'000'000u);
+  EXPECT_GT(pace.budget(), 1'500'000u);
+  for (int n = 0; n < 20; ++n) pace.record_draw(1'000'000, 0.1);
+  EXPECT_EQ(pace.budget(), 500'000u);
+  for (int n = 0; n < 20; ++n) pace.record_draw(8'000'000, 0.01);
+  EXPECT_GT(pace.budget(), 8'000'000u);
 }
 
 // The first picture comes at the pace that is supposed before any is known.
@@ -235,7 +235,7 @@ TEST_F(SceneRendererTest, ALargePictureThatMovesHasFewerPixelsThanOnceItRests) {
   EXPECT_EQ(moving.height, 540);
   do {
     renderer_->draw(scene_, kLarge);
-  } while (!renderer_->settled());
+  } while (!renderer_->is_settled());
   const Image rested = renderer_->picture();
   EXPECT_EQ(rested.width, 1920);
   EXPECT_EQ(rested.height, 1080);
@@ -251,7 +251,7 @@ TEST_F(SceneRendererTest, AMovingViewIsShadedAfterThePictureBeforeAndNoneLongGon
   const Image moving = renderer_->picture();
   do {
     renderer_->draw(scene_, kSize);
-  } while (!renderer_->settled());
+  } while (!renderer_->is_settled());
   const Image rested = renderer_->picture();
   double sum = 0;
   for (std::size_t n = 0; n < moving.rgb.size(); ++n)

@@ -82,7 +82,7 @@ TEST(Annotations, LettersStandWhereThePatientsSidesAre) {
   std::string seen;
   for (const Annotation& letter : orientation_letters(camera, size)) {
     seen += letter.text;
-    const Eigen::Vector2d aside = letter.place - letter.lines[0].from;
+    const Eigen::Vector2d aside = letter.text_centre_px - letter.lines[0].from;
     if (letter.text == "L") {
       EXPECT_GT(aside.x(), 40);
     }

@@ -92,7 +92,7 @@ class HapticThread {
   void run_pending_command();
   void run(const std::stop_token& stop) noexcept;
   void tick_until(const std::stop_token& stop);
-  void place_when_at_rest();
+  void place_if_at_rest();
   TickRecord tick(double late_s);
 
   TickClock clock_;

@@ -61,7 +61,7 @@ class LiveMilling {
 
   /// Switching it on begins another cut, which `undo` takes back by itself.
   void set_spindle(bool on);
-  bool spindle_asked() const { return spindle_; }
+  bool is_spindle_requested() const { return spindle_; }
   void set_paused(bool paused) { live_.set_paused(paused); }
   /// Brings the tool and its device to a pose free of bone (HapticThread::place).
   void place(const Pose& X_WD) { live_.place(X_WD); }

@@ -106,7 +106,7 @@ class ConnectedDevice final : public Device {
   void write_wrench(const Wrench& wrench) noexcept override;
   double delivered_fraction() const noexcept override;
   bool is_driven() const noexcept override { return is_driven_; }
-  bool spindle_asked() const noexcept override { return (buttons_ & kSpindleButton) != 0; }
+  bool is_spindle_requested() const noexcept override { return (buttons_ & kSpindleButton) != 0; }
   void tick_done(const Pose& X_WT, double dt_s) noexcept override;
   void put_at(const Pose& X_WD) noexcept override;
   bool disengage() noexcept override;

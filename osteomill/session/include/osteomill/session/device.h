@@ -34,7 +34,7 @@ class Device {
   virtual bool is_driven() const noexcept OSTEOMILL_NONBLOCKING { return true; }
 
   /// Returns whether the operator asks for the spindle by a button or pedal of the device.
-  virtual bool spindle_asked() const noexcept OSTEOMILL_NONBLOCKING { return false; }
+  virtual bool is_spindle_requested() const noexcept OSTEOMILL_NONBLOCKING { return false; }
   /// Tells the device that the tick is over: the pose at which the simulated tool is shown, and the time
   /// until the next pose is read. Called once more before that if the next tick comes late. A simulated
   /// device moves on; hardware has nothing to do.

@@ -51,7 +51,7 @@ struct TickInput {
   double dt_s = 1e-3;
   /// The time by which the tick before is longer ago, because ticks were missed.
   double late_s = 0;
-  /// Whether the spindle turns; if not given, the device says so (Device::spindle_asked).
+  /// Whether the spindle turns; if not given, the device says so (Device::is_spindle_requested).
   std::optional<bool> spindle_on = {};
   /// Sends zero and computes nothing; contacts are kept.
   bool paused = false;

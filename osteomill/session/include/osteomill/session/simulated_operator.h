@@ -39,7 +39,7 @@ class SimulatedOperator : public Device {
     handle_.command(wrench);
   }
   /// Returns whether the tick that begins now belongs to the milling phase, in which the spindle turns.
-  bool spindle_asked() const noexcept override { return script_.intent().milling; }
+  bool is_spindle_requested() const noexcept override { return script_.intent().milling; }
   /// Moves hand and handle on. By the simulated tool the operator judges how deep the hole is. `dt_s` passes
   /// in whole substeps of the handle; the rest is kept for the next call. Nothing passes if it does not lie
   /// in (0, 1 s].

@@ -42,7 +42,7 @@ class MillingTrial {
   MillingTrial(const MillingTrial& milled, const TrialSettings& other);
 
   /// Returns whether the next tick is of the milling, and not of the holding.
-  bool is_milling() const { return operator_.spindle_asked(); }
+  bool is_milling() const { return operator_.is_spindle_requested(); }
   bool finished() const { return operator_.finished(); }
   /// Returns what the hand could not bring about.
   const ScriptShortfall& shortfall() const { return operator_.shortfall(); }

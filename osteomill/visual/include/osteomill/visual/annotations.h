@@ -16,7 +16,7 @@ struct Annotation {
   };
   std::vector<Line> lines;
   /// The middle of the text.
-  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+  Eigen::Vector2d text_centre_px = Eigen::Vector2d::Zero();
   std::string text;
 };
 

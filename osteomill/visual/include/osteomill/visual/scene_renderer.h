@@ -37,7 +37,7 @@ class SceneRenderer {
   /// still picture is complete only when it was drawn twice.
   void draw(const ViewScene& scene, const PixelSize& size);
   /// Returns whether drawing the same again would change nothing: the picture has full detail.
-  bool settled() const;
+  bool is_settled() const;
   /// Returns the picture drawn last.
   Image picture() const;
   /// Copies it into the window's framebuffer, which has the size that was asked for.

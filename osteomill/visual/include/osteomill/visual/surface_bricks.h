@@ -29,7 +29,7 @@ class SurfaceBricks {
   VoxelBox cells(std::size_t brick) const;
   /// Returns the bricks, by their coordinates, whose triangles, normals or densities depend on a voxel of
   /// `voxels` (in the grid); empty for an empty box.
-  VoxelBox touched_by(const VoxelBox& voxels) const;
+  VoxelBox bricks_depending_on(const VoxelBox& voxels) const;
 
  private:
   std::array<int, 3> voxel_dims_{0, 0, 0};

@@ -23,9 +23,9 @@ class SurfaceUpkeep {
  public:
   /// Making a brick's levels takes five times as long as its mesh, and while the brick is milled they are not
   /// seen. So they are made once this many calls of `remesh` in a row found the brick unmarked, and ...
-  static constexpr int kCallsAtRest = 10;
+  static constexpr int kCallsUntilRest = 10;
   /// ... for at most this number of bricks in one call.
-  static constexpr std::size_t kMostAtRest = 2;
+  static constexpr std::size_t kMaxRefinedPerCall = 2;
 
   /// At first every brick has to be meshed.
   explicit SurfaceUpkeep(const SurfaceBricks& layout);
