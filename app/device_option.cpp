@@ -116,7 +116,7 @@ std::unique_ptr<BoneSender> send_bone(const BoneFollower& bone, const SendOption
 
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option) {
   const HardwareKind* kind = hardware_named(name_in(option.device));
-  if (option.is_device(kSpaceMouse) && !SpaceMouse().present())
+  if (option.is_device(kSpaceMouse) && !SpaceMouse().is_present())
     throw InputError("--device spacemouse", kNoSpaceMouse);
   if (kind == nullptr) return nullptr;
   const auto open = [kind, address = address_in(option.device)] { return kind->open(address); };

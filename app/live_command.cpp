@@ -78,9 +78,9 @@ void end_recording(LiveMilling& milling, LiveFigures& figures) {
 }
 
 // Who holds the tool: hardware, a SpaceMouse or the simulated operator.
-class ToolSource {
+class LiveToolSource {
  public:
-  explicit ToolSource(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
+  explicit LiveToolSource(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
     if (option.is_device(kMouse)) throw InputError("--device mouse", "needs the window: osteomill simulate");
     if (option.is_device(kSpaceMouse)) space_mouse_.emplace();
   }
@@ -110,8 +110,8 @@ class ToolSource {
   // Warns if its maker's software does not end.
   void close() {
     if (!hardware_) return;
-    if (const std::string said = hardware_->close(); !said.empty())
-      warn_always(hardware_->capabilities().name + ": " + said);
+    if (const std::string message = hardware_->close(); !message.empty())
+      warn_always(hardware_->capabilities().name + ": " + message);
   }
 
   void print() const {
@@ -150,7 +150,7 @@ class ToolSource {
 };
 
 LiveFigures run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const LabelMap>& labels,
-                    ToolSource& tool_source, BoneSender* sender) {
+                    LiveToolSource& tool_source, BoneSender* sender) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
@@ -180,7 +180,7 @@ LiveFigures run_for(LiveMilling& milling, double seconds, const std::shared_ptr<
 void run_live(LiveOptions options, const std::string& command_line) {
   ScriptSettings& script = options.trial.hand.script;
   script.milling_s = script.holding_s = 0.5 * options.seconds;
-  ToolSource tool_source(options.device);
+  LiveToolSource tool_source(options.device);
   MillingSetup setup = options.trial.milling.setup;
   LoadedBone loaded = load_bone(options.scan);
   warn_of_settings(setup, loaded.volume.geometry());
@@ -213,7 +213,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   if (milling.is_recording()) end_recording(milling, figures);
   if (sender && !sender->is_connected())
     warn("--send-bone " + options.send.address + ": the receiver has gone");
-  if (const auto said = figures.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
+  if (const auto message = figures.faults.sentence()) warn(setup.algorithm.id.name + ": " + *message);
   print_timing(milling.timing());
   fmt::print("removed      {:.2f} mm³, {} bricks of the surface meshed\n", milling.state().record.removed_mm3,
              figures.bricks);

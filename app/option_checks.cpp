@@ -33,7 +33,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-std::string without_dashes_before(std::string_view word) {
+std::string without_leading_dashes(std::string_view word) {
   const std::size_t first = word.find_first_not_of('-');
   std::string bare(first == std::string_view::npos ? "" : word.substr(first));
   std::transform(bare.begin(), bare.end(), bare.begin(),
@@ -50,11 +50,11 @@ std::size_t distance(const std::string& word, const std::string& known) {
 }
 
 std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& known) {
-  const std::string bare = without_dashes_before(word);
+  const std::string bare = without_leading_dashes(word);
   std::size_t least = std::max<std::size_t>(1, bare.size() / 3) + 1;
   std::optional<std::string> best;
   for (const std::string& one : known) {
-    const std::size_t far = distance(bare, without_dashes_before(one));
+    const std::size_t far = distance(bare, without_leading_dashes(one));
     if (far < least) {
       least = far;
       best = one;
@@ -63,7 +63,7 @@ std::optional<std::string> nearest(std::string_view word, const std::vector<std:
   return best;
 }
 
-std::string with_and(const std::vector<std::string>& words) {
+std::string joined_with_and(const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t n = 0; n < words.size(); ++n) {
     text += (n == 0 ? "" : n + 1 == words.size() ? " and " : ", ") + words[n];
@@ -93,7 +93,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   constexpr std::size_t kMaxListed = 5;
   if (const auto near = nearest(word, known)) return fmt::format("; did you mean {}?", *near);
   if (known.size() > kMaxListed || known.empty()) return "";
-  return fmt::format("; there {} {}", known.size() == 1 ? "is" : "are", with_and(known));
+  return fmt::format("; there {} {}", known.size() == 1 ? "is" : "are", joined_with_and(known));
 }
 
 void require_word(const std::string& kind, const std::string& word, const std::vector<std::string>& names) {

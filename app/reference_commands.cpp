@@ -25,7 +25,7 @@ void list_devices() {
     print_device(std::string(kind.name) + address, kind.meaning, kind.find(""));
   }
   print_device(kMouse, "a virtual hand that mouse and keyboard move", {true, "in the window of simulate"});
-  const bool space_mouse = SpaceMouse().present();
+  const bool space_mouse = SpaceMouse().is_present();
   print_device(kSpaceMouse, "the same, moved by a SpaceMouse",
                {space_mouse, space_mouse ? "spacenavd answers" : kNoSpaceMouse});
   print_device(kSimulated, "a simulated operator who mills by itself", {true, "always"});

@@ -41,7 +41,7 @@ struct ReplayOptions {
   // The command whose options these are.
   const CLI::App* command = nullptr;
 
-  bool given(const std::string& option) const { return command->count(option) > 0; }
+  bool is_given(const std::string& option) const { return command->count(option) > 0; }
 };
 
 // Keeps the replay's ticks for the log, warns of no-go contacts, and counts what is told at the end.
@@ -64,7 +64,7 @@ class Log {
 
   void write() const {
     end_progress();
-    if (const auto said = faults_.sentence()) warn(options_.input + ": " + *said);
+    if (const auto text = faults_.sentence()) warn(options_.input + ": " + *text);
     if (!options_.out.empty()) write_csv(options_.out, log_);
     for (const std::string& line : label_lines(labels_)) fmt::print("label {}\n", line);
     if (!options_.out.empty()) fmt::print("{}\n", options_.out);
@@ -123,9 +123,9 @@ void verify(const Volume& scan, const Recording& recording) {
 
 // The settings of the command line, each under this algorithm's own name, so that they come after the
 // recorded ones and win.
-HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticSettings& said) {
+HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticSettings& settings) {
   HapticSettings own;
-  for (const HapticSettings::Named& named : said.named) {
+  for (const HapticSettings::Named& named : settings.named) {
     if (!named.algorithm.empty()) {
       own.named.push_back(named);
     } else if (const SettingDescription* setting = setting_of_option(algorithm, named.setting)) {
@@ -138,31 +138,31 @@ HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticS
 RunDescription run_as(const ReplayOptions& options, RunDescription run, const GridGeometry& scan) {
   const MillingSetup& given = options.milling.setup;
   const AlgorithmDescription* algorithm =
-      options.given("--algorithm") ? &given.algorithm : find_algorithm(run.algorithm.name);
+      options.is_given("--algorithm") ? &given.algorithm : find_algorithm(run.algorithm.name);
   if (algorithm == nullptr) return run;
-  const HapticSettings said = settings_for(*algorithm, given.haptics);
+  const HapticSettings chosen = settings_for(*algorithm, given.haptics);
   SessionSettings session = session_settings(run, options.input);
   MillingSetup& setup = session.setup;
   setup.algorithm = *algorithm;
   // Settings of another algorithm mean nothing here.
   if (!(run.algorithm == algorithm->id)) setup.haptics = {};
-  setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
+  setup.haptics.named.insert(setup.haptics.named.end(), chosen.named.begin(), chosen.named.end());
   take_given_options(*options.command, given, setup);
   warn_of_settings(setup, scan);
   set_session_settings(run, session, 0);
   return run;
 }
 
-void replay_another_way(const ReplayOptions& options, const std::string& command_line, const Volume& scan,
-                        const Recording& recording) {
+void replay_with_changes(const ReplayOptions& options, const std::string& command_line, const Volume& scan,
+                         const Recording& recording) {
   Log log(options, recording.records.size(), scan);
   std::optional<Recorder> recorder;
   std::uint32_t session_number = 0;
-  Replay replay;
-  replay.transform_description = [&](const RunDescription& run) {
+  ReplayHooks hooks;
+  hooks.transform_description = [&](const RunDescription& run) {
     return run_as(options, run, scan.geometry());
   };
-  replay.on_session = [&](SessionStart start, const MillingSession& session) {
+  hooks.on_session = [&](SessionStart start, const MillingSession& session) {
     if (options.record.empty()) return;
     for (RunSetting& setting : start.run.settings) {
       if (setting.key == kCommandLineKey) setting.value = command_line;
@@ -176,12 +176,12 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
     }
     recorder->begin_session(session_number++, std::move(start));
   };
-  replay.on_tick = [&](const TickRecord&, const TickRecord& now) {
+  hooks.on_tick = [&](const TickRecord&, const TickRecord& now) {
     log.add(now);
     if (recorder) recorder->push_waiting(now);
     return true;
   };
-  replay_recording(scan, recording, replay);
+  replay_recording(scan, recording, hooks);
   log.write();
   if (recorder) {
     recorder->close();
@@ -202,18 +202,18 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
   const Volume scan = scan_of(options, recording);
   if (options.verify) verify(scan, recording);
   if (!options.out.empty() || !options.record.empty())
-    replay_another_way(options, command_line, scan, recording);
+    replay_with_changes(options, command_line, scan, recording);
 }
 
 // A recording can be replayed with another algorithm and its settings, but not with another tool or bone.
 void refuse_what_is_recorded(const ReplayOptions& options) {
   const auto refuse = [&](const std::string& option) {
-    if (options.given(option))
+    if (options.is_given(option))
       throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
   };
   refuse("--iso");
-  for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
-    if (field.has(kOfTheRecording)) refuse("--" + field.option);
+  for (const Field<MillingSetup>& setting : fields_of<MillingSetup>()) {
+    if (setting.has(kOfTheRecording)) refuse("--" + setting.option);
   }
   refuse("--seed");
 }

@@ -161,8 +161,8 @@ int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
     return kSuccess;
   } catch (const CLI::Success& help_or_version) {
     return program.exit(help_or_version);
-  } catch (const CLI::RuntimeError& said) {
-    return said.get_exit_code();
+  } catch (const CLI::RuntimeError& exit) {
+    return exit.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return report_error(error.what(), kWrongUsage);
   } catch (const osteomill::InputError& error) {

@@ -132,7 +132,7 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
 namespace {
 
 // Looks at its values unless the user or the file says it.
-LabelGuess held_by(const ScanOptions& options, const Scan& scan) {
+LabelGuess guess_content(const ScanOptions& options, const Scan& scan) {
   const auto of = [](bool labels) { return labels ? LabelGuess::labels : LabelGuess::densities; };
   if (options.as_labels) return of(*options.as_labels);
   if (options.bone_fingerprint != 0 && options.isovalue) {
@@ -148,17 +148,17 @@ LabelGuess held_by(const ScanOptions& options, const Scan& scan) {
 Scan open_scan(const ScanOptions& options) {
   if (options.scan.empty()) return {builtin_tooth(options.refinement), kBuiltinTooth, "made up", {}};
   Scan scan = read_scan(options.scan, options.read);
-  const bool said = scan.is_labels || options.as_labels || options.bone_fingerprint != 0;
-  const LabelGuess held = held_by(options, scan);
-  scan.is_labels = held == LabelGuess::labels;
+  const bool kind_is_known = scan.is_labels || options.as_labels || options.bone_fingerprint != 0;
+  const LabelGuess guess = guess_content(options, scan);
+  scan.is_labels = guess == LabelGuess::labels;
   const auto warn_first = [&](std::string warning) {
     scan.warnings.insert(scan.warnings.begin(), std::move(warning));
   };
   if (scan.is_labels) {
     warn_first(fmt::format("{} a label map: what it labels is taken for bone of one density{}",
-                           said ? "is" : "looks like",
-                           said ? "" : "; --as scan takes its values for densities"));
-  } else if (held == LabelGuess::unclear && !scan.in_hounsfield_units) {
+                           kind_is_known ? "is" : "looks like",
+                           kind_is_known ? "" : "; --as scan takes its values for densities"));
+  } else if (guess == LabelGuess::unclear && !scan.in_hounsfield_units) {
     warn_first(
         "may be a label map: its values are few whole numbers, which are taken for densities; --as labels "
         "takes "

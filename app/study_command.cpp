@@ -159,7 +159,7 @@ void run_here(BegunStudy& study, const std::vector<std::size_t>& slices, int thr
   end_progress();
 }
 
-void run_missing(BegunStudy& study, const StudyOptions& options, std::size_t array_limit) {
+void run_missing_slices(BegunStudy& study, const StudyOptions& options, std::size_t array_limit) {
   const StudyStatus now = study_status(study.folder);
   require_none_locked(now);
   const std::vector<std::size_t>& missing = now.missing;
@@ -206,7 +206,7 @@ void begin(const StudyOptions& options) {
   const OutputFolder folder(options.out);
   create_study_folder(options);
   BegunStudy study(options.out);
-  run_missing(study, options, array_limit);
+  run_missing_slices(study, options, array_limit);
 }
 
 void go_on(BegunStudy& study, const StudyOptions& options) {
@@ -232,7 +232,7 @@ void go_on(BegunStudy& study, const StudyOptions& options) {
   const OutputFolder held(folder.path);
   const std::size_t array_limit = options.on.empty() ? 0 : slurm_array_limit();
   check_every_trial(study.trials);
-  run_missing(study, options, array_limit);
+  run_missing_slices(study, options, array_limit);
 }
 
 void run_study(const StudyOptions& options) {

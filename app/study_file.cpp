@@ -86,10 +86,11 @@ class Reader {
 
   // Returns the range of a table {from, to}; nothing if the entry is no such table.
   std::optional<StudyRange> range(const TomlEntry& entry) const {
-    const toml::table* table = entry.value->as_table();
-    if (table == nullptr || !table->contains("from")) return std::nullopt;
-    for (const TomlEntry& key : entries_of(*table)) require_one_of(key, {"from", "to", "steps", "log"});
-    const StudyRange range{value(*table, "from", 0.0), value(*table, "to", 0.0), value(*table, "log", false)};
+    const toml::table* range_table = entry.value->as_table();
+    if (range_table == nullptr || !range_table->contains("from")) return std::nullopt;
+    for (const TomlEntry& key : entries_of(*range_table)) require_one_of(key, {"from", "to", "steps", "log"});
+    const StudyRange range{value(*range_table, "from", 0.0), value(*range_table, "to", 0.0),
+                           value(*range_table, "log", false)};
     if (!std::isfinite(range.from) || !std::isfinite(range.to) || range.to < range.from ||
         (range.logarithmic && !(range.from > 0)))
       refuse(*entry.value, fmt::format("{} has no range from {} to {}", entry.key, range.from, range.to));

@@ -112,7 +112,8 @@ void set_one(TrialSpec& asked, const std::string& key, const std::string& text) 
 StudySettings options_and_units() {
   StudySettings options;
   for (const Text& text : texts_of_a_trial()) options.emplace_back(text.option, "");
-  for (const Field<TrialSpec>& field : numbers_of_a_trial()) options.emplace_back(field.option, field.unit);
+  for (const Field<TrialSpec>& number : numbers_of_a_trial())
+    options.emplace_back(number.option, number.unit);
   for (const std::string& option : shared_options()) options.emplace_back(option, "");
   return options;
 }
@@ -155,7 +156,8 @@ std::string bone_text(const TrialSpec& asked) {
     if (field.has(kBoneField)) words += fmt::format("{}{}={}", words.empty() ? "" : " ", field.option, value);
   };
   for (const Text& text : texts_of_a_trial()) add(text, text.get(asked));
-  for (const Field<TrialSpec>& field : numbers_of_a_trial()) add(field, fmt::format("{}", field.get(asked)));
+  for (const Field<TrialSpec>& number : numbers_of_a_trial())
+    add(number, fmt::format("{}", number.get(asked)));
   return words;
 }
 

@@ -81,16 +81,16 @@ TEST_F(StudyOfScans, EachTrialHasTheBoneThatItsAxesName) {
 }
 
 TEST_F(StudyOfScans, EveryFieldOfTheBoneTellsBonesApart) {
-  std::size_t told = 0;
+  std::size_t reported = 0;
   for (const auto& field : texts_of_a_trial()) {
     const bool of_the_bone = field.has(kBoneField);
     const std::string value = field.option == "as"          ? "labels"
                               : "algorithm" == field.option ? "line-proxy"
                                                             : "1,2,3";
     EXPECT_EQ(bone_text(trial_spec({{field.option, value}})) != bone_text({}), of_the_bone) << field.option;
-    told += of_the_bone ? 1 : 0;
+    reported += of_the_bone ? 1 : 0;
   }
-  EXPECT_EQ(told, 7u);
+  EXPECT_EQ(reported, 7u);
   EXPECT_NE(bone_text(trial_spec({{"iso", "300"}})), bone_text(trial_spec({{"iso", "400"}})));
   EXPECT_EQ(bone_text(trial_spec({{"push", "2"}, {"burr-radius", "2"}})), bone_text({}));
 }

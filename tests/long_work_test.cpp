@@ -62,18 +62,18 @@ class LongWork : public ::testing::TestWithParam<std::string> {
 };
 
 TEST_P(LongWork, SaysHowFarItIs) {
-  std::vector<double> told{0};
+  std::vector<double> reported{0};
   {
-    const WorkProgress progress([&](double share) { told.push_back(share); });
+    const WorkProgress progress([&](double share) { reported.push_back(share); });
     open();
   }
-  ASSERT_GT(told.size(), 50u);
-  for (std::size_t n = 1; n < told.size(); ++n) {
-    ASSERT_GE(told[n], told[n - 1]);
-    EXPECT_LT(told[n] - told[n - 1], 0.1) << "after " << told[n - 1];
+  ASSERT_GT(reported.size(), 50u);
+  for (std::size_t n = 1; n < reported.size(); ++n) {
+    ASSERT_GE(reported[n], reported[n - 1]);
+    EXPECT_LT(reported[n] - reported[n - 1], 0.1) << "after " << reported[n - 1];
   }
-  EXPECT_GT(told.back(), 0.75);
-  EXPECT_LE(told.back(), 1.0);
+  EXPECT_GT(reported.back(), 0.75);
+  EXPECT_LE(reported.back(), 1.0);
 }
 
 TEST_P(LongWork, CanBeStoppedAtAnyMomentAndGivesItsMemoryBack) {

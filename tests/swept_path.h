@@ -124,14 +124,14 @@ inline bool is_deep_in_bone(const Volume& volume, const Vec3& point_W) {
 /// Returns whether the nearest swept surfaces on two sides of the point, a voxel apart, face different ways:
 /// the distance then grows slower than the way.
 inline bool is_at_edge(const SweptPath& path, const GridGeometry& geometry, const Vec3& point_W) {
-  constexpr double kLeastSlope = 0.97, kMostApart_mm = 0.25;
+  constexpr double kMinSlope = 0.97, kMaxSpacing_mm = 0.25;
   Vec3 slope;
   for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 aside_W = std::min(geometry.spacing_mm.maxCoeff(), kMostApart_mm) * Vec3::Unit(axis);
+    const Vec3 aside_W = std::min(geometry.spacing_mm.maxCoeff(), kMaxSpacing_mm) * Vec3::Unit(axis);
     slope[axis] =
         (path.distance_mm(point_W + aside_W) - path.distance_mm(point_W - aside_W)) / (2 * aside_W.norm());
   }
-  return slope.norm() < kLeastSlope;
+  return slope.norm() < kMinSlope;
 }
 
 inline Carving carving(const Volume& before, const Volume& after, const SweptPath& path) {

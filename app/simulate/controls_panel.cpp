@@ -43,7 +43,7 @@ bool settle_field(std::string_view option, MillingSetup& requested_setup, float 
 }
 
 // The end of a name, which tells one scan from another, if there is no room for all of it.
-std::string end_that_fits(const std::string& name) {
+std::string fitting_suffix(const std::string& name) {
   const float room = ImGui::GetContentRegionAvail().x;
   std::string shown = name;
   std::size_t first = 0;
@@ -56,7 +56,7 @@ std::string end_that_fits(const std::string& name) {
 }
 
 void draw_scan(ViewState& view, const std::string& name) {
-  ImGui::TextUnformatted(end_that_fits(name).c_str());
+  ImGui::TextUnformatted(fitting_suffix(name).c_str());
   ui::tooltip(name);
   const bool entered = ui::text_field("scan", view.scan_path.data(), view.scan_path.size());
   ui::tooltip("Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window");

@@ -53,11 +53,11 @@ std::optional<std::size_t> cut_under(const ViewState& view, const PixelSize& siz
     const ViewState::Cut& cut = view.cuts[n];
     const double towards = ray.dot(cut.normal_W);
     if (!cut.on || std::abs(towards) < 1e-6) continue;
-    const double way_mm = (static_cast<double>(cut.offset_mm) - cut.normal_W.dot(eye)) / towards;
-    const Vec3 point_W = eye + way_mm * ray;
-    if (way_mm <= 0 || way_mm > nearest_mm) continue;
+    const double along_mm = (static_cast<double>(cut.offset_mm) - cut.normal_W.dot(eye)) / towards;
+    const Vec3 point_W = eye + along_mm * ray;
+    if (along_mm <= 0 || along_mm > nearest_mm) continue;
     if ((point_W - bounds.centre_W).norm() > 1.1 * bounds.radius_mm) continue;
-    nearest_mm = way_mm;
+    nearest_mm = along_mm;
     found = n;
   }
   return found;
@@ -94,8 +94,8 @@ bool on_tool(const ViewState& view, const Pose& X_WT, const MillingTool& tool, c
   const double middle_mm = depth_of(view.camera, X_WT.position_mm);
   const double reach_mm = kPointerReach_px * mm_per_pixel(view.camera, size, middle_mm);
   for (int n = 0; n <= kSteps; ++n) {
-    const double way_mm = middle_mm + tool.shaft_length_mm * (2.0 * n / kSteps - 1.0);
-    const Vec3 point_W = view.camera.eye_W() + way_mm * ray;
+    const double along_mm = middle_mm + tool.shaft_length_mm * (2.0 * n / kSteps - 1.0);
+    const Vec3 point_W = view.camera.eye_W() + along_mm * ray;
     if (tool_distance(tool, X_TW * point_W).distance_mm < reach_mm) return true;
   }
   return false;

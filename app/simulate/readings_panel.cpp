@@ -24,7 +24,8 @@ constexpr float kValues_px = 96;
 constexpr float kCalibrate_px = 112;
 
 // The greatest of each stretch of ticks: peaks must not fall between two points.
-std::vector<float> thinned(const std::deque<TickRecord>& history, double (*magnitude)(const TickRecord&)) {
+std::vector<float> downsampled(const std::deque<TickRecord>& history,
+                               double (*magnitude)(const TickRecord&)) {
   std::vector<float> points(kPlotPoints, 0.0f);
   constexpr std::size_t kTicks = 5000;
   for (std::size_t n = 0; n < history.size(); ++n) {
@@ -44,7 +45,7 @@ void row(const char* name, const std::string& value,
 // Plots the last 5 s from 0 to a round number, which stands at the top.
 void plot(const char* name, const char* unit, const std::deque<TickRecord>& history,
           double (*magnitude)(const TickRecord&), double min_scale, const ImVec4& colour, float height_px) {
-  const std::vector<float> points = thinned(history, magnitude);
+  const std::vector<float> points = downsampled(history, magnitude);
   const double max = static_cast<double>(*std::max_element(points.begin(), points.end()));
   const double scale = round_up(std::max(max, min_scale));
   const double now = history.empty() ? 0 : magnitude(history.back());
@@ -98,7 +99,7 @@ void draw_faults(const std::deque<TickRecord>& history) {
 
 using Step = ViewState::Calibration::Step;
 
-void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
+void save_device_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
   const DeviceCapabilities& can = device.capabilities();
   const auto turn_deg = turn_by_moves_deg(can, view.calibration.right_D_mm, up_D_mm);
   if (!turn_deg) {
@@ -135,7 +136,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   } else if (moved && to_the_right) {
     calibration = {Step::up, handle_D_mm, handle_D_mm - calibration.from_D_mm};
   } else if (moved) {
-    keep_turn(view, device, handle_D_mm - calibration.from_D_mm);
+    save_device_turn(view, device, handle_D_mm - calibration.from_D_mm);
     calibration = {};
   }
 }

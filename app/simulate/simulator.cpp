@@ -56,7 +56,7 @@ double seconds_since(Clock::time_point start) {
 
 // Returns whether this user has never seen the help on this machine. Leaves a file that says that it was
 // seen; if none can be left the help is shown at every start.
-bool first_time_of_help() {
+bool note_first_help() {
   const std::filesystem::path folder = state_folder();
   if (folder.empty()) return true;
   const std::filesystem::path marker = folder / "help-seen";
@@ -350,7 +350,7 @@ class Simulator {
       simulation_.reset();
     } else {
       view_.requested_setup = opened.milling.session->setup();
-      view_.help = view_.help && first_time_of_help();
+      view_.help = view_.help && note_first_help();
     }
     options_.scan = scan.source;
     const PixelSize size = window_.size();
@@ -367,10 +367,10 @@ class Simulator {
     // If nothing listens there, milling goes on without sending.
     view_.dialogues.run_reporting_errors(
         [&] { sender_ = send_bone(simulation_->milling.follower(), options_.send); });
-    show_from_the_beginning();
+    reset_view();
   }
 
-  void show_from_the_beginning() {
+  void reset_view() {
     LiveMilling& milling = simulation_->milling;
     view_.X_W_target = milling.state().record.X_WD;
     view_.isovalue.reset();
@@ -484,8 +484,8 @@ class Simulator {
     to_draw_ = std::move(changed);
     // All bricks of a large bone take longer than a picture may. But if pictures take long anyway, as
     // without a graphics card, too few at a time would take minutes.
-    const double most_s = std::max(0.02, 0.5 / std::max(pictures_per_s(), 1.0));
-    for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < most_s;
+    const double max_s = std::max(0.02, 0.5 / std::max(pictures_per_s(), 1.0));
+    for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < max_s;
          to_draw_.erase(to_draw_.begin())) {
       renderer_->set_brick(to_draw_.begin()->first, to_draw_.begin()->second);
     }

@@ -205,7 +205,7 @@ class Gate : public ::testing::TestWithParam<Case> {
     rig_->pass(now_s_);
     device_.exchange();
     record_ = session_.tick(device_, {.time_s = now_s_, .dt_s = kTick_s, .spindle_on = spindle_on_});
-    most_N_ = std::max(most_N_, rig_->felt_N().norm());
+    max_N_ = std::max(max_N_, rig_->felt_N().norm());
   }
   // Some of the devices have threads of their own, and may be slow.
   template <typename Condition>
@@ -234,7 +234,7 @@ class Gate : public ::testing::TestWithParam<Case> {
     spindle_on_ = false;
     move_to(kFree_mm, 0.05);
     for (int n = 0; n < 50; ++n) tick();
-    EXPECT_LE(most_N_, WrenchGuard::kFreeForce_N);
+    EXPECT_LE(max_N_, WrenchGuard::kFreeForce_N);
     EXPECT_EQ(record_.fault, WrenchFault::none);
     press_until_it_is_felt();
   }
@@ -250,7 +250,7 @@ class Gate : public ::testing::TestWithParam<Case> {
        .guard = {.limits = device_.limits_W({20, 500})}}};
   TickRecord record_;
   double z_mm_ = kFree_mm;
-  double most_N_ = 0;
+  double max_N_ = 0;
   double removed_mm3_ = 0;
   bool spindle_on_ = false;
 };
@@ -274,7 +274,7 @@ TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
     rig_->set_gate(false);
     move_to(depth_mm, 0.05);
     for (int n = 0; n < 30; ++n) tick();
-    most_N_ = 0;
+    max_N_ = 0;
     removed_mm3_ = record_.removed_mm3;
     rig_->set_gate(true);
     ASSERT_TRUE(comes_true([&] { return record_.driven; }));
@@ -293,7 +293,7 @@ TEST_P(Gate, ClosesWhileItPressesAndTheHandSinks) {
   ASSERT_TRUE(comes_true([&] { return !record_.driven; }));
   // The wrench comes down in five rounds of the device.
   ASSERT_TRUE(comes_true([&] { return rig_->felt_N().isZero(0); }));
-  most_N_ = 0;
+  max_N_ = 0;
   removed_mm3_ = record_.removed_mm3;
   move_to(-1, 0.05);
   rig_->set_gate(true);

@@ -100,12 +100,12 @@ int dhdDisableExpertMode() {
   return 0;
 }
 int dhdSetWatchdog(unsigned char value, char) {
-  if (!g_state.is_expert || g_state.longest_watchdog == 0) return -1;
-  g_state.watchdog = std::min(value, g_state.longest_watchdog);
+  if (!g_state.is_expert || g_state.max_watchdog == 0) return -1;
+  g_state.watchdog = std::min(value, g_state.max_watchdog);
   return 0;
 }
 int dhdGetWatchdog(unsigned char* value, char) {
-  if (!g_state.is_expert || g_state.longest_watchdog == 0) return -1;
+  if (!g_state.is_expert || g_state.max_watchdog == 0) return -1;
   *value = static_cast<unsigned char>(g_state.watchdog);
   return 0;
 }

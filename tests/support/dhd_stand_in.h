@@ -24,7 +24,7 @@ struct DhdStandIn {
   std::array<int, 17> status{1, 1, 1, 0, 1, 0, 1};
   bool has_gripper = true;
   /// If it is 0 the device has none.
-  unsigned char longest_watchdog = 255;
+  unsigned char max_watchdog = 255;
 
   int opened = -1;
   bool is_stopped = false;

@@ -93,7 +93,7 @@ class HaplyStandIn {
     const std::lock_guard lock(mutex_);
     return force_N_;
   }
-  double most_N() const { return most_N_; }
+  double max_N() const { return max_N_; }
 
   nlohmann::json state() const {
     const double x_m = is_held ? 0.01 : 1e-3 * swept_mm();
@@ -174,7 +174,7 @@ class HaplyStandIn {
       case LWS_CALLBACK_CLOSED: {
         self->talks_.erase(socket);
         const auto& [x, y, z] = self->force_N_;
-        log_of_stand_in("closed, heard", self->heard_.size(), "most", self->most_N_.load(), "last", x, y, z);
+        log_of_stand_in("closed, heard", self->heard_.size(), "most", self->max_N_.load(), "last", x, y, z);
         return 0;
       }
       default:
@@ -197,7 +197,7 @@ class HaplyStandIn {
         nlohmann::json{{"x", NAN}, {"y", NAN}, {"z", NAN}});
     force_N_ = {force["x"], force["y"], force["z"]};
     forces_.push_back(force_N_);
-    most_N_ = std::max(most_N_.load(), std::hypot(force_N_[0], force_N_[1], force_N_[2]));
+    max_N_ = std::max(max_N_.load(), std::hypot(force_N_[0], force_N_[1], force_N_[2]));
   }
 
   const std::array<lws_protocols, 2> protocols_{
@@ -211,7 +211,7 @@ class HaplyStandIn {
   std::vector<std::string> heard_;
   std::vector<std::array<double, 3>> forces_;
   std::array<double, 3> force_N_{};
-  std::atomic<double> most_N_{0};
+  std::atomic<double> max_N_{0};
   std::thread thread_;
 };
 

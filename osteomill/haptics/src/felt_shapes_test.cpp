@@ -98,13 +98,13 @@ TEST(FeltShape, AToolThatBeginsInAFineHoleNeverLeavesIt) {
     const auto algorithm = make_algorithm(default_algorithm(), HapticSettings{});
     algorithm->prepare({&bone, tool, 1e-3});
     HapticStep step;
-    double farthest_mm = 0;
+    double max_distance_mm = 0;
     for (int n = 0; n < 150; ++n) {
       const Vec3 position_W = std::min(2.5, 0.5 * n) * aside_W - Vec3(0, 0, 6);
       step = algorithm->step({position_W, Quat::Identity()}, 1e-3);
-      farthest_mm = std::max(farthest_mm, step.X_WT.position_mm.head<2>().norm());
+      max_distance_mm = std::max(max_distance_mm, step.X_WT.position_mm.head<2>().norm());
     }
-    EXPECT_LT(farthest_mm, kHole_mm - tool.burr_radius_mm + 0.15) << aside_W.transpose();
+    EXPECT_LT(max_distance_mm, kHole_mm - tool.burr_radius_mm + 0.15) << aside_W.transpose();
     EXPECT_LT(step.wrench.force_N.dot(aside_W), -0.5) << aside_W.transpose();
   }
 }

@@ -37,7 +37,7 @@ constexpr timespec kWait{0, 1'000'000};
 constexpr std::size_t kStackBytes = 1 << 16;
 
 std::atomic<DeviceSlot*> device_slots{nullptr};
-// How many handlers are going through them.
+// Number of handlers that are going through them.
 std::atomic<int> handlers_in_slots{0};
 
 // Holds the action of a signal before it was handled here.

@@ -32,7 +32,7 @@ namespace {
 using namespace std::chrono_literals;
 
 // Holds what another process can see of a device.
-struct Sent {
+struct SharedWrench {
   std::atomic<double> force_N;
   std::atomic<double> max_N;
 };
@@ -42,7 +42,7 @@ constexpr double kPressed_N = 0.2;
 
 class SharedDevice : public testing_support::ComingDown {
  public:
-  SharedDevice(Sent* sent, void (*crash)()) : ComingDown(1.2), sent_(sent), crash_(crash) {}
+  SharedDevice(SharedWrench* sent, void (*crash)()) : ComingDown(1.2), sent_(sent), crash_(crash) {}
   Pose read_pose() override {
     if (crash_ != nullptr && sent_->max_N >= kPressed_N) crash_();
     return ComingDown::read_pose();
@@ -59,14 +59,14 @@ class SharedDevice : public testing_support::ComingDown {
   void engage() noexcept override { is_let_go_ = false; }
 
  private:
-  Sent* sent_;
+  SharedWrench* sent_;
   void (*crash_)();
   std::atomic<bool> is_let_go_{false};
 };
 
 // Describes how a process ends: by a signal from another process, or by an action of the main or the haptic
 // thread.
-struct End {
+struct Ending {
   int signal;
   void (*main_thread)() = nullptr;
   void (*haptic_thread)() = nullptr;
@@ -92,7 +92,7 @@ void overflow_the_stack() {
   much[1] = 1;
 }
 
-[[noreturn]] void run_live(Sent* sent, const End& end) {
+[[noreturn]] void run_live(SharedWrench* sent, const Ending& end) {
   const Volume bone = flat_bone();
   const CrashStop crash_stop;
   SharedDevice device(sent, end.haptic_thread);
@@ -113,16 +113,16 @@ void overflow_the_stack() {
 
 class CrashStopTest : public ::testing::Test {
  protected:
-  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMaxProcesses = 32;
   void SetUp() override {
-    void* shared =
-        mmap(nullptr, kMost * sizeof(Sent), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void* shared = mmap(nullptr, kMaxProcesses * sizeof(SharedWrench), PROT_READ | PROT_WRITE,
+                        MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     ASSERT_NE(shared, MAP_FAILED);
-    sent_ = new (shared) Sent[kMost];
+    sent_ = new (shared) SharedWrench[kMaxProcesses];
   }
-  void TearDown() override { munmap(sent_, kMost * sizeof(Sent)); }
+  void TearDown() override { munmap(sent_, kMaxProcesses * sizeof(SharedWrench)); }
 
-  pid_t begin(std::size_t n, const End& end) {
+  pid_t begin(std::size_t n, const Ending& end) {
     const pid_t child = fork();
     if (child == 0) run_live(&sent_[n], end);
     return child;
@@ -132,7 +132,7 @@ class CrashStopTest : public ::testing::Test {
     for (int k = 0; k < 12000 && sent_[n].max_N < kPressed_N; ++k) std::this_thread::sleep_for(5ms);
   }
   // The processes run side by side.
-  void expect_zero_after(std::span<const End> ends) {
+  void expect_zero_after(std::span<const Ending> ends) {
     std::vector<pid_t> children;
     for (std::size_t n = 0; n < ends.size(); ++n) children.push_back(begin(n, ends[n]));
     for (std::size_t n = 0; n < ends.size(); ++n) {
@@ -153,19 +153,19 @@ class CrashStopTest : public ::testing::Test {
     }
   }
 
-  Sent* sent_ = nullptr;
+  SharedWrench* sent_ = nullptr;
 };
 
 TEST_F(CrashStopTest, WhateverSignalEndsItTheWrenchIsLeftAtZero) {
-  const std::vector<End> ends{{SIGSEGV}, {SIGBUS},  {SIGFPE},  {SIGILL},   {SIGABRT},   {SIGSYS},
-                              {SIGTRAP}, {SIGQUIT}, {SIGTERM}, {SIGHUP},   {SIGINT},    {SIGXCPU},
-                              {SIGXFSZ}, {SIGPIPE}, {SIGALRM}, {SIGPROF},  {SIGVTALRM}, {SIGUSR1},
-                              {SIGUSR2}, {SIGPOLL}, {SIGPWR},  {SIGSTKFLT}};
+  const std::vector<Ending> ends{{SIGSEGV}, {SIGBUS},  {SIGFPE},  {SIGILL},   {SIGABRT},   {SIGSYS},
+                                 {SIGTRAP}, {SIGQUIT}, {SIGTERM}, {SIGHUP},   {SIGINT},    {SIGXCPU},
+                                 {SIGXFSZ}, {SIGPIPE}, {SIGALRM}, {SIGPROF},  {SIGVTALRM}, {SIGUSR1},
+                                 {SIGUSR2}, {SIGPOLL}, {SIGPWR},  {SIGSTKFLT}};
   expect_zero_after(ends);
 }
 
 TEST_F(CrashStopTest, SoItIsAfterACrashInAnyThread) {
-  const std::vector<End> ends {
+  const std::vector<Ending> ends {
     {SIGSEGV, [] { raise(SIGSEGV); }}, {SIGABRT, [] { std::abort(); }},
         {SIGSEGV, nullptr, [] { raise(SIGSEGV); }},
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -195,7 +195,7 @@ TEST_F(CrashStopTest, WhileItIsStoppedTheWrenchIsZeroAndThenComesUpSlowly) {
 }
 
 TEST_F(CrashStopTest, ASessionThatTookThePlaceOfAnotherIsEndedAsAnyOther) {
-  const std::vector<End> ends{
+  const std::vector<Ending> ends{
       {.signal = SIGTERM, .replaces_its_session = true},
       {.signal = SIGSEGV, .main_thread = [] { raise(SIGSEGV); }, .replaces_its_session = true}};
   expect_zero_after(ends);
@@ -245,7 +245,7 @@ class HostTest : public ::testing::Test {
     EXPECT_TRUE(live->is_running());
   }
   Volume bone_ = flat_bone();
-  Sent sent_{};
+  SharedWrench sent_{};
   SharedDevice device_{&sent_, nullptr};
 };
 

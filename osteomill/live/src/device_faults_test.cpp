@@ -156,19 +156,19 @@ TEST_P(DeviceFaults, IsNoLongerCalibrated) {
 TEST_P(DeviceFaults, TakesAWrenchWithEveryPoseButRarely) {
   spindle_on_ = true;
   hardware_.got.clear();
-  double most_N = 0;
+  double max_N = 0;
   double before_mm3 = 0;
   for (int n = 0; n < 1000; ++n) {
     hardware_.silent = hardware_.busy = n % 8 != 0;
     tick();
     // The force felt before has fallen to zero by then.
     if (n == 50) before_mm3 = session_.removed_mm3();
-    if (n > 50) most_N = std::max(most_N, felt_N());
+    if (n > 50) max_N = std::max(max_N, felt_N());
   }
-  EXPECT_LT(most_N, 1);
+  EXPECT_LT(max_N, 1);
   // A force of that size pays for at most this in a second.
   EXPECT_LE(session_.removed_mm3() - before_mm3,
-            0.01 + most_N * removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm));
+            0.01 + max_N * removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm));
   expect_no_step();
 }
 
@@ -196,18 +196,18 @@ TEST_P(DeviceFaults, JumpsBy50mm) {
 
 TEST_P(DeviceFaults, IsSlow) {
   hardware_.got.clear();
-  double most_N = 0;
+  double max_N = 0;
   for (int n = 0; n < 1000; ++n) {
     hardware_.silent = n % 50 != 0;
     tick();
-    if (n > kTicksToKnow + kTicksToZero) most_N = std::max(most_N, felt_N());
+    if (n > kTicksToKnow + kTicksToZero) max_N = std::max(max_N, felt_N());
     // Between two inputs it has come down.
     if (n > 50 && n % 50 > kTicksToKnow + kTicksToZero + 1) {
       EXPECT_EQ(felt_N(), 0) << n;
     }
   }
   // In the few ticks of an input a blend only begins.
-  EXPECT_LT(most_N, 1.5);
+  EXPECT_LT(max_N, 1.5);
   expect_no_step();
 }
 

@@ -162,7 +162,7 @@ void LiveMilling::install_prepared() {
   std::rethrow_exception(failure);
 }
 
-// A recording whose first session could not be prepared would be of nothing.
+// Drops a recording whose first session could not be prepared, because it would be empty.
 void LiveMilling::drop_recorder_without_session() {
   if (!recorder_ || live_.session_number() >= recorded_from_) return;
   const std::unique_ptr<Recorder> unused = std::move(recorder_);

@@ -312,18 +312,18 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
       EXPECT_LT((milling_.state().record.X_WD.position_mm - X_W_free.position_mm).norm(), 0.1);
       std::this_thread::sleep_for(20ms);
       double force_N = -1;
-      double greatest_step_N = 0;
+      double max_step_N = 0;
       double removed_mm3 = -1;
       while (const auto record = milling_.next_record()) {
         const double now_N = record->wrench.force_N.norm();
         allow_for_late(*record);
-        if (force_N >= 0) greatest_step_N = std::max(greatest_step_N, std::abs(now_N - force_N));
+        if (force_N >= 0) max_step_N = std::max(max_step_N, std::abs(now_N - force_N));
         force_N = now_N;
         if (removed_mm3 < 0) removed_mm3 = record->removed_mm3;
         EXPECT_LE(record->removed_mm3, removed_mm3 + 1e-3);
       }
       EXPECT_EQ(force_N, 0) << algorithm.id.name << " from " << above_mm;
-      EXPECT_LT(greatest_step_N, allowed_step_N) << algorithm.id.name << " from " << above_mm;
+      EXPECT_LT(max_step_N, allowed_step_N) << algorithm.id.name << " from " << above_mm;
       EXPECT_LT((milling_.state().record.X_WT.position_mm - X_W_free.position_mm).norm(), 0.1);
     }
   }

@@ -50,10 +50,10 @@ BurrReach::BurrReach(const Volume& volume, double max_radius_mm, float floor_den
     squares_[axis].of_voxel_mm2.resize(static_cast<std::size_t>(kSide * brick_dims_[axis]));
     squares_[axis].of_brick_mm2.resize(static_cast<std::size_t>(brick_dims_[axis]));
   }
-  known_.resize(cell_count(brick_dims_));
+  is_scanned_.resize(cell_count(brick_dims_));
   bits_.resize(cell_count(brick_dims_));
   words_of_line_ = (static_cast<std::size_t>(brick_dims_[0]) + kWordBits - 1) / kWordBits;
-  held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]), ~std::uint64_t{0});
+  occupied_.resize(words_of_line_ * brick_line(0, brick_dims_[2]), ~std::uint64_t{0});
   pieces_.reserve(max_pieces_);
 }
 
@@ -73,8 +73,8 @@ void BurrReach::find(const Vec3& centre_mm, double radius_mm, const Share& share
                            y.of_brick_mm2[static_cast<std::size_t>(bj)];
       if (left2 <= 0) continue;
       for (std::size_t word = first_word; word <= last_word; ++word) {
-        const std::uint64_t held = held_in_ball(bj, bk, word, left2);
-        if (held != 0) find_pieces(word, held, bj, bk, share);
+        const std::uint64_t occupied = occupied_in_ball(bj, bk, word, left2);
+        if (occupied != 0) find_pieces(word, occupied, bj, bk, share);
       }
     }
   }
@@ -82,23 +82,23 @@ void BurrReach::find(const Vec3& centre_mm, double radius_mm, const Share& share
 
 // The bricks of a word, a bit each, that lie less than the root of `left2_mm2` away along the line and may
 // hold something.
-std::uint64_t BurrReach::held_in_ball(int bj, int bk, std::size_t word, double left2_mm2) {
+std::uint64_t BurrReach::occupied_in_ball(int bj, int bk, std::size_t word, double left2_mm2) {
   const Squares& x = squares_[0];
-  std::uint64_t& held = held_[words_of_line_ * brick_line(bj, bk) + word];
+  std::uint64_t& occupied = occupied_[words_of_line_ * brick_line(bj, bk) + word];
   const int base = static_cast<int>(kWordBits * word);
   const int from = std::max(0, x.bricks.first - base), to = std::min(63, x.bricks.last - base);
   std::uint64_t within = 0;
-  for (std::uint64_t left = held & (~std::uint64_t{0} << from) & (~std::uint64_t{0} >> (63 - to)); left != 0;
-       left &= left - 1) {
+  for (std::uint64_t left = occupied & (~std::uint64_t{0} << from) & (~std::uint64_t{0} >> (63 - to));
+       left != 0; left &= left - 1) {
     const int n = std::countr_zero(left), bi = base + n;
     if (x.of_brick_mm2[static_cast<std::size_t>(bi)] >= left2_mm2) continue;
     const std::uint64_t bit = std::uint64_t{1} << n;
     const std::size_t brick = brick_index(bi, bj, bk);
-    if (!known_[brick]) {
-      known_[brick] = true;
-      if (!look_at(bi, bj, bk)) held &= ~bit;
+    if (!is_scanned_[brick]) {
+      is_scanned_[brick] = true;
+      if (!scan_brick(bi, bj, bk)) occupied &= ~bit;
     }
-    within |= held & bit;
+    within |= occupied & bit;
   }
   return within;
 }
@@ -125,8 +125,8 @@ void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) co
   }
 }
 
-// Returns whether the brick holds anything.
-bool BurrReach::look_at(int bi, int bj, int bk) {
+// Scans a brick's voxels. Returns whether any is denser than the floor.
+bool BurrReach::scan_brick(int bi, int bj, int bk) {
   if (!(volume_->ranges().at(bi, bj, bk).max > floor_density_)) return false;
   Bits& bits = bits_[brick_index(bi, bj, bk)];
   bits.fill(0);
@@ -146,7 +146,7 @@ bool BurrReach::look_at(int bi, int bj, int bk) {
   return holds;
 }
 
-void BurrReach::find_pieces(std::size_t word, std::uint64_t held, int bj, int bk, const Share& share) {
+void BurrReach::find_pieces(std::size_t word, std::uint64_t occupied, int bj, int bk, const Share& share) {
   const auto& dims = geometry().dims;
   const DensityGrid& grid = volume_->grid();
   const auto& [x, y, z] = squares_;
@@ -161,7 +161,7 @@ void BurrReach::find_pieces(std::size_t word, std::uint64_t held, int bj, int bk
     for (int j = kSide * bj + static_cast<int>(before); j < end_j; j += static_cast<int>(share.count)) {
       const double half2 = across_z - static_cast<double>(y.of_voxel_mm2[static_cast<std::size_t>(j)]);
       const std::size_t row = row_in_brick(j, k);
-      for (std::uint64_t left = held; left != 0; left &= left - 1) {
+      for (std::uint64_t left = occupied; left != 0; left &= left - 1) {
         const int n = std::countr_zero(left), bi = base + n;
         const unsigned byte = bits[n][row];
         if (byte == 0 || x.of_brick_mm2[static_cast<std::size_t>(bi)] >= half2) continue;
@@ -186,7 +186,7 @@ void BurrReach::forget_voxels(const Piece& piece, unsigned gone) noexcept {
   byte = static_cast<std::uint8_t>(byte & ~gone);
   if (byte != 0 || bits != Bits{}) return;
   const std::size_t word = static_cast<std::size_t>(bi) / kWordBits;
-  held_[words_of_line_ * brick_line(bj, bk) + word] &=
+  occupied_[words_of_line_ * brick_line(bj, bk) + word] &=
       ~(std::uint64_t{1} << (static_cast<std::size_t>(bi) % kWordBits));
 }
 

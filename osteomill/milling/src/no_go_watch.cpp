@@ -19,7 +19,7 @@ NoGoWatch::NoGoWatch(std::shared_ptr<const LabelMap> labels, double burr_radius_
   points_mm_.push_back(Vec3::Zero());
 }
 
-void NoGoWatch::look(const Vec3& burr_centre_W, LabelTally& tally) const noexcept {
+void NoGoWatch::tally_contacts(const Vec3& burr_centre_W, LabelTally& tally) const noexcept {
   if (points_mm_.empty() || !burr_centre_W.allFinite()) return;
   const GridGeometry& scan = labels_->scan_geometry();
   const VoxelBox& box = labels_->no_go_box();

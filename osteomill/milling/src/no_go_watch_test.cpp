@@ -35,7 +35,7 @@ TEST(NoGoWatch, FindsAStructureFromWhereverTheBurrComes) {
     double touched_mm = -1;
     for (double distance_mm = 4; distance_mm > 0 && touched_mm < 0; distance_mm -= 0.02) {
       LabelTally tally;
-      watch.look(distance_mm * from, tally);
+      watch.tally_contacts(distance_mm * from, tally);
       const LabelCut cut = tally.take().front();
       if (cut.label == 0) continue;
       EXPECT_EQ(cut, (LabelCut{2, 0}));
@@ -48,8 +48,8 @@ TEST(NoGoWatch, FindsAStructureFromWhereverTheBurrComes) {
 
 TEST(NoGoWatch, HasNothingToSayWithoutNoGoLabels) {
   LabelTally tally;
-  NoGoWatch(nullptr, kRadius_mm).look(Vec3::Zero(), tally);
-  NoGoWatch(nerve_in_bone(), kRadius_mm).look(Vec3::Constant(NAN), tally);
+  NoGoWatch(nullptr, kRadius_mm).tally_contacts(Vec3::Zero(), tally);
+  NoGoWatch(nerve_in_bone(), kRadius_mm).tally_contacts(Vec3::Constant(NAN), tally);
   EXPECT_EQ(tally.take(), LabelCuts{});
 }
 

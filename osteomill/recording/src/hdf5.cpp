@@ -45,7 +45,7 @@ Character first_character(std::string_view text) {
   return {bytes, code};
 }
 
-bool stands_for_a_byte(const Character& character) {
+bool is_byte_character(const Character& character) {
   return character.code >= kByteAsCharacter + 0x80 && character.code <= kByteAsCharacter + 0xFF;
 }
 
@@ -54,7 +54,7 @@ std::string as_utf8(std::string_view bytes) {
   while (!bytes.empty()) {
     const Character character = first_character(bytes);
     const std::size_t taken = std::max<std::size_t>(1, character.bytes);
-    if (character.bytes > 0 && !stands_for_a_byte(character)) {
+    if (character.bytes > 0 && !is_byte_character(character)) {
       text += bytes.substr(0, taken);
     } else {
       for (const char byte : bytes.substr(0, taken)) {
@@ -73,7 +73,7 @@ std::string from_utf8(std::string_view text) {
   while (!text.empty()) {
     const Character character = first_character(text);
     const std::size_t taken = std::max<std::size_t>(1, character.bytes);
-    if (stands_for_a_byte(character))
+    if (is_byte_character(character))
       bytes += static_cast<char>(character.code - kByteAsCharacter);
     else
       bytes += text.substr(0, taken);

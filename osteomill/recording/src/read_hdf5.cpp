@@ -42,7 +42,7 @@ bool is_of_a_lock(int error) {
 
 void require_nothing_elsewhere(const Hdf5File& file) {
   std::string refused;
-  const auto look = [](hid_t group, const char* name, const H5L_info_t* link, void* found) -> herr_t {
+  const auto check_link = [](hid_t group, const char* name, const H5L_info_t* link, void* found) -> herr_t {
     bool within = link->type == H5L_TYPE_HARD;
     if (within) {
       const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
@@ -52,20 +52,20 @@ void require_nothing_elsewhere(const Hdf5File& file) {
     if (!within) *static_cast<std::string*>(found) = name;
     return within ? 0 : 1;
   };
-  if (H5Lvisit(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, look, &refused) != 0)
+  if (H5Lvisit(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, check_link, &refused) != 0)
     file.refuse("'" + refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
 }
 
 // Restores the default action of signals: the program's own is not for the child. The C library reports a
 // damaged heap.
-void end_by_any_fault(std::uintmax_t bytes) {
+void limit_child(std::uintmax_t bytes) {
   constexpr unsigned kMinLimit_s = 2, kWaitingShare = 20;
   constexpr std::uintmax_t kBytesPerSecond = 5'000'000;
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
-  const unsigned most_s = kMinLimit_s + static_cast<unsigned>(bytes / kBytesPerSecond);
-  const rlimit processor{most_s, most_s};
+  const unsigned max_s = kMinLimit_s + static_cast<unsigned>(bytes / kBytesPerSecond);
+  const rlimit processor{max_s, max_s};
   ::setrlimit(RLIMIT_CPU, &processor);
-  ::alarm(kWaitingShare * most_s);
+  ::alarm(kWaitingShare * max_s);
   const rlimit no_dump{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_dump);
   ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
@@ -89,8 +89,7 @@ std::optional<std::string> taken(PipeEnd& pipe, const std::function<void(PipeEnd
   }
 }
 
-[[noreturn]] void be_the_child(const fs::path& path, PipeEnd& pipe,
-                               const std::function<void(PipeEnd&)>& put) {
+[[noreturn]] void run_child(const fs::path& path, PipeEnd& pipe, const std::function<void(PipeEnd&)>& put) {
   int code = 0;
   try {
     try {
@@ -149,10 +148,10 @@ void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& 
     throw InputError(path.string(), "cannot be read: too many open files");
   const ::pid_t child = ::fork();
   if (child == 0) {
-    end_by_any_fault(bytes);
+    limit_child(bytes);
     ::close(ends[0]);
     PipeEnd pipe(ends[1], PipeEnd::Direction::write, most);
-    be_the_child(path, pipe, put);
+    run_child(path, pipe, put);
   }
   ::close(ends[1]);
   std::optional<std::string> fault;

@@ -108,8 +108,8 @@ std::vector<TickRecord> read_records(const Hdf5File& recording, bool complete) {
 
 // Reads columns of one length.
 template <typename Value, std::size_t kCount>
-std::array<std::vector<Value>, kCount> read_together(const Hdf5File& recording, bool complete,
-                                                     const std::array<const char*, kCount>& places) {
+std::array<std::vector<Value>, kCount> read_columns(const Hdf5File& recording, bool complete,
+                                                    const std::array<const char*, kCount>& places) {
   std::vector<Hdf5Column> columns;
   for (const char* place : places) columns.push_back(open_column(recording, place));
   const std::size_t rows = common_rows(recording, columns, complete);
@@ -137,7 +137,7 @@ void read_cuts(const Hdf5File& recording, const std::vector<Label>& labels, bool
                std::vector<TickRecord>& records) {
   if (labels.empty()) return;
   const auto [rows, values, removed_mm3] =
-      read_together<double, 3>(recording, complete, {"labels/row", "labels/label", "labels/removed_mm3"});
+      read_columns<double, 3>(recording, complete, {"labels/row", "labels/label", "labels/removed_mm3"});
   for (std::size_t n = 0; n < rows.size(); ++n) {
     if (rows[n] >= 0 && rows[n] < static_cast<double>(records.size())) {
       put_cut(recording, labels, values[n], removed_mm3[n], records[static_cast<std::size_t>(rows[n])]);
@@ -149,7 +149,7 @@ void read_cuts(const Hdf5File& recording, const std::vector<Label>& labels, bool
 
 std::vector<BoneHash> read_hashes(const Hdf5File& recording, bool complete, std::size_t records) {
   const auto [rows, values] =
-      read_together<std::uint64_t, 2>(recording, complete, {"bone_hash/row", "bone_hash/hash"});
+      read_columns<std::uint64_t, 2>(recording, complete, {"bone_hash/row", "bone_hash/hash"});
   std::vector<BoneHash> hashes;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const bool there = rows[n] < records && (n == 0 || rows[n] > rows[n - 1]);

@@ -30,7 +30,7 @@ namespace {
 
 constexpr auto kFlushEvery = 400ms;
 // Pieces of the file are written whole, unless records come so slowly that they would wait for longer.
-constexpr auto kWaitAtMost = 800ms;
+constexpr auto kMaxWait = 800ms;
 // The pushing thread wakes no other (that would be a system call), so the writing thread looks by itself.
 constexpr auto kPollInterval = 2ms;
 constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
@@ -93,11 +93,11 @@ struct Recorder::Impl {
       for (bool all_written = false; !all_written;) {
         // Read before the queue: what was pushed before the stop is then still written.
         const bool last = stop.stop_requested();
-        const bool emptied = take_some();
+        const bool emptied = collect_queued_records();
         all_written = last && emptied;
         const auto now = Clock::now();
         if (rows.empty()) waiting_since = now;
-        write_rows(all_written || now - waiting_since >= kWaitAtMost);
+        write_rows(all_written || now - waiting_since >= kMaxWait);
         if (all_written || (file.rows() > flushed_rows && now - flushed >= kFlushEvery)) {
           file.flush(dropped.load(std::memory_order_relaxed));
           flushed = now;
@@ -113,7 +113,7 @@ struct Recorder::Impl {
 
   // A bounded part of the queue, so that records which come as fast as they are written cannot put off the
   // flush. False if there is more.
-  bool take_some() {
+  bool collect_queued_records() {
     while (rows.size() < kRowsAtOnce) {
       const TickRecord* record = queue.front();
       if (record == nullptr) return true;

@@ -354,7 +354,7 @@ TEST(Recorder, KeysAndNamesThatCannotBeStoredAreRefused) {
 // that was taken before the disk refused can be read.
 TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
   const TestFolder folder;
-  std::size_t most_rows = 0;
+  std::size_t max_rows = 0;
   for (rlim_t limit_bytes = 400'000; limit_bytes < 6'000'000; limit_bytes += 700'001) {
     const pid_t child = ::fork();
     if (child == 0) {
@@ -362,21 +362,21 @@ TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
       const rlimit limit{limit_bytes, limit_bytes};
       ::setrlimit(RLIMIT_FSIZE, &limit);
       auto recorder = std::make_unique<Recorder>(folder / "run.h5", sample_description());
-      bool told = false;
+      bool reported = false;
       try {
         for (int tick = 0; tick < 10'000'000; ++tick) recorder->push_waiting(sample_record(tick));
       } catch (const InputError& error) {
-        told = std::string(error.what()).find("File too large") != std::string::npos;
+        reported = std::string(error.what()).find("File too large") != std::string::npos;
       }
-      bool told_at_close = false;
+      bool reported_at_close = false;
       try {
         recorder->close();
       } catch (const InputError&) {
-        told_at_close = true;
+        reported_at_close = true;
       }
       const bool failed = recorder->failed();
       recorder.reset();
-      ::_exit(told && told_at_close && failed ? 0 : 1);
+      ::_exit(reported && reported_at_close && failed ? 0 : 1);
     }
     int status = -1;
     ASSERT_EQ(::waitpid(child, &status, 0), child);
@@ -389,10 +389,10 @@ TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
       ASSERT_EQ(recording.records[row].X_WT.position_mm,
                 sample_record(static_cast<int>(row)).X_WT.position_mm)
           << row << " of " << recording.records.size() << " in " << limit_bytes;
-    EXPECT_GE(recording.records.size(), most_rows);
-    most_rows = recording.records.size();
+    EXPECT_GE(recording.records.size(), max_rows);
+    max_rows = recording.records.size();
   }
-  EXPECT_GT(most_rows, 10'000u);
+  EXPECT_GT(max_rows, 10'000u);
 }
 
 }  // namespace

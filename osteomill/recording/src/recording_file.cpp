@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Rows of a piece for rare data, which are written again with every flush until a piece is whole.
-constexpr hsize_t kChunkOfFew = 64;
+constexpr hsize_t kSmallChunkRows = 64;
 // Higher levels take longer and save next to nothing: the last bits of poses and forces are noise.
 constexpr unsigned kDeflateLevel = 1;
 // Some ten seconds of pieces.
@@ -187,12 +187,13 @@ void RecordingFile::create_columns() {
   }
   const Hdf5Handle hashes = create_group(file_.get(), "bone_hash");
   for (const char* name : {"row", "hash"})
-    hash_columns_.push_back(create_column(hashes.get(), name, H5T_STD_U64LE, "", 1, kChunkOfFew));
+    hash_columns_.push_back(create_column(hashes.get(), name, H5T_STD_U64LE, "", 1, kSmallChunkRows));
   if (labels_.empty()) return;
   const Hdf5Handle labels(H5Gopen2(file_.get(), "labels", H5P_DEFAULT), H5Gclose);
-  cut_columns_.push_back(create_column(labels.get(), "row", H5T_STD_U64LE, "", 1, kChunkOfFew));
-  cut_columns_.push_back(create_column(labels.get(), "label", H5T_STD_I32LE, "", 1, kChunkOfFew));
-  cut_columns_.push_back(create_column(labels.get(), "removed_mm3", H5T_IEEE_F64LE, "mm^3", 1, kChunkOfFew));
+  cut_columns_.push_back(create_column(labels.get(), "row", H5T_STD_U64LE, "", 1, kSmallChunkRows));
+  cut_columns_.push_back(create_column(labels.get(), "label", H5T_STD_I32LE, "", 1, kSmallChunkRows));
+  cut_columns_.push_back(
+      create_column(labels.get(), "removed_mm3", H5T_IEEE_F64LE, "mm^3", 1, kSmallChunkRows));
 }
 
 RecordingFile::Column RecordingFile::create_column(hid_t group, const char* name, hid_t type,

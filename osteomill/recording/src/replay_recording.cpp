@@ -59,9 +59,9 @@ auto made(const Recording& recording, const Make& make) {
 }
 
 std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStart& start,
-                                           const Recording& recording, const Replay& replay) {
+                                           const Recording& recording, const ReplayHooks& hooks) {
   const RunDescription& run = start.run;
-  const AlgorithmDescription* algorithm = replay.find_algorithm(run.algorithm.name);
+  const AlgorithmDescription* algorithm = hooks.find_algorithm(run.algorithm.name);
   if (algorithm == nullptr) refuse(recording, "its algorithm " + run.algorithm.name + " is not known here");
   auto [setup, densities] = session_settings(run, recording.path);
   setup.algorithm = *algorithm;
@@ -75,7 +75,7 @@ std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStar
   });
 }
 
-TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
+TickRecord replay_tick(MillingSession& session, const TickRecord& recorded) {
   PosedDevice device;
   device.put(recorded.X_WD, recorded.delivered_fraction, recorded.driven);
   if (recorded.fade_out) session.fade_out();
@@ -144,20 +144,20 @@ void require_made_with(const Recording& recording, const Volume& scan) {
     refuse(recording, fmt::format("was made with another scan ({}): its densities differ", run.scan_name));
 }
 
-void replay_recording(const Volume& scan, const Recording& recording, const Replay& replay) {
+void replay_recording(const Volume& scan, const Recording& recording, const ReplayHooks& hooks) {
   require_whole(recording);
   if (recording.records.empty()) refuse(recording, "holds no ticks");
   require_made_with(recording, scan);
   for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
     SessionStart start = recording.sessions[n].start;
-    if (replay.transform_description) start.run = replay.transform_description(start.run);
-    const auto session = session_at(scan, start, recording, replay);
-    if (replay.on_session) replay.on_session(start, *session);
+    if (hooks.transform_description) start.run = hooks.transform_description(start.run);
+    const auto session = session_at(scan, start, recording, hooks);
+    if (hooks.on_session) hooks.on_session(start, *session);
     for (std::size_t row = recording.sessions[n].first; row < end_of(recording, n); ++row) {
       const TickRecord& recorded = recording.records[row];
-      TickRecord now = tick_again(*session, recorded);
+      TickRecord now = replay_tick(*session, recorded);
       now.session = recorded.session;
-      if (!replay.on_tick(recorded, now)) return;
+      if (!hooks.on_tick(recorded, now)) return;
     }
   }
 }
@@ -166,8 +166,8 @@ Verification verify_recording(const Volume& scan, const Recording& recording,
                               const std::function<void(std::size_t ticks)>& on_progress) {
   Verification verified;
   auto hash = recording.bone_hashes.begin();
-  Replay replay;
-  replay.on_tick = [&](const TickRecord& recorded, const TickRecord& now) {
+  ReplayHooks hooks;
+  hooks.on_tick = [&](const TickRecord& recorded, const TickRecord& now) {
     auto what = difference_of(recorded, now);
     const bool has_hash = hash != recording.bone_hashes.end() && hash->record == verified.ticks;
     if (!what && has_hash && hash->hash != now.bone_hash) what = "the bone is another";
@@ -183,7 +183,7 @@ Verification verify_recording(const Volume& scan, const Recording& recording,
     if (on_progress) on_progress(verified.ticks);
     return true;
   };
-  replay_recording(scan, recording, replay);
+  replay_recording(scan, recording, hooks);
   return verified;
 }
 

@@ -250,22 +250,22 @@ TEST_F(OneRecording, WhatCannotBeReplayedIsRefused) {
 
 TEST_F(OneRecording, TheSameMotionGoesThroughAnotherAlgorithm) {
   const Recording recording = read_recording(folder_ / "a.h5");
-  Replay replay;
-  replay.transform_description = [](RunDescription run) {
+  ReplayHooks hooks;
+  hooks.transform_description = [](RunDescription run) {
     set_session_settings(run, settings_of_all(algorithm_named("line-proxy")), 0);
     return run;
   };
   bool begun = false;
-  replay.on_session = [&](const SessionStart& start, const MillingSession&) {
+  hooks.on_session = [&](const SessionStart& start, const MillingSession&) {
     begun = start.run.algorithm == "line-proxy";
   };
   std::size_t ticks = 0, other = 0;
-  replay.on_tick = [&](const TickRecord& recorded, const TickRecord& now) {
+  hooks.on_tick = [&](const TickRecord& recorded, const TickRecord& now) {
     EXPECT_EQ(recorded.X_WD.position_mm, now.X_WD.position_mm);
     other += recorded.wrench.force_N != now.wrench.force_N ? 1u : 0u;
     return ++ticks < 240;
   };
-  replay_recording(scan_, recording, replay);
+  replay_recording(scan_, recording, hooks);
   EXPECT_TRUE(begun);
   EXPECT_EQ(ticks, 240u);
   EXPECT_GT(other, 20u);

@@ -50,7 +50,7 @@ std::string processor_name() {
   return "";
 }
 
-Origin made_here_and_now() {
+Origin current_origin() {
   utsname system{};
   ::uname(&system);
   Origin made;
@@ -125,7 +125,7 @@ RunDescription describe_run(const Volume& bone, const SessionSettings& session, 
   const GridGeometry& geometry = bone.geometry();
   RunDescription run;
   run.program_version = OSTEOMILL_VERSION;
-  run.made = made_here_and_now();
+  run.made = current_origin();
   run.dims = geometry.dims;
   run.spacing_mm = geometry.spacing_mm;
   run.origin_mm = geometry.origin_mm;

@@ -214,7 +214,7 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
 void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept {
   const MillingStep cut = mill_.step(
       step.X_WT.position_mm, paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N, spindle_on), dt_s);
-  if (spindle_on) no_go_.look(step.X_WT.position_mm, mill_.by_label());
+  if (spindle_on) no_go_.tally_contacts(step.X_WT.position_mm, mill_.by_label());
   reaction_.follow(step.X_WT, step.burr_force_W_N, cut.removed_mm3, dt_s);
   last_change_ = cut.change;
   // Nothing is written while nothing is milled: then another thread may read it (HapticThread::freeze_bone).

@@ -22,7 +22,7 @@ struct Wall {
   WrenchGuard guard{GuardSettings::for_simulation()};
   SimulatedHandle handle{exact(), {{0, 0, 1}, Quat::Identity()}};
   double kinetic_mJ = 0;
-  double most_given_Nmm = 0;
+  double max_given_Nmm = 0;
   double deepest_mm = 0;
 
   static HandleSettings exact() {
@@ -38,7 +38,7 @@ struct Wall {
       handle.command(
           guard.filter({{0, 0, stiffness_N_per_mm * depth_mm}, Vec3::Zero()}, handle.read(), kTick_s).wrench);
       for (int substep = 0; substep < kSubsteps; ++substep) handle.advance({{0, 0, -press_N}, Vec3::Zero()});
-      most_given_Nmm = std::max(most_given_Nmm, guard.energy_given_Nmm());
+      max_given_Nmm = std::max(max_given_Nmm, guard.energy_given_Nmm());
       if (n > ticks / 2) deepest_mm = std::max(deepest_mm, depth_mm);
     }
     kinetic_mJ = handle.kinetic_energy_Nmm();
@@ -73,10 +73,10 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
   Wall controlled{.guard = WrenchGuard(GuardSettings::for_simulation({}, true))};
   controlled.press_N = 2;
   controlled.run(4000);
-  EXPECT_GT(active.most_given_Nmm, 100);
+  EXPECT_GT(active.max_given_Nmm, 100);
   EXPECT_GT(active.deepest_mm, 10);
   // The next contact takes back the energy that the last tick of a contact gives: it never adds up.
-  EXPECT_LT(controlled.most_given_Nmm, 1);
+  EXPECT_LT(controlled.max_given_Nmm, 1);
   EXPECT_LT(controlled.deepest_mm, 1);
 }
 

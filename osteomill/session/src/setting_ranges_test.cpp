@@ -26,12 +26,12 @@ const Volume& small_bone() {
 }
 
 // Names the part of the tool that is put on the bone, and returns the height of the tool's origin then.
-struct Put {
+struct Placement {
   const char* name;
   Quat orientation;
   double (*height_mm)(const MillingTool&);
 };
-const Put kPuts[] = {
+const Placement kPlacements[] = {
     {"burr", Quat::Identity(), [](const MillingTool& tool) { return tool.burr_radius_mm; }},
     {"end", Quat::FromTwoVectors(Vec3::UnitZ(), -Vec3::UnitZ()),
      [](const MillingTool& tool) { return std::max(tool.shaft_length_mm, tool.burr_radius_mm); }},
@@ -50,16 +50,16 @@ struct Pressed {
 };
 
 // The hand goes down, half a percent deeper each tick, until it feels what it wants or its arm ends.
-Pressed press(const MillingSetup& setup, const Put& put, bool spindle_on) {
+Pressed press(const MillingSetup& setup, const Placement& placement, bool spindle_on) {
   constexpr double kWanted_N = 3, kArm_mm = 100, kAbove_mm = 0.5, kTick_s = 1e-3;
   constexpr int kHeldTicks = 200;
   MillingSession session(std::make_shared<Volume>(small_bone()), {0, 1000}, setup);
   PosedDevice device;
   Pressed pressed{.wanted_N = std::min(kWanted_N, 0.9 * setup.guard.limits.force_N)};
-  const double touching_mm = put.height_mm(setup.tool);
+  const double touching_mm = placement.height_mm(setup.tool);
   double time_s = 0;
   const auto tick_at = [&](double depth_mm) {
-    device.put({{0.06, 0.03, touching_mm - depth_mm}, put.orientation});
+    device.placement({{0.06, 0.03, touching_mm - depth_mm}, placement.orientation});
     const TickRecord tick =
         session.tick(device, {.time_s = time_s += kTick_s, .dt_s = kTick_s, .spindle_on = spindle_on});
     pressed.finite = pressed.finite && is_finite(tick.X_WT) && tick.fault != WrenchFault::not_finite;
@@ -85,26 +85,27 @@ bool says(const std::string& line, const std::string& word) {
 // warned of in words that name `setting`. No algorithm of ours is excused by a warning.
 void expect_held_or_warned(const MillingSetup& setup, const std::string& setting) {
   // Some hundred microseconds of work.
-  constexpr std::uint64_t kMostPoints = 20000;
-  constexpr double kMostSunk_mm = 0.3;
+  constexpr std::uint64_t kMaxPoints = 20000;
+  constexpr double kMaxDepth_mm = 0.3;
   const bool is_ours = setup.algorithm.id == kOurs;
   std::vector<std::string> warnings;
   try {
     warnings = setting_warnings(setup, small_bone().geometry());
   } catch (const std::invalid_argument& error) {
     EXPECT_TRUE(says(error.what(), setting)) << error.what();
-    EXPECT_THROW(press(setup, kPuts[0], false), std::invalid_argument) << "the session has to refuse it too";
+    EXPECT_THROW(press(setup, kPlacements[0], false), std::invalid_argument)
+        << "the session has to refuse it too";
     return;
   }
   for (const std::string& warning : warnings) EXPECT_TRUE(says(warning, setting)) << warning;
   // With the paper's algorithms the shaft alone gives only a torque.
-  for (const Put& put : is_ours ? std::span(kPuts) : std::span(kPuts).first(1)) {
-    const Pressed pressed = press(setup, put, false);
-    EXPECT_TRUE(pressed.finite) << put.name;
+  for (const Placement& placement : is_ours ? std::span(kPlacements) : std::span(kPlacements).first(1)) {
+    const Pressed pressed = press(setup, placement, false);
+    EXPECT_TRUE(pressed.finite) << placement.name;
     if (!warnings.empty() && !is_ours) continue;
-    EXPECT_GT(pressed.force_N, 0.9 * pressed.wanted_N) << put.name;
-    EXPECT_LE(pressed.max_points, kMostPoints) << put.name;
-    EXPECT_LT(pressed.sunk_mm, is_ours ? kMostSunk_mm : setup.tool.burr_radius_mm) << put.name;
+    EXPECT_GT(pressed.force_N, 0.9 * pressed.wanted_N) << placement.name;
+    EXPECT_LE(pressed.max_points, kMaxPoints) << placement.name;
+    EXPECT_LT(pressed.sunk_mm, is_ours ? kMaxDepth_mm : setup.tool.burr_radius_mm) << placement.name;
   }
 }
 
@@ -156,7 +157,7 @@ TEST(SettingRanges, EitherEndOfTheCuttingsSettingsCutsByFiniteNumbers) {
       MillingSetup setup = setup_of(default_algorithm());
       setup.cutting_reaction = setup.vibration.on = true;
       field.set(setup, value);
-      EXPECT_TRUE(press(setup, kPuts[0], true).finite);
+      EXPECT_TRUE(press(setup, kPlacements[0], true).finite);
     }
   }
 }

@@ -36,9 +36,9 @@ void PassivityObserver::move_to(const Pose& X_WD) noexcept {
 
 Wrench PassivityObserver::damping(double dt_s) const noexcept {
   constexpr double kLever2_mm2 = kLever_mm * kLever_mm;
-  const double way2_mm2 = moved_mm_.squaredNorm() + kLever2_mm2 * turned_rad_.squaredNorm();
-  if (energy_given_Nmm_ <= 0 || way2_mm2 == 0 || dt_s <= 0) return {};
-  const double stiffness_N_per_mm = std::min(energy_given_Nmm_ / way2_mm2, kMaxDamping_Ns_per_mm / dt_s);
+  const double motion2_mm2 = moved_mm_.squaredNorm() + kLever2_mm2 * turned_rad_.squaredNorm();
+  if (energy_given_Nmm_ <= 0 || motion2_mm2 == 0 || dt_s <= 0) return {};
+  const double stiffness_N_per_mm = std::min(energy_given_Nmm_ / motion2_mm2, kMaxDamping_Ns_per_mm / dt_s);
   return {-stiffness_N_per_mm * moved_mm_, -stiffness_N_per_mm * kLever2_mm2 * turned_rad_};
 }
 

@@ -18,7 +18,7 @@ VoxelBox bricks_counting(const VoxelBox& voxels) {
           voxels.bricks(BlockRanges::kBrickVoxels).last};
 }
 
-void take_in(BlockRanges::Range& range, float lower_density) {
+void widen(BlockRanges::Range& range, float lower_density) {
   range.min = std::min(range.min, lower_density);
   ++range.changes;
 }
@@ -63,7 +63,7 @@ void BlockRanges::lower_row(int j, int k, const int* columns, const float* densi
   const auto [first, last] = bricks_counting({{0, j, k}, {0, j, k}});
   const auto lower_column = [first = first, last = last, this](int bi, float density) {
     for (int bk = first.k; bk <= last.k; ++bk) {
-      for (int bj = first.j; bj <= last.j; ++bj) take_in(range({bi, bj, bk}), density);
+      for (int bj = first.j; bj <= last.j; ++bj) widen(range({bi, bj, bk}), density);
     }
   };
   for (std::size_t n = 0; n < count;) {

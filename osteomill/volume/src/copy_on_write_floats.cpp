@@ -17,13 +17,13 @@ namespace osteomill {
 namespace {
 
 constexpr std::size_t kPageBytes = 4096;
-constexpr std::size_t kReadBehind = 64;
+constexpr std::size_t kPaddingBytes = 64;
 
 std::size_t mapped_bytes(std::size_t floats) {
-  return (floats * sizeof(float) + kReadBehind + kPageBytes - 1) / kPageBytes * kPageBytes;
+  return (floats * sizeof(float) + kPaddingBytes + kPageBytes - 1) / kPageBytes * kPageBytes;
 }
 
-[[noreturn]] void say_why_not() {
+[[noreturn]] void throw_system_error() {
   if (errno != EFBIG) throw std::bad_alloc();
   throw std::system_error(errno, std::generic_category(),
                           "densities lie in a file in memory, which a limit forbids (ulimit -f)");
@@ -33,7 +33,7 @@ void write_all(int file, const char* bytes, std::size_t count, std::size_t at) {
   while (count > 0) {
     const ssize_t written = pwrite(file, bytes, count, static_cast<off_t>(at));
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) say_why_not();
+    if (written <= 0) throw_system_error();
     bytes += written;
     at += static_cast<std::size_t>(written);
     count -= static_cast<std::size_t>(written);
@@ -70,7 +70,7 @@ class CopyOnWriteFloats::Original {
 
  private:
   void fill(std::vector<float>& values, const RowLayout& layout) const {
-    if (ftruncate(file_, static_cast<off_t>(mapped_bytes(layout.size()))) != 0) say_why_not();
+    if (ftruncate(file_, static_cast<off_t>(mapped_bytes(layout.size()))) != 0) throw_system_error();
     constexpr std::size_t kAtOnce = 1 << 22;
     const std::size_t rows = layout.slice_rows * layout.slices;
     std::vector<float> piece;

@@ -184,7 +184,7 @@ Range range_of(const DensityGrid& grid) {
   return {static_cast<double>(min), static_cast<double>(max)};
 }
 
-bool touches(const DensityGrid& grid, double isovalue, std::size_t axis, int layer) {
+bool bone_touches(const DensityGrid& grid, double isovalue, std::size_t axis, int layer) {
   const auto& dims = grid.geometry().dims;
   const std::size_t across = (axis + 1) % 3, up = (axis + 2) % 3;
   long bone = 0;
@@ -361,7 +361,7 @@ std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isova
   int count = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const int layer : {0, grid.geometry().dims[axis] - 1}) {
-      if (!touches(grid, isovalue, axis, layer)) continue;
+      if (!bone_touches(grid, isovalue, axis, layer)) continue;
       faces += fmt::format("{}{} {}", count++ == 0 ? "" : ", ", layer == 0 ? "first" : "last", "ijk"[axis]);
     }
   }

@@ -93,19 +93,19 @@ struct Span {
   double last = 1.0;
 };
 
-// The part of a line of voxel coordinates, as fractions of `way`, in the grid and the one voxel around it
+// The part of a line of voxel coordinates, as fractions of `path`, in the grid and the one voxel around it
 // where densities still fall. It ends before it begins if there is none.
-Span span_in_grid(const GridGeometry& geometry, const Vec3& from, const Vec3& way) {
+Span span_in_grid(const GridGeometry& geometry, const Vec3& from, const Vec3& path) {
   Span span;
   for (int axis = 0; axis < 3; ++axis) {
     const double min = -1.0;
     const double max = geometry.dims[static_cast<std::size_t>(axis)];
-    if (way[axis] == 0.0) {
+    if (path[axis] == 0.0) {
       if (from[axis] < min || from[axis] > max) return {1.0, 0.0};
       continue;
     }
-    const double a = (min - from[axis]) / way[axis];
-    const double b = (max - from[axis]) / way[axis];
+    const double a = (min - from[axis]) / path[axis];
+    const double b = (max - from[axis]) / path[axis];
     span.first = std::max(span.first, std::min(a, b));
     span.last = std::min(span.last, std::max(a, b));
   }
@@ -193,10 +193,10 @@ Vec3 bisect_crossing(const Volume& volume, Vec3 outside_W, Vec3 inside_W, double
 std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, const Vec3& to_W) noexcept {
   if (is_bone_at(volume, from_W)) return from_W;
   const GridGeometry& geometry = volume.geometry();
-  const Vec3 way = (geometry.direction.transpose() * (to_W - from_W)).cwiseQuotient(geometry.spacing_mm);
-  const Span span = span_in_grid(geometry, geometry.voxel_from_world(from_W), way);
+  const Vec3 path = (geometry.direction.transpose() * (to_W - from_W)).cwiseQuotient(geometry.spacing_mm);
+  const Span span = span_in_grid(geometry, geometry.voxel_from_world(from_W), path);
   if (!(span.first <= span.last)) return std::nullopt;
-  const double steps = std::max(1.0, std::ceil(2 * way.norm()));
+  const double steps = std::max(1.0, std::ceil(2 * path.norm()));
   const auto at = [&](double n) { return Vec3(from_W + (n / steps) * (to_W - from_W)); };
   const double first = std::max(1.0, std::floor(span.first * steps));
   const double last = std::min(steps, std::ceil(span.last * steps));

@@ -117,7 +117,7 @@ std::string state_text(const std::string& name, const WindowContents& window) {
   const ConnectedDevice* hardware = simulation.tool_source.hardware;
   lines.add("device", hardware != nullptr ? hardware->capabilities().name : simulation.tool_source.name);
   lines.add("device_fault", hardware != nullptr ? hardware->report().complaint() : "");
-  lines.add("unsaved", simulation.autosave.unsaved(milling));
+  lines.add("unsaved", simulation.autosave.has_unsaved(milling));
   lines.add("recording", milling.is_recording());
   const auto recording_s = files.recording_s(simulation);
   lines.add("badge", recording_s ? recording_text(*recording_s) : "");
@@ -125,7 +125,7 @@ std::string state_text(const std::string& name, const WindowContents& window) {
   lines.add("scan", simulation.scan.name);
   lines.add("help", view.help);
   lines.add("message", view.message);
-  lines.add("dialogue", view.dialogues.shown() != nullptr ? view.dialogues.shown()->text : "");
+  lines.add("dialogue", view.dialogues.current() != nullptr ? view.dialogues.current()->text : "");
   add_controls(lines);
   lines.add("ui_scale", fmt::format("{:.2f}", static_cast<double>(ui::px(1))));
   lines.add("size", fmt::format("{} x {}", size.width, size.height));

@@ -232,7 +232,7 @@ void UiScript::say(const std::string& text, const WindowContents& contents) {
       text, contents.pictures_per_s, 1e3 * cpu_s / std::max(pictures_since_said_, 1), contents.triangles,
       timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
       record.removed_mm3, milling.follower().cuts(), contents.simulation->scan.name);
-  for (const std::string& complaint : contents.view.dialogues.complaints()) {
+  for (const std::string& complaint : contents.view.dialogues.errors()) {
     fmt::print("dialogue: {}\n", complaint);
   }
   said_cpu_ = std::clock();

@@ -16,8 +16,8 @@ bool clamp_length(Vec3& vector, double limit) {
 // No limit stays none in a time of no length.
 Vec3 towards(const Vec3& from, const Vec3& to, double rate, double dt_s) {
   const double most = rate < WrenchRates::kAny ? rate * dt_s : rate;
-  const double way = (to - from).norm();
-  return way <= most ? to : Vec3(from + most / way * (to - from));
+  const double change = (to - from).norm();
+  return change <= most ? to : Vec3(from + most / change * (to - from));
 }
 
 }  // namespace

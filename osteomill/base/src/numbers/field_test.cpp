@@ -14,7 +14,7 @@ struct Part {
   bool on = false;
 };
 
-struct Whole {
+struct Sample {
   Part part;
   int count = 3;
   Kind kind = Kind::none;
@@ -51,30 +51,30 @@ TEST(Field, ARangeHasBothItsEndsAndNothingBeside) {
 }
 
 TEST(Field, ItReadsAndWritesNumbersSwitchesAndEnumerations) {
-  Whole whole;
-  const auto count = field<Whole>({"count", "", NumberRange::count(0), ""}, &Whole::count);
-  const auto kind = field<Whole>({"kind", "", NumberRange::count(0, 2), ""}, &Whole::kind);
-  const auto end = field<Whole>(
+  Sample sample;
+  const auto count = field<Sample>({"count", "", NumberRange::count(0), ""}, &Sample::count);
+  const auto kind = field<Sample>({"kind", "", NumberRange::count(0, 2), ""}, &Sample::kind);
+  const auto end = field<Sample>(
       {"end", "mm", NumberRange::finite(), ""}, [](auto& w) -> auto& { return w.ends[1]; });
-  EXPECT_EQ(count.get(whole), 3);
-  EXPECT_EQ(end.get(whole), 5);
-  count.set(whole, 7);
-  kind.set(whole, 2);
-  end.set(whole, -0.5);
-  EXPECT_EQ(whole.count, 7);
-  EXPECT_EQ(whole.kind, Kind::two);
-  EXPECT_EQ(whole.ends, (std::array<double, 2>{4, -0.5}));
+  EXPECT_EQ(count.get(sample), 3);
+  EXPECT_EQ(end.get(sample), 5);
+  count.set(sample, 7);
+  kind.set(sample, 2);
+  end.set(sample, -0.5);
+  EXPECT_EQ(sample.count, 7);
+  EXPECT_EQ(sample.kind, Kind::two);
+  EXPECT_EQ(sample.ends, (std::array<double, 2>{4, -0.5}));
 }
 
 TEST(Field, ThoseOfAPartAreFieldsOfTheWhole) {
-  const auto fields = fields_within<Whole>(&Whole::part, part_fields());
+  const auto fields = fields_within<Sample>(&Sample::part, part_fields());
   ASSERT_EQ(fields.size(), 2u);
-  Whole whole;
-  find_field(fields, "length")->set(whole, 2.5);
-  find_field(fields, "on")->set(whole, 1);
-  EXPECT_EQ(whole.part.length_mm, 2.5);
-  EXPECT_TRUE(whole.part.on);
-  EXPECT_EQ(find_field(fields, "on")->get(whole), 1);
+  Sample sample;
+  find_field(fields, "length")->set(sample, 2.5);
+  find_field(fields, "on")->set(sample, 1);
+  EXPECT_EQ(sample.part.length_mm, 2.5);
+  EXPECT_TRUE(sample.part.on);
+  EXPECT_EQ(find_field(fields, "on")->get(sample), 1);
   EXPECT_TRUE(fields[0].has(kShown));
   EXPECT_FALSE(fields[1].has(kShown));
   EXPECT_EQ(fields[0].unit, "mm");

@@ -26,20 +26,20 @@ TEST(WorkProgress, IsNothingWhereNobodyListens) {
 }
 
 TEST(WorkProgress, PartsMakeUpTheWhole) {
-  std::vector<double> told;
+  std::vector<double> reported;
   {
-    const WorkProgress progress([&](double share) { told.push_back(share); });
+    const WorkProgress progress([&](double share) { reported.push_back(share); });
     work_in_two_parts();
   }
   const std::vector<double> expected{0.125, 0.25, 0.5, 0.75, 1};
-  EXPECT_EQ(told, expected);
+  EXPECT_EQ(reported, expected);
   work_in_two_parts();
-  EXPECT_EQ(told.size(), expected.size());
+  EXPECT_EQ(reported.size(), expected.size());
 }
 
 TEST(WorkProgress, PartsWithinPartsAndSkippedOnesNeverFallBack) {
-  std::vector<double> told;
-  const WorkProgress progress([&](double share) { told.push_back(share); });
+  std::vector<double> reported;
+  const WorkProgress progress([&](double share) { reported.push_back(share); });
   {
     const WorkProgress::Part part(0.5);
     work_in_two_parts();
@@ -47,22 +47,22 @@ TEST(WorkProgress, PartsWithinPartsAndSkippedOnesNeverFallBack) {
   { const WorkProgress::Part nothing_told_of(0.9); }
   const WorkProgress::Part part(1);
   long_work(1);
-  EXPECT_EQ(told, (std::vector<double>{0.0625, 0.125, 0.25, 0.375, 0.5, 1}));
+  EXPECT_EQ(reported, (std::vector<double>{0.0625, 0.125, 0.25, 0.375, 0.5, 1}));
 }
 
 TEST(WorkProgress, TheListenerStopsTheWork) {
-  int told = 0;
+  int reported = 0;
   const WorkProgress progress([&](double share) {
-    ++told;
+    ++reported;
     if (share > 0.3) throw WorkStopped();
   });
   EXPECT_THROW(work_in_two_parts(), WorkStopped);
-  EXPECT_EQ(told, 3);
+  EXPECT_EQ(reported, 3);
 }
 
 TEST(WorkProgress, GoesOnInAThreadThatIsWaitedFor) {
-  std::vector<double> told;
-  const WorkProgress progress([&](double share) { told.push_back(share); });
+  std::vector<double> reported;
+  const WorkProgress progress([&](double share) { reported.push_back(share); });
   {
     const WorkProgress::Part part(0.5);
     const WorkProgress::Listener mine = WorkProgress::of_this_thread();
@@ -71,7 +71,7 @@ TEST(WorkProgress, GoesOnInAThreadThatIsWaitedFor) {
       long_work(2);
     }).join();
   }
-  EXPECT_EQ(told, (std::vector<double>{0.25, 0.5}));
+  EXPECT_EQ(reported, (std::vector<double>{0.25, 0.5}));
 }
 
 }  // namespace

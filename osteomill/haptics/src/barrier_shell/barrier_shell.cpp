@@ -273,18 +273,18 @@ NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   Vector6 so_far_T;
   so_far_T << to_T * moved, to_T * turned;
   NewtonStep step = newton_step(best.sum, coupling_, so_far_T, bound);
-  const MoveSize wanted = size_of(step.move_T);
-  step.is_last = wanted.move_mm <= kConvergedStep_mm && wanted.turn_rad <= kConvergedStep_rad;
+  const MoveSize step_size = size_of(step.move_T);
+  step.is_last = step_size.move_mm <= kConvergedStep_mm && step_size.turn_rad <= kConvergedStep_rad;
   // Nothing is summed after it: back from the rim of a ball, where the damping is a little too much, it
   // stays.
   const Vector6 slope = best.sum.gradient + 0.5 * (best.sum.convex + best.sum.rest) * step.move_T;
   if (step.is_last && slope.dot(step.move_T) > 0) step.move_T.setZero();
-  if (!step.is_last && share_with_leeway(wanted) < 1 && leeway_.move_mm < kMaxLeeway.move_mm) {
+  if (!step.is_last && share_with_leeway(step_size) < 1 && leeway_.move_mm < kMaxLeeway.move_mm) {
     gather(best.X_WT, kMaxLeeway);
     near_.measure(cores(), barrier_, best.X_WT, measured_);
   }
   if (near_.is_incomplete()) return {.move_T = Vector6::Zero(), .is_last = true};
-  const double within_leeway = share_with_leeway(wanted);
+  const double within_leeway = share_with_leeway(step_size);
   step.move_T *= within_leeway;
   const double certified = certified_share(measured_.max_use(step.move_T, barrier_));
   step.move_T *= certified;

@@ -215,13 +215,14 @@ TEST(BarrierShell, NothingPushesThroughAThinSheet) {
   const Quat on_its_side = upright * quaternion_from_rotation_vector({std::numbers::pi / 2, 0, 0});
   const Quat end_first = upright * quaternion_from_rotation_vector({std::numbers::pi - 0.1, 0, 0});
   const Vec3 middle = on_its_side * Vec3(0, 0, 5), end = end_first * Vec3(0, 0, 8);
-  struct Way {
+  struct Attitude {
     Quat orientation;
     Vec3 aim;
   };
-  for (const Way& way : {Way{upright, Vec3::Zero()}, Way{on_its_side, middle}, Way{end_first, end}}) {
+  for (const Attitude& attitude :
+       {Attitude{upright, Vec3::Zero()}, Attitude{on_its_side, middle}, Attitude{end_first, end}}) {
     for (const double speed_mm_s : {30.0, 300.0}) {
-      const Pose from{4 * normal - way.aim, way.orientation};
+      const Pose from{4 * normal - attitude.aim, attitude.orientation};
       EXPECT_LT(deepest_of_push(algorithm, surface, tool, from, -normal, speed_mm_s, 12), 0.25);
     }
   }

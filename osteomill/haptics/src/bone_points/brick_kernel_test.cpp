@@ -159,16 +159,16 @@ TEST(BrickKernel, TheBoundHoldsEveryPointAndIsNoWiderThanTheyAskFor) {
       min = min.cwiseMin(points.point(n).position_mm());
       max = max.cwiseMax(points.point(n).position_mm());
     }
-    double farthest_mm = 0;
+    double max_distance_mm = 0;
     for (std::size_t n = 0; n < count; ++n) {
-      farthest_mm = std::max(farthest_mm, (points.point(n).position_mm() - 0.5 * (min + max)).norm());
+      max_distance_mm = std::max(max_distance_mm, (points.point(n).position_mm() - 0.5 * (min + max)).norm());
     }
     for (const std::int64_t set : instruction_sets_here(brick_kernel_targets())) {
       const ForcedInstructionSet forced(set);
       const BrickPoints::Bound bound = bound_of(points, count);
       EXPECT_LT((bound.centre() - 0.5 * (min + max)).norm(), 1e-6);
-      EXPECT_GE(static_cast<double>(bound.radius_mm), farthest_mm);
-      EXPECT_LE(static_cast<double>(bound.radius_mm), 1.001 * farthest_mm);
+      EXPECT_GE(static_cast<double>(bound.radius_mm), max_distance_mm);
+      EXPECT_LE(static_cast<double>(bound.radius_mm), 1.001 * max_distance_mm);
     }
   }
 }

@@ -62,8 +62,8 @@ TEST(SphereVertices, OfOtherNumbersSpreadOut) {
     EXPECT_LT(sum.norm() / count, 0.005) << count;
     // The upper bound on the smallest angle between the points (Fejes Toth).
     const double area = std::numbers::pi / 6 * count / (count - 2);
-    const double most_deg = std::acos(0.5 * (1 / std::pow(std::sin(area), 2) - 2)) * 180 / std::numbers::pi;
-    EXPECT_GT(min_angle_deg(vertices), 0.85 * most_deg) << count;
+    const double max_deg = std::acos(0.5 * (1 / std::pow(std::sin(area), 2) - 2)) * 180 / std::numbers::pi;
+    EXPECT_GT(min_angle_deg(vertices), 0.85 * max_deg) << count;
   }
   EXPECT_THROW(sphere_vertices(kTool, 0), std::invalid_argument);
 }

@@ -25,12 +25,12 @@ using State = DeviceReport::State;
 // Age at which an input or a wrench expires: the haptic thread then has no pose and sends zero, or the device
 // is sent zero, whatever the haptic thread is doing.
 constexpr double kMaxAge_s = 5e-3;
-// How long it takes to come up when the device may be driven (again).
+// Time of the rise from zero when the device may be driven (again), s.
 constexpr double kBlend_s = 0.1;
 // After this long without a pose the tool goes on from where it is, not from where the hand is by then.
-constexpr double kGone_s = 0.1;
+constexpr double kMaxPoseGap_s = 0.1;
 constexpr double kReopen_s = 0.5;
-// However long ago the last wrench went out, the next makes no larger a step than in this time.
+// Upper bound on the time since the last wrench, s, so that the next makes no larger a step.
 constexpr double kRound_s = 1e-3;
 constexpr double kUnitTolerance = 1e-3;
 constexpr int kMaxWaitsForPose = 500;
@@ -84,7 +84,7 @@ class ConnectedDevice::Exchange {
         pending_report_{.state = State::silent, .since_s = sent_s_},
         published_report_(pending_report_) {}
 
-  // The thread's, until `end_requested`; and one round of it.
+  // Runs rounds in the device's thread until `end_requested`, and one round.
   void run();
   void round();
 
@@ -96,7 +96,7 @@ class ConnectedDevice::Exchange {
     DeviceInput input;
     double at_s = -std::numeric_limits<double>::infinity();
     bool is_pose = false;
-    // How often it was gone before.
+    // Number of times that it was gone before.
     std::uint64_t reconnects = 0;
   };
   struct RequestedWrench {
@@ -106,10 +106,10 @@ class ConnectedDevice::Exchange {
   LatestValue<ReceivedInput> latest_input;
   LatestValue<RequestedWrench> requested_wrench;
   std::atomic<double> delivered_fraction{0};
-  // How often it began or ceased to be a device that may be driven: odd while it is.
+  // Number of times that it began or ceased to be a device that may be driven: odd while it is.
   std::atomic<std::uint64_t> gate{0};
   std::atomic<bool> is_disengaged{false};
-  // How often it was let go of.
+  // Number of times that it was disengaged.
   std::atomic<std::uint64_t> disengage_count{0};
   std::atomic<bool> at_rest{true};
   std::atomic<bool> end_requested{false};
@@ -132,22 +132,22 @@ class ConnectedDevice::Exchange {
   // The capabilities at the first opening.
   DeviceCapabilities opened_;
   ReceivedInput newest_;
-  // The last that went out, and when.
+  // The last wrench that went out, and its time.
   Wrench sent_D_;
   double sent_s_;
-  // How far it has come up, 0 to 1.
+  // Progress of the rise from zero, 0 to 1.
   double blended_ = 0;
   double last_pose_s_ = -std::numeric_limits<double>::infinity();
   double lost_s_ = 0;
   bool wrench_was_late_ = false;
   RecentRate inputs_;
 
-  // When the thread's last round was over, and in which of the maker's functions it is.
+  // Time at which the thread's last round began, and the maker's function that it is in.
   std::atomic<double> round_s_{std::numeric_limits<double>::infinity()};
   std::atomic<const char*> call_{nullptr};
   // The report in the making; `since_s` holds the time of the clock here.
   DeviceReport pending_report_;
-  // And what others may read of that, under the lock, for which the device's thread does not wait.
+  // The copy that others read, under the lock, for which the device's thread does not wait.
   std::mutex report_mutex_;
   DeviceReport published_report_;
 };
@@ -229,7 +229,7 @@ void ConnectedDevice::Exchange::store_input(const DeviceInput& input) {
   newest_.at_s = now_s;
   newest_.is_pose = is_pose(input.X_DH);
   if (newest_.is_pose) {
-    if (now_s - last_pose_s_ > kGone_s) ++newest_.reconnects;
+    if (now_s - last_pose_s_ > kMaxPoseGap_s) ++newest_.reconnects;
     last_pose_s_ = now_s;
   }
   // Before the pose, so that none from behind a closed gate is taken for one that is driven.
@@ -252,7 +252,7 @@ bool ConnectedDevice::Exchange::check_drivable(double now_s) {
   return !late && gate.load(std::memory_order_relaxed) % 2 == 1;
 }
 
-// The only way by which a wrench goes out.
+// Sends the next wrench towards the requested one. No other function sends one.
 ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
   const double lapse_s = connection_->capabilities().watchdog_s;
   if (lapse_s > 0 && now_s - sent_s_ > lapse_s) {
@@ -276,7 +276,8 @@ ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
   return status;
 }
 
-// A round a millisecond, until zero has gone out; what cannot be sent any more is left to the device itself.
+// Sends falling wrenches, one a millisecond, until zero has gone out. What cannot be sent any more is left to
+// the device itself.
 void ConnectedDevice::Exchange::ramp_to_zero() {
   double now_s = sent_s_;
   try {
@@ -324,7 +325,8 @@ void ConnectedDevice::Exchange::update_report() {
   const char* says = "";
   const double age_s = now_s - newest_.at_s;
   // Its own remark is worth more than the line that it is a little slow.
-  const double silent_after_s = input.not_driven != nullptr || input.remark != nullptr ? kGone_s : kMaxAge_s;
+  const double silent_after_s =
+      input.not_driven != nullptr || input.remark != nullptr ? kMaxPoseGap_s : kMaxAge_s;
   if (!connection_) {
     state = State::lost;
   } else if (age_s > silent_after_s) {

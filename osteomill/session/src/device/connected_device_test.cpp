@@ -362,9 +362,9 @@ TEST_F(ConnectedDeviceTest, LetGoOfItGetsZeroForGood) {
 class RunningDevice : public ::testing::Test {
  protected:
   // Answers as a device does at about 1 kHz.
-  class Way final : public Connection {
+  class StubConnection final : public Connection {
    public:
-    explicit Way(RunningDevice& test) : test_(test) { can_.name = "running"; }
+    explicit StubConnection(RunningDevice& test) : test_(test) { can_.name = "running"; }
     const DeviceCapabilities& capabilities() const override { return can_; }
     ConnectionStatus read(DeviceInput& input) override {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -374,7 +374,7 @@ class RunningDevice : public ::testing::Test {
     }
     ConnectionStatus write(const Wrench& wrench_D) override {
       test_.felt_N_ = wrench_D.force_N.norm();
-      test_.most_N_ = std::max(test_.most_N_.load(), wrench_D.force_N.norm());
+      test_.max_N_ = std::max(test_.max_N_.load(), wrench_D.force_N.norm());
       return ConnectionStatus::fresh;
     }
 
@@ -384,12 +384,12 @@ class RunningDevice : public ::testing::Test {
     int reads_ = 0;
   };
   OpenConnection way() {
-    return [this] { return std::make_unique<Way>(*this); };
+    return [this] { return std::make_unique<StubConnection>(*this); };
   }
 
   std::atomic<bool> dumb_{false};
   std::atomic<double> felt_N_{-1};
-  std::atomic<double> most_N_{0};
+  std::atomic<double> max_N_{0};
 };
 
 TEST_F(RunningDevice, ComesDownToZeroBeforeItIsClosed) {
@@ -402,7 +402,7 @@ TEST_F(RunningDevice, ComesDownToZeroBeforeItIsClosed) {
     }));
   }
   EXPECT_EQ(felt_N_, 0);
-  EXPECT_EQ(most_N_, 8);
+  EXPECT_EQ(max_N_, 8);
 }
 
 TEST_F(RunningDevice, ADeviceThatGivesNoPoseIsRefused) {

@@ -25,15 +25,15 @@ Pose moved(const Pose& X_W, const SpaceMouseState& by, const Quat& R_WV, double 
           (quaternion_from_rotation_vector(turn_W) * X_W.orientation).normalized()};
 }
 
-SpaceMouse::SpaceMouse() : present_(spnav_open() != -1) {}
+SpaceMouse::SpaceMouse() : is_present_(spnav_open() != -1) {}
 
 SpaceMouse::~SpaceMouse() {
-  if (present_) spnav_close();
+  if (is_present_) spnav_close();
 }
 
 SpaceMouseState SpaceMouse::read() {
   spnav_event event;
-  while (present_ && spnav_poll_event(&event) != 0) {
+  while (is_present_ && spnav_poll_event(&event) != 0) {
     if (event.type == SPNAV_EVENT_MOTION) {
       // Its z points away from the viewer, in a left-handed frame.
       state_.push = {share(event.motion.x), share(event.motion.y), -share(event.motion.z)};

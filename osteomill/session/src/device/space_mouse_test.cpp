@@ -52,7 +52,7 @@ class Daemon {
 TEST(SpaceMouse, PushesTwistsAndButtonsComeThrough) {
   Daemon daemon;
   SpaceMouse mouse;
-  ASSERT_TRUE(mouse.present());
+  ASSERT_TRUE(mouse.is_present());
   daemon.take_client();
   EXPECT_EQ(mouse.read().push, Vec3::Zero());
   daemon.send({0, 175, -350, 70, 35, 0, -700, 16});
@@ -71,7 +71,7 @@ TEST(SpaceMouse, PushesTwistsAndButtonsComeThrough) {
 TEST(SpaceMouse, WithoutADaemonThereIsNone) {
   setenv("SPNAV_SOCKET", "/nowhere/at/all", 1);
   SpaceMouse mouse;
-  EXPECT_FALSE(mouse.present());
+  EXPECT_FALSE(mouse.is_present());
   EXPECT_EQ(mouse.read().push, Vec3::Zero());
   unsetenv("SPNAV_SOCKET");
 }

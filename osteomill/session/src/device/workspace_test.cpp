@@ -85,10 +85,10 @@ TEST(Workspace, TwoMovesTellHowADeviceStands) {
   const DeviceCapabilities can = device(6);
   const Vec3 turned_deg(20, -110, 45);
   const Quat R_VD = quaternion_from_rotation_vector(std::numbers::pi / 180 * turned_deg) * can.R_VD;
-  const auto told =
+  const auto turn_V_deg =
       turn_by_moves_deg(can, R_VD.conjugate() * Vec3(40, 0, 0), R_VD.conjugate() * Vec3(5, 30, 0));
-  ASSERT_TRUE(told);
-  EXPECT_NEAR((*told - turned_deg).norm(), 0, 1e-6);
+  ASSERT_TRUE(turn_V_deg);
+  EXPECT_NEAR((*turn_V_deg - turned_deg).norm(), 0, 1e-6);
   EXPECT_FALSE(turn_by_moves_deg(can, Vec3(9, 0, 0), Vec3(0, 30, 0)));
   EXPECT_FALSE(turn_by_moves_deg(can, Vec3(30, 0, 0), Vec3(30, 20, 0)));
   EXPECT_FALSE(turn_by_moves_deg(can, Vec3(30, 0, 0), Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0)));

@@ -195,15 +195,15 @@ Vec3 unit_direction(const std::optional<Vec3>& direction) {
   return *direction / length;
 }
 
-struct Top {
+struct BoneTop {
   Vec3 highest_W = Vec3::Zero();
   // The middle of all bone near the top, in W, at the top's height.
   Vec3 middle_W = Vec3::Zero();
 };
 
-Top top_of_bone(const Volume& volume, const Vec3& direction_W) {
+BoneTop top_of_bone(const Volume& volume, const Vec3& direction_W) {
   double min_depth_mm = std::numeric_limits<double>::infinity();
-  Top top;
+  BoneTop top;
   for_each_bone_voxel(volume, [&](const VoxelIndex& v) {
     const Vec3 p = volume.geometry().world_from_voxel(v);
     const double depth_mm = direction_W.dot(p);
@@ -275,7 +275,7 @@ MillingEntry given_entry(const Volume& volume, const MillingTool& tool, const Ve
   return entry;
 }
 
-MillingEntry top_entry(const Volume& volume, const MillingTool& tool, const Top& top,
+MillingEntry top_entry(const Volume& volume, const MillingTool& tool, const BoneTop& top,
                        const Vec3& direction_W) {
   MillingEntry entry;
   entry.direction_W = direction_W;
@@ -292,7 +292,7 @@ MillingEntry top_entry(const Volume& volume, const MillingTool& tool, const Top&
 
 // The top, if the tool can stay in bone there, else the highest place where it can, else seen from another
 // side, unless a direction was asked for; and if there is none the top all the same.
-MillingEntry default_entry(const Volume& volume, const MillingTool& tool, const Top& top,
+MillingEntry default_entry(const Volume& volume, const MillingTool& tool, const BoneTop& top,
                            const Vec3& direction_W, bool given_direction) {
   const MillingEntry at_top = top_entry(volume, tool, top, direction_W);
   // In the middle of a rim that the volume cuts off is a hollow.
@@ -380,7 +380,7 @@ MillingEntry place_entry(const Volume& volume, const MillingTool& tool, const st
                          const std::optional<Vec3>& direction) {
   require_valid(tool);
   const Vec3 direction_W = unit_direction(direction);
-  const Top top = top_of_bone(volume, direction_W);
+  const BoneTop top = top_of_bone(volume, direction_W);
   MillingEntry placed = entry ? given_entry(volume, tool, *entry, direction_W)
                               : default_entry(volume, tool, top, direction_W, direction.has_value());
   placed.lateral_W = towards_highest_rim(volume, tool, placed);

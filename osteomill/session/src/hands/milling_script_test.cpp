@@ -166,7 +166,7 @@ TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
   const auto leant_rad = [&](double wall_Nmm_per_rad) {
     constexpr double kWall_rad = 0.1;
     SimulatedOperator person(settings, kTool, {});
-    double most_rad = 0;
+    double max_rad = 0;
     while (!person.finished()) {
       const Pose device = person.read_pose();
       const Vec3 turn =
@@ -176,10 +176,10 @@ TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
       person.write_wrench(
           {{0, 0, std::max(0.0, 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z()))},
            beyond_rad > 0 ? Vec3(-wall_Nmm_per_rad * beyond_rad * turn.normalized()) : Vec3(Vec3::Zero())});
-      most_rad = std::max(most_rad, turn.norm() - kWall_rad);
+      max_rad = std::max(max_rad, turn.norm() - kWall_rad);
       person.tick_done(device, kTick_s);
     }
-    return most_rad;
+    return max_rad;
   };
   const double twist_rad = 0.8 * 15 / 500;
   EXPECT_LT(leant_rad(5000), 0.3 * twist_rad);

@@ -41,11 +41,11 @@ void VirtualHand::put_at(const Pose& X_WD) noexcept {
 
 void VirtualHand::tick_done(const Pose& /*X_WT*/, double dt_s) noexcept {
   const double passed_s = std::clamp(dt_s, 0.0, kMaxTick_s);
-  const PullTarget& asked = pull_target_.read();
-  const Pose& X_W_asked = asked.number > ignored_pulls_ ? asked.X_W : X_W_target_;
+  const PullTarget& target = pull_target_.read();
+  const Pose& X_W_goal = target.number > ignored_pulls_ ? target.X_W : X_W_target_;
   const double share = 1 - std::exp(-kFollow_per_s * passed_s);
-  X_W_target_.position_mm += share * (X_W_asked.position_mm - X_W_target_.position_mm);
-  X_W_target_.orientation = X_W_target_.orientation.slerp(share, X_W_asked.orientation).normalized();
+  X_W_target_.position_mm += share * (X_W_goal.position_mm - X_W_target_.position_mm);
+  X_W_target_.orientation = X_W_target_.orientation.slerp(share, X_W_goal.orientation).normalized();
   const auto substeps = static_cast<int>(std::lround(passed_s / handle_.settings().substep_s));
   for (int n = 0; n < substeps; ++n) {
     handle_.advance(hand_wrench(hand_, X_W_target_, Twist{}, handle_.pose(), handle_.velocity()));

@@ -20,14 +20,14 @@ TEST(VirtualHand, GoesWhereItIsPulledWithoutSwingingOver) {
   VirtualHand hand({}, pointing_hand(), kStart);
   const Pose target{{6, 2, 3}, quaternion_from_rotation_vector({0, 0.4, 0})};
   hand.pull_to(target);
-  double farthest_mm = 0;
+  double max_distance_mm = 0;
   for (int n = 0; n < 1000; ++n) {
     hand.tick_done({}, 1e-3);
-    farthest_mm = std::max(farthest_mm, hand.read_pose().position_mm.x());
+    max_distance_mm = std::max(max_distance_mm, hand.read_pose().position_mm.x());
   }
   EXPECT_NEAR((hand.read_pose().position_mm - target.position_mm).norm(), 0, 0.02);
   EXPECT_NEAR(hand.read_pose().orientation.angularDistance(target.orientation), 0, 1e-3);
-  EXPECT_LT(farthest_mm, 6.05);
+  EXPECT_LT(max_distance_mm, 6.05);
 }
 
 // A wall of 2 N/mm at z = 3, as the device's motors render it: the hand pushes down with all it has.

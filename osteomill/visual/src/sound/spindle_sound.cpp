@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 
 constexpr double kSecondsPerMinute = 60;
 // A motor under full load gives way by this share.
-constexpr double kSag = 0.08;
+constexpr double kLoadSlowdown = 0.08;
 constexpr double kSpeedFollows_per_s = 9;
 constexpr double kLoadFollows_per_s = 25;
 constexpr double kIdleLoudness = 0.10;
@@ -62,7 +62,7 @@ class QuietStderr {
 }  // namespace
 
 double SpindleSound::pitch_hz(const SpindleState& state) {
-  return state.speed_rpm / kSecondsPerMinute * (1 - kSag * std::clamp(state.load, 0.0, 1.0));
+  return state.speed_rpm / kSecondsPerMinute * (1 - kLoadSlowdown * std::clamp(state.load, 0.0, 1.0));
 }
 
 float SpindleSound::noise() {

@@ -87,11 +87,11 @@ class Coarsening {
 
     // The point nearest to all planes; if they leave it open, the one nearest to `point_W`. That is the
     // mean of the vertices, which alone would lie below a sharp edge.
-    Vec3 meeting_near(const Vec3& point_W, double reach_mm) const {
+    Vec3 intersection_near(const Vec3& point_W, double reach_mm) const {
       constexpr double kHeld = 0.004;
       const Mat3 held = normals + kHeld * normals.trace() * Mat3::Identity();
-      const Vec3 way = held.ldlt().solve(offsets - normals * point_W);
-      return way.norm() <= reach_mm ? Vec3(point_W + way) : point_W;
+      const Vec3 correction = held.ldlt().solve(offsets - normals * point_W);
+      return correction.norm() <= reach_mm ? Vec3(point_W + correction) : point_W;
     }
   };
 
@@ -138,7 +138,7 @@ class Coarsening {
       if (sum.count < 2) continue;
       place[vertex] = static_cast<Index>(vertices.size());
       MeshVertex mean = mesh_.vertices[vertex];
-      put(planes_of[vertex].meeting_near(sum.positions_mm / sum.count, reach_mm), mean.position_mm);
+      put(planes_of[vertex].intersection_near(sum.positions_mm / sum.count, reach_mm), mean.position_mm);
       if (sum.normals.norm() > 1e-3) put(sum.normals.normalized(), mean.normal);
       mean.density = static_cast<float>(sum.densities / sum.count);
       vertices.push_back(mean);

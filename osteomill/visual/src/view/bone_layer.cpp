@@ -91,7 +91,7 @@ void main() {
 )";
 
 // Beyond the bone there is the tool.
-constexpr double kRoomAround_mm = 60;
+constexpr double kSceneMargin_mm = 60;
 constexpr double kMinDepth_mm = 1;
 // Sunk by this share of the blur's reach is as dark as it gets.
 constexpr double kDarkestAt = 0.55;
@@ -110,7 +110,7 @@ std::array<Eigen::Vector4d, 6> view_planes(const Projection& projection) {
   return planes;
 }
 
-bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sphere) {
+bool can_be_visible(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sphere) {
   return std::all_of(planes.begin(), planes.end(), [&](const Eigen::Vector4d& plane) {
     return plane.head<3>().dot(sphere.centre_W) + plane.w() >= -sphere.radius_mm;
   });
@@ -173,7 +173,7 @@ bool is_cut(const ViewScene& scene) {
 Projection projection_of(const ViewScene& scene, const PixelSize& size) {
   Projection projection{size, 0, 0, view_matrix(scene.camera), {}};
   const double depth_mm = depth_of(scene.camera, scene.bounds.centre_W);
-  const double reach_mm = scene.bounds.radius_mm + kRoomAround_mm;
+  const double reach_mm = scene.bounds.radius_mm + kSceneMargin_mm;
   projection.near_mm = std::max(depth_mm - reach_mm, kMinDepth_mm);
   projection.far_mm = std::max(depth_mm + reach_mm, projection.near_mm + reach_mm);
   projection.clip_from_camera = projection_matrix(scene.camera, size, projection.near_mm, projection.far_mm);
@@ -311,7 +311,7 @@ std::vector<std::size_t> BoneLayer::bricks_in_view(const ViewScene& scene, const
   std::vector<std::pair<double, std::size_t>> found;
   for (std::size_t n = 0; n < bricks_.size(); ++n) {
     const Sphere& bounds = bricks_[n].bounds;
-    if (wanted(bricks_[n]) && may_be_seen(planes, bounds))
+    if (wanted(bricks_[n]) && can_be_visible(planes, bounds))
       found.emplace_back((bounds.centre_W - eye_W).squaredNorm(), n);
   }
   std::ranges::sort(found);

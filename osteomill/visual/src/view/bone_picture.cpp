@@ -27,7 +27,7 @@ constexpr double kAroundEntry_mm = 24.0;
 constexpr double kAroundEntry_voxels = 32;
 constexpr double kMargin = 1.0 / 20;
 // Pixels drawn for one of the picture, along each side.
-constexpr int kFiner = 2;
+constexpr int kSupersampling = 2;
 // The darkening of cavities reaches this share of the picture's height: about a burr's radius.
 constexpr double kCavityReach = 1.0 / 16;
 // Height for which annotations are made, px: they are scaled by the picture's height over this.
@@ -47,14 +47,14 @@ Extent extent_of_bone(const Volume& bone, const Camera& camera) {
   const Mat3 axes = camera.orientation.toRotationMatrix();
   const GridGeometry& geometry = bone.geometry();
   Eigen::AlignedBox3d box;
-  const auto take_in = [&](const VoxelBox& voxels) {
+  const auto include = [&](const VoxelBox& voxels) {
     for (const Vec3& corner_W : corners_W(geometry, voxels)) box.extend(axes.transpose() * corner_W);
   };
   for_each(geometry.all_voxels().bricks(BlockRanges::kBrickVoxels), [&](const VoxelIndex& brick) {
     if (static_cast<double>(bone.ranges().at(brick).max) > bone.isovalue())
-      take_in(BlockRanges::counted_voxels(brick, geometry));
+      include(BlockRanges::counted_voxels(brick, geometry));
   });
-  if (box.isEmpty()) take_in(geometry.all_voxels());
+  if (box.isEmpty()) include(geometry.all_voxels());
   return {axes * box.center(), std::max(box.sizes().head<2>().maxCoeff(), 1e-3)};
 }
 
@@ -125,7 +125,7 @@ class BonePainter {
     std::size_t done = 0;
     DepthTiles depths(target_, projection_, scene_.camera);
     const auto flush = [&] {
-      layer_.draw(scene_, projection_, cavities_, layer_.visible(scene_, projection_, kFullDetail));
+      layer_.draw(scene_, projection_, cavities_, layer_.visible_bricks(scene_, projection_, kFullDetail));
       for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {});
       depths = DepthTiles(target_, projection_, scene_.camera);
     };
@@ -184,8 +184,8 @@ Image bone_picture(const Volume& bone, double reference_density, const Camera& c
                    bool of_patient) {
   const OffscreenContext context;
   const ViewScene scene = scene_with(bone, reference_density, camera);
-  BonePainter painter(bone, scene, {kFiner * size.width, kFiner * size.height});
-  Image image = averaged_down(painter.paint(), kFiner);
+  BonePainter painter(bone, scene, {kSupersampling * size.width, kSupersampling * size.height});
+  Image image = averaged_down(painter.paint(), kSupersampling);
   const double scale = std::max(1.0, size.height / kAnnotatedHeight_px);
   annotate(image, camera, of_patient, kInkOnLight, scale);
   return image;

@@ -36,13 +36,13 @@ bool in_scale_bar(const Image& image, int x, int y) {
   return x < image.width / 2 && y > image.height - 60;
 }
 
-struct Covered {
+struct CoveredArea {
   int min_x = 1 << 20, max_x = -1, min_y = 1 << 20, max_y = -1;
   int count = 0;
 };
 
-Covered covered(const Image& image) {
-  Covered all;
+CoveredArea covered(const Image& image) {
+  CoveredArea all;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       if (is_background(image, x, y) || in_scale_bar(image, x, y)) continue;
@@ -96,7 +96,7 @@ TEST(BonePicture, ASmallBoneIsShownWhole) {
   const Volume tooth(builtin_tooth(0.5), kBuiltinToothIsovalue);
   for (const Vec3& into : {Vec3(0, 0, -1), Vec3(0, 1, 0), Vec3(-1, 0, 0)}) {
     const Camera camera = camera_above(tooth, Vec3::Zero(), into, into.unitOrthogonal());
-    const Covered all = covered(bone_picture(tooth, 1500, camera, kSize));
+    const CoveredArea all = covered(bone_picture(tooth, 1500, camera, kSize));
     EXPECT_GT(std::min(all.min_x, all.min_y), 3);
     EXPECT_LT(std::max(all.max_x, all.max_y), 316);
     EXPECT_GT(std::max(all.max_x - all.min_x, all.max_y - all.min_y), 200);
@@ -161,7 +161,7 @@ TEST(BonePicture, WithoutBoneThereIsOnlyTheScaleBar) {
 TEST(BonePicture, PutsRightAndUpWhereTheyBelong) {
   const Volume bone = shape_volume(centred_cube(40, 0.25), ball(Vec3(2, 0, 3), 1.2));
   Camera camera = camera_on({Vec3::Zero(), 5}, Vec3::UnitY(), Vec3::UnitZ());
-  const Covered all = covered(picture_from_above(bone, camera));
+  const CoveredArea all = covered(picture_from_above(bone, camera));
   EXPECT_GT(all.min_x, 160);
   EXPECT_LT(all.max_y, 160);
   EXPECT_GT(all.count, 500);

@@ -28,9 +28,9 @@ class PressingBurr {
   bool presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N,
                double dt_s) noexcept {
     const bool ahead = burr_presses(volume, burr_radius_mm, burr_W, force_W_N);
-    const bool kept = away_s_ < kPressingKept_s;
+    const bool pressed_recently = away_s_ < kPressingKept_s;
     away_s_ = std::clamp(ahead ? away_s_ - dt_s : away_s_ + dt_s, 0.0, kPressingKept_s);
-    return ahead || kept;
+    return ahead || pressed_recently;
   }
 
  private:

@@ -55,10 +55,10 @@ Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const 
 
 // Straight toward the probe until bone is in the way.
 Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
-  const Vec3 way = probe_W - proxy_W;
-  const double distance = way.norm();
+  const Vec3 path = probe_W - proxy_W;
+  const double distance = path.norm();
   if (distance == 0.0) return probe_W;
-  if (distance > kTouching_mm && is_bone_at(volume, proxy_W + (kTouching_mm / distance) * way))
+  if (distance > kTouching_mm && is_bone_at(volume, proxy_W + (kTouching_mm / distance) * path))
     return proxy_W;
   return first_crossing(volume, proxy_W, probe_W).value_or(probe_W);
 }

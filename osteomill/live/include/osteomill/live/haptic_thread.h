@@ -55,7 +55,7 @@ class HapticThread {
   void set_spindle(bool on);
   /// Begins or ends a pause, which sends zero and neither steps nor mills.
   void set_paused(bool paused);
-  /// Holds the bone or lets it go. While held, nothing is milled, though everything is felt, and other
+  /// Freezes or unfreezes the bone. While frozen, nothing is milled, though everything is felt, and other
   /// threads may read the volume.
   void freeze_bone(bool held);
   /// Goes on with another algorithm, tool, setting or bone, prepared beforehand. Returns the state in which

@@ -65,9 +65,9 @@ class BurrReach {
   };
 
   void measure(Squares& squares, double centre_mm, std::size_t axis) const;
-  std::uint64_t held_in_ball(int bj, int bk, std::size_t word, double left2_mm2);
-  bool look_at(int bi, int bj, int bk);
-  void find_pieces(std::size_t word, std::uint64_t held, int bj, int bk, const Share& share);
+  std::uint64_t occupied_in_ball(int bj, int bk, std::size_t word, double left2_mm2);
+  bool scan_brick(int bi, int bj, int bk);
+  void find_pieces(std::size_t word, std::uint64_t occupied, int bj, int bk, const Share& share);
   std::size_t brick_line(int bj, int bk) const {
     return static_cast<std::size_t>(bj) +
            static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk);
@@ -83,10 +83,10 @@ class BurrReach {
   float floor_density_;
   std::array<int, 3> brick_dims_;
 
-  std::vector<bool> known_;
-  // A bit a brick, 64 along a line of bricks to a word: whether it may hold anything.
+  std::vector<bool> is_scanned_;
+  // A bit a brick, 64 along a line of bricks to a word: whether it may hold voxels denser than the floor.
   std::size_t words_of_line_;
-  std::vector<std::uint64_t> held_;
+  std::vector<std::uint64_t> occupied_;
   std::vector<Bits> bits_;
   std::array<Squares, 3> squares_;
 

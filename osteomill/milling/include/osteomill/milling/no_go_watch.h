@@ -16,7 +16,7 @@ class NoGoWatch {
   NoGoWatch(std::shared_ptr<const LabelMap> labels, double burr_radius_mm);
 
   /// Adds to `tally` every no-go label that the burr touches, with nothing removed. Safe in the haptic tick.
-  void look(const Vec3& burr_centre_W, LabelTally& tally) const noexcept;
+  void tally_contacts(const Vec3& burr_centre_W, LabelTally& tally) const noexcept;
 
  private:
   std::shared_ptr<const LabelMap> labels_;

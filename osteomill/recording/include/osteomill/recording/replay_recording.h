@@ -17,8 +17,8 @@ namespace osteomill {
 void require_made_with(const Recording& recording, const Volume& scan);
 
 /// The choices for running a recording again, and the functions that are told of it.
-struct Replay {
-  /// Finds the algorithm that a name means.
+struct ReplayHooks {
+  /// Returns the algorithm of a name.
   std::function<const AlgorithmDescription*(std::string_view)> find_algorithm = osteomill::find_algorithm;
   /// Returns the description as which each session is run, given its own. If empty, each is run as it was.
   std::function<RunDescription(const RunDescription&)> transform_description;
@@ -32,7 +32,7 @@ struct Replay {
 /// its operator did comes from the recording, all else is computed. Every session begins from the bone, the
 /// tool and the wrench that it began from. Throws InputError, naming the recording, if that cannot be: it is
 /// of another scan, lost ticks, or what it goes by is unknown here or out of range.
-void replay_recording(const Volume& scan, const Recording& recording, const Replay& replay);
+void replay_recording(const Volume& scan, const Recording& recording, const ReplayHooks& hooks);
 
 /// The first tick in which a recording and its replay differ.
 struct Difference {

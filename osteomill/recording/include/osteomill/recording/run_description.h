@@ -147,14 +147,14 @@ std::optional<double> taken_setting(const RunDescription& run, const FieldDescri
 /// there. Throws as `taken_setting`.
 template <typename Struct>
 void put_fields(RunDescription& run, const Struct& s) {
-  for (const Field<Struct>& field : fields_of<Struct>())
-    if (!field.name.empty()) put_setting(run, field, field.get(s));
+  for (const Field<Struct>& setting : fields_of<Struct>())
+    if (!setting.name.empty()) put_setting(run, setting, setting.get(s));
 }
 template <typename Struct>
 void take_fields(const RunDescription& run, const std::filesystem::path& path, Struct& s) {
-  for (const Field<Struct>& field : fields_of<Struct>()) {
-    if (field.name.empty()) continue;
-    if (const auto value = taken_setting(run, field, path)) field.set(s, *value);
+  for (const Field<Struct>& setting : fields_of<Struct>()) {
+    if (setting.name.empty()) continue;
+    if (const auto value = taken_setting(run, setting, path)) setting.set(s, *value);
   }
 }
 

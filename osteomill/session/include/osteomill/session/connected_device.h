@@ -57,11 +57,11 @@ struct DeviceReport {
 /// and writes to it, so that nothing the hardware does makes a tick wait, and watches over both sides. What
 /// is sent is within the device's limits, and from one wrench that has gone out to the next changes by no
 /// more than kHandWrenchRates in a millisecond; it comes down to zero if the wrench is over 5 ms old, if the
-/// device may not be driven, is lost or let go of, and at the end, and comes up again over 0.1 s. A device
+/// device may not be driven, is lost or disengaged, and at the end, and comes up again over 0.1 s. A device
 /// that is lost is opened again until it is there.
 ///
 /// It is driven (`is_driven`) while the newest input says that it may be, it is not lost, and it has not been
-/// let go of (`disengage`). A clutch leaves it driven, because the tool stays in its place.
+/// disengaged (`disengage`). A clutch leaves it driven, because the tool stays in its place.
 ///
 /// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
 /// without the tool: the device gives no pose and the hand feels nothing. Then it goes on from where the tool

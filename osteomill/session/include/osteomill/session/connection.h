@@ -19,7 +19,7 @@ struct DeviceCapabilities {
   Quat R_VD = Quat::Identity();
   /// The most that its motors give.
   WrenchLimits limits;
-  /// The time without a wrench after which it lets go of the hand by itself; 0 if that is not known.
+  /// The time without a wrench after which the device's own watchdog sends zero; 0 if that is not known.
   double watchdog_s = 0;
 };
 

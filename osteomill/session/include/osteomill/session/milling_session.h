@@ -35,9 +35,9 @@ class Vibration {
   double turns_ = 0;
 };
 
-/// The state that a session leaves to the one that goes on from it: the pose of its simulated tool, which is
-/// outside the bone, the wrench that the hand feels, and whether it was held back (WrenchGuard). There is no
-/// tool's pose if the next session is to begin at the device, which may have sunk into the bone.
+/// The state that a session hands over to the one that resumes from it: the pose of its simulated tool, which
+/// is outside the bone, the wrench that the hand feels, and whether it was held back (WrenchGuard). There is
+/// no tool's pose if the next session is to begin at the device, which may have sunk into the bone.
 struct SessionHandover {
   std::optional<Pose> X_WT;
   Wrench sent;
@@ -75,10 +75,10 @@ class MillingSession {
   /// Returns the guard between the algorithm and the hand. As safe as `tick`.
   WrenchGuard& guard() { return guard_; }
 
-  /// Begins where another session is left, whose wrench the hand feels. Before the first tick; as safe as
-  /// `tick`.
+  /// Resumes where another session ended, whose wrench the hand feels. Call before the first tick; as safe
+  /// as `tick`.
   void resume_from(const SessionHandover& before) noexcept;
-  /// Returns what another session takes over, after the last tick.
+  /// Returns the state from which another session resumes, after the last tick.
   SessionHandover handover() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back()}; }
   /// Lets the next tick count as one that reaches no hand (Device::is_driven), as after a time without ticks.
   /// The call is as safe as `tick`.

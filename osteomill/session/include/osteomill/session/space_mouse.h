@@ -28,12 +28,12 @@ class SpaceMouse {
   SpaceMouse(const SpaceMouse&) = delete;
   SpaceMouse& operator=(const SpaceMouse&) = delete;
 
-  bool present() const { return present_; }
+  bool is_present() const { return is_present_; }
   /// Returns its state now. Never waits.
   SpaceMouseState read();
 
  private:
-  bool present_ = false;
+  bool is_present_ = false;
   SpaceMouseState state_;
 };
 

@@ -55,8 +55,8 @@ class PassivityObserver {
   double energy_given_Nmm() const { return energy_given_Nmm_; }
 
   /// Returns a damping wrench that takes back what was given too much within a tick of `dt_s`, if the device
-  /// goes on as in the last one; less if that were more damping than a device can show. Zero if nothing is
-  /// owed.
+  /// goes on as in the last one; less if that were more damping than a device can show. Zero if the hand gave
+  /// at least as much.
   Wrench damping(double dt_s) const noexcept;
 
  private:

@@ -24,7 +24,7 @@ constexpr auto kBetweenReadings = 500us;
 constexpr auto kBetweenStatuses = 20ms;
 // Functions of dhd return 0 after success and less than 0 after a failure; more than 0 means success, but the
 // pose is the last one again.
-constexpr int kNotNew = 1;
+constexpr int kNoNewFrame = 1;
 // In steps of 125 us, the longest that there is. It does not run before the first wrench.
 constexpr unsigned char kWatchdog = 255;
 constexpr double kWatchdogStep_s = 125e-6;
@@ -157,7 +157,7 @@ class ForceDimensionConnection final : public Connection {
 
   ConnectionStatus read(DeviceInput& input) override {
     const auto end = Clock::now() + 2ms;
-    int result = kNotNew;
+    int result = kNoNewFrame;
     Vec3 position_m;
     double frame[3][3];
     while (result > 0 && Clock::now() + kBetweenReadings < end) {

@@ -68,7 +68,7 @@ TEST_F(ForceDimension, SaysWhatItCan) {
 }
 
 TEST_F(ForceDimension, WhereItHasNoWatchdogNoneIsSaid) {
-  device_->longest_watchdog = 0;
+  device_->max_watchdog = 0;
   EXPECT_EQ(open_force_dimension("")->capabilities().watchdog_s, 0);
 }
 

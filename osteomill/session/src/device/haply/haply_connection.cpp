@@ -175,7 +175,7 @@ class HaplyConnection final : public Connection {
       if (is_asked_ && Clock::now() - asked_ > kAnswersWithin) return ConnectionStatus::lost;
       return or_lost(ConnectionStatus::silent);
     }
-    if (is_asked_) look_at_latency();
+    if (is_asked_) check_latency();
     is_asked_ = false;
     // One that answers at once is not asked as often as it could answer.
     std::this_thread::sleep_until(next_);
@@ -206,7 +206,7 @@ class HaplyConnection final : public Connection {
   }
 
   // Keeps one text for as long as the service is slow.
-  void look_at_latency() {
+  void check_latency() {
     const double latency_ms = std::chrono::duration<double, std::milli>(Clock::now() - asked_).count();
     mean_latency_ms_ += (latency_ms - mean_latency_ms_) / kLatencies;
     if (mean_latency_ms_ <= kFeltWithin_ms) {

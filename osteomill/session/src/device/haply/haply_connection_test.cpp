@@ -136,14 +136,14 @@ TEST_F(Haply, ASlowServiceGetsNoLargerSteps) {
       }
     }
     const auto forces = service_.forces();
-    double most_N = 0;
+    double max_N = 0;
     double largest_N = 0;
     for (std::size_t n = before + 1; n < forces.size(); ++n) {
       const Vec3 now(forces[n].data());
       largest_N = std::max(largest_N, (now - Vec3(forces[n - 1].data())).norm());
-      most_N = std::max(most_N, now.norm());
+      max_N = std::max(max_N, now.norm());
     }
-    EXPECT_GT(most_N, 5) << delay_ms;
+    EXPECT_GT(max_N, 5) << delay_ms;
     EXPECT_LE(largest_N, 4 + 1e-6) << delay_ms;
   }
 }

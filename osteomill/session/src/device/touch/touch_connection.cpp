@@ -51,7 +51,7 @@ constexpr bool is_of_force(unsigned code) {
 // A wrench that has not been renewed for this time becomes zero. This is no watchdog of the device: the
 // library's thread, which does it, ends with the program.
 constexpr auto kLapse = 20ms;
-constexpr auto kBetweenLooks = 200us;
+constexpr auto kPollPeriod = 200us;
 constexpr double kFrame_s = 1e-3;
 
 struct HdError {
@@ -139,7 +139,7 @@ class TouchConnection final : public Connection {
   ~TouchConnection() override {
     // No frame sends it if the library hangs.
     for (const auto end = Clock::now() + 20ms; !send({}) && Clock::now() < end;)
-      std::this_thread::sleep_for(kBetweenLooks);
+      std::this_thread::sleep_for(kPollPeriod);
     close();
   }
 
@@ -149,8 +149,8 @@ class TouchConnection final : public Connection {
     const auto end = Clock::now() + 2ms;
     while (frames_done_.load(std::memory_order_acquire) == frames_seen_) {
       if (is_lost_.load(std::memory_order_relaxed)) return ConnectionStatus::lost;
-      if (Clock::now() + kBetweenLooks > end) return ConnectionStatus::silent;
-      std::this_thread::sleep_for(kBetweenLooks);
+      if (Clock::now() + kPollPeriod > end) return ConnectionStatus::silent;
+      std::this_thread::sleep_for(kPollPeriod);
     }
     frames_seen_ = frames_done_.load(std::memory_order_acquire);
     input = input_.read();

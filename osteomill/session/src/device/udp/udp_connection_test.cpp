@@ -37,9 +37,9 @@ namespace {
 using namespace udp;
 
 // The device's side, on a free port of this machine, as wrong as a test wants it.
-class Lab {
+class StubDevice {
  public:
-  Lab() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
+  StubDevice() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
     sockaddr_in here{};
     here.sin_family = AF_INET;
     here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -55,9 +55,9 @@ class Lab {
     answer.max_force_N = 8;
     answer.max_torque_Nmm = 90;
   }
-  ~Lab() { ::close(socket_); }
-  Lab(const Lab&) = delete;
-  Lab& operator=(const Lab&) = delete;
+  ~StubDevice() { ::close(socket_); }
+  StubDevice(const StubDevice&) = delete;
+  StubDevice& operator=(const StubDevice&) = delete;
 
   // Opens it from another thread while this one answers.
   std::unique_ptr<Connection> open() {
@@ -107,12 +107,12 @@ class Lab {
 };
 
 TEST(UdpDevice, SaysWhatItIsTakesStatesAndSendsWrenches) {
-  Lab lab;
-  const auto connection = lab.open();
+  StubDevice stub;
+  const auto connection = stub.open();
   EXPECT_EQ(connection->capabilities().name, "Lab one");
   EXPECT_EQ(connection->capabilities().limits.force_N, 8);
   EXPECT_EQ(connection->capabilities().watchdog_s, kLapse_s);
-  lab.send_state(1, 7);
+  stub.send_state(1, 7);
   DeviceInput input;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
   EXPECT_EQ(input.X_DH.position_mm, Vec3(7, 2, 3));
@@ -121,39 +121,39 @@ TEST(UdpDevice, SaysWhatItIsTakesStatesAndSendsWrenches) {
   EXPECT_EQ(connection->read(input), ConnectionStatus::silent);
   EXPECT_EQ(connection->write({{1, 2, 3}, {4, 5, 6}}), ConnectionStatus::fresh);
   SentWrench sent;
-  ASSERT_TRUE(lab.receive(sent));
+  ASSERT_TRUE(stub.receive(sent));
   EXPECT_EQ(sent.head.kind, Kind::wrench);
   EXPECT_EQ(sent.force_N, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(sent.torque_Nmm, (std::array<double, 3>{4, 5, 6}));
 }
 
 TEST(UdpDevice, TheNewestStateCountsAndWhatWasOvertakenDoesNot) {
-  Lab lab;
-  const auto connection = lab.open();
+  StubDevice stub;
+  const auto connection = stub.open();
   const std::uint32_t last = std::numeric_limits<std::uint32_t>::max();
-  lab.send_state(last, 1);
-  lab.send_state(0, 2);
-  lab.send_state(last - 3, 3);
+  stub.send_state(last, 1);
+  stub.send_state(0, 2);
+  stub.send_state(last - 3, 3);
   DeviceInput input;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
   EXPECT_EQ(input.X_DH.position_mm.x(), 2);
-  lab.send_state(0, 4);
+  stub.send_state(0, 4);
   EXPECT_EQ(connection->read(input), ConnectionStatus::silent);
   // A device that was silent may have restarted.
   std::this_thread::sleep_for(std::chrono::milliseconds(120));
-  lab.send_state(last - 9, 5);
+  stub.send_state(last - 9, 5);
   EXPECT_EQ(connection->read(input), ConnectionStatus::fresh);
 }
 
 TEST(UdpDevice, SaysWhetherItMayBeDriven) {
-  Lab lab;
-  const auto connection = lab.open();
+  StubDevice stub;
+  const auto connection = stub.open();
   State state;
   state.head.kind = Kind::state;
   DeviceInput input;
   for (const char* said : {"", "is not calibrated", "has its force off", "has its force off"}) {
     ++state.head.sequence;
-    lab.send(state);
+    stub.send(state);
     ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
     EXPECT_EQ(std::string(input.not_driven == nullptr ? "" : input.not_driven).find(said), 0u);
     ++state.not_driven;
@@ -162,14 +162,14 @@ TEST(UdpDevice, SaysWhetherItMayBeDriven) {
 }
 
 TEST(UdpDevice, DatagramsThatAreNoneOfTheProtocolAreLeftAlone) {
-  Lab lab;
-  const auto connection = lab.open();
+  StubDevice stub;
+  const auto connection = stub.open();
   DeviceInput input;
   State state;
   state.head.kind = Kind::state;
   state.head.sequence = 1;
   const auto nothing_of = [&](const State& wrong, std::size_t length) {
-    lab.send(wrong, length);
+    stub.send(wrong, length);
     return connection->read(input) == ConnectionStatus::silent;
   };
   EXPECT_TRUE(nothing_of(state, 60));
@@ -181,9 +181,9 @@ TEST(UdpDevice, DatagramsThatAreNoneOfTheProtocolAreLeftAlone) {
   other.head.version = 2;
   EXPECT_TRUE(nothing_of(other, sizeof(other)));
   std::array<char, 4000> flood{};
-  lab.send(flood);
+  stub.send(flood);
   EXPECT_EQ(connection->read(input), ConnectionStatus::silent);
-  lab.send(state);
+  stub.send(state);
   EXPECT_EQ(connection->read(input), ConnectionStatus::fresh);
 }
 
@@ -205,25 +205,25 @@ TEST(UdpDevice, AnAnswerThatCannotBeIsRefused) {
       {[](Answer& answer) { answer.max_torque_Nmm = std::numeric_limits<double>::infinity(); },
        "not numbers from 0"}};
   for (const auto& [spoil, reason] : faults) {
-    Lab lab;
-    spoil(lab.answer);
-    const std::string fault = fault_of([&] { lab.open(); });
-    EXPECT_NE(fault.find("udp:" + lab.address + ": "), std::string::npos) << fault;
+    StubDevice stub;
+    spoil(stub.answer);
+    const std::string fault = fault_of([&] { stub.open(); });
+    EXPECT_NE(fault.find("udp:" + stub.address + ": "), std::string::npos) << fault;
     EXPECT_NE(fault.find(reason), std::string::npos) << fault;
   }
 }
 
 TEST(UdpDevice, OneThatAnotherProgramHasIsRefused) {
-  Lab lab;
-  lab.answer.head.is_taken = 1;
-  EXPECT_EQ(fault_of([&] { lab.open(); }),
-            ": udp:" + lab.address + ": another program has the device in use");
+  StubDevice stub;
+  stub.answer.head.is_taken = 1;
+  EXPECT_EQ(fault_of([&] { stub.open(); }),
+            ": udp:" + stub.address + ": another program has the device in use");
 }
 
 TEST(UdpDevice, ANameOfFullLengthNeedsNoEnd) {
-  Lab lab;
-  lab.answer.name.fill('n');
-  EXPECT_EQ(lab.open()->capabilities().name, std::string(64, 'n'));
+  StubDevice stub;
+  stub.answer.name.fill('n');
+  EXPECT_EQ(stub.open()->capabilities().name, std::string(64, 'n'));
 }
 
 TEST(UdpDevice, ANameServerThatDoesNotAnswerHoldsNobodyUp) {
@@ -239,8 +239,8 @@ TEST(UdpDevice, WithoutOneItSaysWhy) {
             "udp:no-such-host.invalid:9: no such host is known");
   std::string address;
   {
-    const Lab lab;
-    address = lab.address;
+    const StubDevice stub;
+    address = stub.address;
     const FoundDevice silent = hardware_named("udp")->find(address);
     EXPECT_FALSE(silent.is_present);
     EXPECT_EQ(silent.text, "udp:" + address + ": nothing answers there");

@@ -26,14 +26,14 @@ std::string summary_fields(const MeasuredRun& run);
 template <typename Struct>
 std::string csv_names(const std::vector<Field<Struct>>& fields) {
   std::string names;
-  for (const Field<Struct>& field : fields) names += "," + field.name;
+  for (const Field<Struct>& metric : fields) names += "," + metric.name;
   return names;
 }
 template <typename Struct>
 std::string csv_values(const std::vector<Field<Struct>>& fields, const Struct& s) {
   std::string values;
-  for (const Field<Struct>& field : fields) {
-    const double value = field.get(s);
+  for (const Field<Struct>& metric : fields) {
+    const double value = metric.get(s);
     values += std::isnan(value) ? "," : fmt::format(",{}", value);
   }
   return values;
@@ -45,11 +45,11 @@ template <typename Row, typename Named>
 Table table_of(const std::vector<Row>& rows, const std::vector<std::string>& header, const Named& named) {
   Table table{header, {}, true};
   for (const Row& row : rows) table.rows.push_back(named(row));
-  for (const Field<Row>& field : fields_of<Row>()) {
-    const auto lacks = [&](const Row& row) { return std::isnan(field.get(row)); };
+  for (const Field<Row>& metric : fields_of<Row>()) {
+    const auto lacks = [&](const Row& row) { return std::isnan(metric.get(row)); };
     if (std::ranges::all_of(rows, lacks)) continue;
-    table.header.push_back(label_of(field));
-    for (std::size_t n = 0; n < rows.size(); ++n) table.rows[n].emplace_back(shown(field.get(rows[n])));
+    table.header.push_back(label_of(metric));
+    for (std::size_t n = 0; n < rows.size(); ++n) table.rows[n].emplace_back(shown(metric.get(rows[n])));
   }
   return table;
 }
