@@ -39,10 +39,11 @@ void write_folder_atomically(const std::filesystem::path& folder,
 /// Creates `folder` and its parents. Throws InputError naming it if that is impossible.
 void create_folder(const std::filesystem::path& folder);
 
-/// Return the folders in which a program keeps its own files for this user, by the freedesktop.org rules:
-/// what it remembers ($XDG_STATE_HOME/osteomill, or ~/.local/state/osteomill), and how it is set up
-/// ($XDG_CONFIG_HOME/osteomill, or ~/.config/osteomill). Empty if neither is known; they create nothing.
+/// Returns the folder for what a program remembers for this user, by the freedesktop.org rules:
+/// $XDG_STATE_HOME/osteomill, or ~/.local/state/osteomill; empty if neither is known. Creates nothing.
 std::filesystem::path state_folder();
+/// Returns the folder for how a program is set up for this user: $XDG_CONFIG_HOME/osteomill, or
+/// ~/.config/osteomill; empty if neither is known. Creates nothing.
 std::filesystem::path config_folder();
 
 }  // namespace osteomill

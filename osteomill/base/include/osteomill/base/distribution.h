@@ -6,26 +6,28 @@
 
 namespace osteomill {
 
-/// A percentile, wherever osteomill writes one, is the least value that at least this share (0 to 1) of the
-/// values do not exceed; if exactly that share does not exceed it, it is the mean of that value and the
-/// next (Hyndman and Fan 1996, type 2). So 0.5 gives the usual median, 0 the least value, 1 the greatest.
-/// The percentile is the mean of the values with these two ranks, counted from 1.
+/// The ranks, counted from 1, of the two values whose mean is a percentile. A percentile, wherever osteomill
+/// writes one, is the least value that at least this share (0 to 1) of the values do not exceed; if exactly
+/// that share does not exceed it, it is the mean of that value and the next (Hyndman and Fan 1996, type 2).
+/// So 0.5 gives the usual median, 0 the least value, 1 the greatest.
 struct PercentileRanks {
   std::size_t lower = 1;
   std::size_t upper = 1;
 };
+/// Returns the ranks of the percentile for a share, 0 to 1, of `count` values.
 PercentileRanks percentile_ranks(double share, std::size_t count);
 
 /// Returns the percentile of the values for this share; 0 if there are no values. Not for the haptic tick: it
 /// sorts a copy.
 double percentile(std::vector<double> values, double share);
 
-/// Median, 99th percentile and greatest of values. Zeros for no values.
+/// Median, 99th percentile and greatest of some values.
 struct Distribution {
   double median = 0;
   double p99 = 0;
   double max = 0;
 };
+/// Returns the distribution of the values; zeros if there are none. Not for the haptic tick: it sorts a copy.
 Distribution distribution_of(std::vector<double> values);
 
 /// Computes what `rate_hz` means wherever osteomill writes it: the rate that a loop with the period

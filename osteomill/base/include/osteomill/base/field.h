@@ -122,13 +122,14 @@ std::vector<Field<Struct, Value>> joined(std::vector<std::vector<Field<Struct, V
   return all;
 }
 
-/// Returns the field of this name, or of this option; null if there is none.
+/// Returns the field of this name; null if there is none.
 template <typename Struct, typename Value>
 const Field<Struct, Value>* find_field(const std::vector<Field<Struct, Value>>& fields,
                                        std::string_view name) {
   const auto found = std::ranges::find(fields, name, &FieldDescription::name);
   return found == fields.end() ? nullptr : &*found;
 }
+/// Returns the field of this option; null if there is none, or `option` is empty.
 template <typename Struct, typename Value>
 const Field<Struct, Value>* field_of_option(const std::vector<Field<Struct, Value>>& fields,
                                             std::string_view option) {

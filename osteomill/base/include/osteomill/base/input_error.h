@@ -9,8 +9,8 @@
 
 namespace osteomill {
 
-/// The text with a question mark for every control character, a line's end among them: a file's own words may
-/// hold anything.
+/// Returns the text with a question mark for every control character, a line's end among them: a file's own
+/// words may hold anything.
 inline std::string in_one_line(std::string_view text) {
   std::string line(text);
   for (char& c : line) {
@@ -20,9 +20,8 @@ inline std::string in_one_line(std::string_view text) {
 }
 
 /// Reports that something the user handed in is at fault: a file, a folder, a row of it, or an option's
-/// value.
-/// The command line prints `what()` as its one line and exits with code 1.
-/// Never thrown inside a haptic tick.
+/// value. The command line prints `what()` as its one line and exits with code 1. Never thrown inside a
+/// haptic tick.
 class InputError : public std::runtime_error {
  public:
   /// `subject` names the file (or option), `reason` says what is wrong with it, without a full stop.

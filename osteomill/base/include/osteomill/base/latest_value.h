@@ -12,11 +12,13 @@ namespace osteomill {
 template <typename T>
 class LatestValue {
  public:
+  /// Makes this the newest value. For the writing thread.
   void write(const T& value) noexcept(std::is_nothrow_copy_assignable_v<T>) {
     buffers_[writing_] = value;
     writing_ = shared_.exchange(writing_ | kNewFlag, std::memory_order_acq_rel) & kIndexMask;
   }
-  /// Returns the newest value written, or a default one before the first. Valid until the next call.
+  /// Returns the newest value written, or a default one before the first. Valid until the next call. For the
+  /// reading thread.
   const T& read() noexcept {
     if ((shared_.load(std::memory_order_relaxed) & kNewFlag) != 0) {
       reading_ = shared_.exchange(reading_, std::memory_order_acq_rel) & kIndexMask;

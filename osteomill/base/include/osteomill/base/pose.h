@@ -5,14 +5,17 @@
 
 namespace osteomill {
 
+/// A point, a direction or a vector of forces; the name says in which frame and unit (`point_W_mm`).
 using Vec3 = Eigen::Vector3d;
+/// A 3 x 3 matrix, as of a rotation or of a grid's axes.
 using Mat3 = Eigen::Matrix3d;
+/// A rotation `R_AB` from frame B to frame A, a unit quaternion.
 using Quat = Eigen::Quaterniond;
 static_assert(alignof(Quat) == 16,
               "osteomill is built with EIGEN_MAX_ALIGN_BYTES=16; so must be what links it");
 
-/// A rigid placement `X_AB` of frame B in frame A: a point `p_B` of B lies at `X_AB * p_B` in A.
-/// Position in mm; `orientation` is a unit quaternion. Safe in the haptic tick.
+/// A rigid placement `X_AB` of frame B in frame A: a point `p_B` of B lies at `X_AB * p_B` in A, and
+/// `X_AB * X_BC` is `X_AC`. Position in mm; `orientation` is a unit quaternion. Safe in the haptic tick.
 struct Pose {
   Vec3 position_mm = Vec3::Zero();
   Quat orientation = Quat::Identity();
@@ -34,8 +37,8 @@ struct Pose {
 /// Returns the rotation vector (axis times angle, rad, angle at most pi) of a unit quaternion.
 Vec3 rotation_vector(const Quat& rotation) noexcept;
 
-/// Returns the unit quaternion that turns by `rotation_vector` (axis times angle, rad); the inverse of the
-/// above.
+/// Returns the unit quaternion that turns by `rotation_vector` (axis times angle, rad); the inverse of
+/// `rotation_vector(rotation)`.
 Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) noexcept;
 
 /// Returns the smallest rotation that turns the direction of `from` into that of `to` (neither of them zero).

@@ -19,7 +19,8 @@ inline bool is_not_negative(double value) {
 inline void require_positive(double value, const std::string& what) {
   if (!is_positive(value)) throw std::invalid_argument(what + " must be a positive number");
 }
-/// Throws std::invalid_argument if it is negative or not finite.
+/// Throws std::invalid_argument if a setting is negative or not finite. `what` is its name and unit for the
+/// message.
 inline void require_not_negative(double value, const std::string& what) {
   if (!is_not_negative(value)) throw std::invalid_argument(what + " must not be negative");
 }

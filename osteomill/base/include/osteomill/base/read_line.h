@@ -7,7 +7,7 @@
 
 namespace osteomill {
 
-/// A line that is longer than it may be.
+/// Reports a line that is longer than it may be (read_line()).
 class LineTooLong : public std::length_error {
  public:
   LineTooLong() : std::length_error("a line is too long") {}

@@ -10,8 +10,9 @@ namespace osteomill {
 /// program goes on without it. Makes system calls: before the first tick, not in it.
 std::string request_real_time();
 
-/// While one lives, the calling thread and any that it starts receive no signals except those of their own
-/// faults: the code that handles one (CrashStop) waits for the threads that drive a device.
+/// Keeps signals away from the thread that makes it, and from any thread that this one starts, until it is
+/// destroyed. They receive only the signals of their own faults, because the code that handles one
+/// (CrashStop) waits for the threads that drive a device.
 class BlockedSignals {
  public:
   BlockedSignals();

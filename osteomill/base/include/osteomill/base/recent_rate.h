@@ -9,8 +9,8 @@ namespace osteomill {
 class RecentRate {
  public:
   void count() noexcept { ++count_; }
-  /// Returns that rate. Has to be called more often than once a second. `now_s` never goes back; the first
-  /// second begins with the first call.
+  /// Returns how many events a second were counted in the last completed second. Has to be called more often
+  /// than once a second. `now_s` never goes back; the first second begins with the first call.
   double per_s(double now_s) noexcept {
     const double passed_s = now_s - period_start_s_;
     if (passed_s >= 1) {

@@ -14,7 +14,7 @@ inline double round_down(double value) {
   return power;
 }
 
-/// Returns the least round number that is not below it; round numbers are each other's reciprocals.
+/// Returns the least round number (1, 2 or 5 times a power of ten) that is not below a positive value.
 inline double round_up(double value) {
   return 1 / round_down(1 / value);
 }

@@ -6,10 +6,10 @@
 
 namespace osteomill {
 
-/// Returns the word as it would be typed into a shell.
+/// Returns the word as it would be typed into a shell, in quotes if it has to be.
 std::string quoted(const std::string& word);
 
-/// The text that another program printed, on both its outputs, and its exit code.
+/// The text that another program printed, on both its outputs, and its exit code (run_program()).
 struct ProcessResult {
   /// The exit code of a shell when there is no such program.
   static constexpr int kNoProgram = 127;

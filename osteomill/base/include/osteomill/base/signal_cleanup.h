@@ -4,8 +4,9 @@
 
 namespace osteomill {
 
-/// A file or folder that is only meant to be there while this object lives. A program that is asked to end
-/// meanwhile (`install_signal_cleanup`) removes it with all that is in it; this object's end does not.
+/// Marks a file or folder that is only meant to be there while this object lives, as that of a
+/// TemporaryFolder. A program that is asked to end meanwhile (install_signal_cleanup()) removes it with
+/// all that is in it; this object's end does not.
 class SignalCleanup {
  public:
   explicit SignalCleanup(const std::filesystem::path& path);
@@ -17,7 +18,7 @@ class SignalCleanup {
   int slot_;
 };
 
-/// Lets SIGTERM, SIGINT and SIGHUP remove every Leftover before they do what they did; one that is ignored
+/// Lets SIGTERM, SIGINT and SIGHUP remove every SignalCleanup before they do what they did; one that is ignored
 /// stays so. For a program to call as it starts.
 void install_signal_cleanup();
 

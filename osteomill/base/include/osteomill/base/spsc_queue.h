@@ -44,6 +44,7 @@ class SpscQueue {
     const Access access(&queue_);
     return queue_.peek();
   }
+  /// Takes out the oldest value, if there is one. For the receiving thread.
   void pop() {
     const Access access(&queue_);
     queue_.pop();

@@ -11,10 +11,10 @@ struct WorkStopped : std::exception {
   const char* what() const noexcept override { return "stopped, since it is no longer wanted"; }
 };
 
-/// While an object of this class lives, its listener is told how far the long work of this thread is: reading
-/// a scan, meshing it, preparing an algorithm. The haptic tick reports nothing. The work reports at least
-/// about every tenth of a second; to stop it, throw WorkStopped from the listener, which ends the work and
-/// frees its memory.
+/// Reports to its listener, as long as it lives, how far the long work of this thread is: reading a scan,
+/// meshing it, preparing an algorithm. The haptic tick reports nothing. The work reports at least about every
+/// tenth of a second; to stop it, throw WorkStopped from the listener, which ends the work and frees its
+/// memory.
 class WorkProgress {
  public:
   /// Called often, in this thread, with the share done of the whole, from 0 to 1 and never falling.
@@ -27,6 +27,7 @@ class WorkProgress {
   /// Reports that this share (0 to 1) of the work is done. Called by the work; does nothing if no listener is
   /// set.
   static void done(double share);
+  /// Reports that this many of the work's parts are done.
   static void done(std::size_t parts, std::size_t of_parts) {
     done(of_parts > 0 ? static_cast<double>(parts) / static_cast<double>(of_parts) : 1);
   }
@@ -47,8 +48,8 @@ class WorkProgress {
     int exceptions_;
   };
 
-  /// A listener for a WorkProgress in another thread, on which this thread waits: it passes that thread's
-  /// progress on to this one's listener.
+  /// Returns a listener for a WorkProgress in another thread, on which this thread waits: it passes that
+  /// thread's progress on to this one's listener.
   static Listener of_this_thread();
 
  private:

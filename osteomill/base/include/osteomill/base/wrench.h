@@ -20,7 +20,7 @@ struct Wrench {
   }
 };
 
-/// The most that a device may be asked for.
+/// The greatest force and torque that a device may be asked for.
 struct WrenchLimits {
   double force_N = 20.0;
   double torque_Nmm = 500.0;
@@ -36,8 +36,9 @@ enum class WrenchFault : unsigned char {
   not_finite = 4,
   /// The device gave no finite pose; zero was sent.
   pose_not_finite = 5,
-  /// The device moved further in a tick than a hand can, or the tick came too late; zero was sent.
+  /// The device moved further in a tick than a hand can; zero was sent.
   pose_jumped = 6,
+  /// The tick came too late; zero was sent.
   tick_late = 7,
   /// Something else than what was asked for was sent: the wrench is being faded in, was changing too fast, or
   /// is damped.
@@ -47,6 +48,7 @@ enum class WrenchFault : unsigned char {
   held_back = 9,
 };
 
+/// A wrench that may be sent, and why it is not the one that was asked for.
 struct SafeWrench {
   Wrench wrench;
   WrenchFault fault = WrenchFault::none;
@@ -56,14 +58,14 @@ struct SafeWrench {
 /// zero if any component is not finite. Safe in the haptic tick.
 SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) noexcept;
 
-/// Limits how fast the vectors of force and torque may change; no limit unless set.
+/// The limits to how fast the vectors of force and torque may change (`approach`); no limit unless set.
 struct WrenchRates {
   static constexpr double kAny = std::numeric_limits<double>::infinity();
   double force_N_s = kAny;
   double torque_Nmm_s = kAny;
 };
 
-/// For a person's hand: 20 N and 500 N mm are gone within 5 ms.
+/// The rates for a person's hand, with which 20 N and 500 N mm are gone within 5 ms.
 inline constexpr WrenchRates kHandWrenchRates{4000, 1e5};
 
 /// Returns `to`, or the wrench as far from `from` towards it as the rates allow in `dt_s`. Safe in the haptic

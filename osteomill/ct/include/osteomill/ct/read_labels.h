@@ -28,6 +28,7 @@ struct LabelFiles {
 /// Returns whether files of such a name are label maps on their own, as `read_labels` reads them.
 bool is_label_file(const std::filesystem::path& path);
 
+/// A label map as read, and what a user should know about it.
 struct LabelsRead {
   std::shared_ptr<const LabelMap> map;
   /// One sentence each, naming the file.

@@ -12,14 +12,14 @@
 
 namespace osteomill {
 
-/// Holds the name and the colour that a file gives a label.
+/// The name and the colour that a file gives a label (Scan::labels).
 struct LabelName {
   int value = 0;
   std::string name;
   std::optional<std::array<std::uint8_t, 3>> colour{};
 };
 
-/// A scan as read.
+/// A scan as `read_scan` reads it.
 struct Scan {
   DensityGrid grid;
   /// The file or folder as the user named it.
@@ -39,7 +39,7 @@ struct Scan {
   std::vector<LabelName> labels = {};
 };
 
-/// Chooses what to read, and how much of the machine that may take.
+/// The choice of what to read, and of how much of the machine that may take.
 struct ReadOptions {
   /// The DICOM series to read if there are several: its number (from 1; 3.1 for one of several volumes in a
   /// series), its UID or the beginning of that. If empty, the largest CT is read, with a warning.

@@ -10,7 +10,7 @@
 
 namespace osteomill {
 
-/// Tells how much of a scan a label has.
+/// How much of a scan a label has.
 struct LabelSummary {
   Label label;
   std::size_t voxels = 0;

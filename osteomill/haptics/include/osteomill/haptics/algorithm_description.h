@@ -15,6 +15,7 @@ namespace osteomill {
 /// The values that the user gives to settings of the algorithms. A setting without one keeps the algorithm's
 /// default.
 struct HapticSettings {
+  /// A value for one setting.
   struct Named {
     /// The algorithm whose setting of the name `setting` is meant. If empty, `setting` is an option
     /// (SettingDescription::option), and every algorithm that has a setting with this option takes the value.
@@ -32,7 +33,7 @@ struct HapticSettings {
     clear_option(option);
     named.push_back({"", option, value});
   }
-  /// Leaves it open again.
+  /// Takes an option's value back, so that every algorithm has its default again.
   void clear_option(const std::string& option) {
     std::erase_if(named, [&](const Named& one) { return one.algorithm.empty() && one.setting == option; });
   }
@@ -53,10 +54,12 @@ struct AlgorithmId {
   friend bool operator==(const AlgorithmId& a, std::string_view named) { return a.name == named; }
   friend bool operator<(const AlgorithmId& a, const AlgorithmId& b) { return a.label < b.label; }
 };
+/// Returns the algorithm's name, by which people choose it.
 inline const std::string& name_of(const AlgorithmId& algorithm) {
   return algorithm.name;
 }
 
+/// Returns whether name, label and colour are such as recordings, figures and file names take.
 bool is_usable(const AlgorithmId& algorithm);
 /// Returns whether a name holds letters, digits, '-' and '_' alone.
 bool is_plain_name(std::string_view name);

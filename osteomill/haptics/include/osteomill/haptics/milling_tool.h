@@ -16,11 +16,12 @@ struct MillingTool {
 /// Throws std::invalid_argument, naming the size, if a size is not positive and finite.
 void require_valid(const MillingTool& tool);
 
-/// An axis-aligned box in T.
+/// An axis-aligned box in T (bounding_box()).
 struct ToolBox {
   Vec3 min_mm;
   Vec3 max_mm;
 };
+/// Returns the smallest box that holds the tool.
 ToolBox bounding_box(const MillingTool& tool);
 
 /// The distance of a point to the tool's surface, negative inside, and the unit direction in which it grows

@@ -11,6 +11,7 @@ namespace osteomill {
 /// shaft to its end. Throws std::invalid_argument if `count` is below 1. Allocates: not for the tick.
 std::vector<Vec3> centreline_vertices(const MillingTool& tool, int count);
 
+/// The paper's number of vertices on the burr's sphere.
 inline constexpr int kSphereVertices = 24;
 
 /// Returns the burr's sphere as 24 points in T: the vertices of a snub cube, the arrangement of 24 points on
@@ -27,9 +28,10 @@ std::vector<Vec3> spiral_directions(int count);
 /// `count` is below 1. Allocates: not for the tick.
 std::vector<Vec3> sphere_vertices(const MillingTool& tool, int count);
 
+/// The paper's number of vertices on a slice of the shaft.
 inline constexpr int kSliceVertices = 8;
 
-/// One circle round the shaft: its centre and points evenly on it, in T.
+/// One circle round the shaft: its centre and points evenly on it, in T (slice_vertices()).
 struct ShaftSlice {
   Vec3 centre_T;
   std::vector<Vec3> vertices_T;

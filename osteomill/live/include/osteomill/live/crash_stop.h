@@ -44,7 +44,8 @@ class CrashStop {
   static void engage() noexcept;
 };
 
-/// A device that a haptic thread drives, known to CrashStop as long as this object lives.
+/// Makes a device that a haptic thread drives known to CrashStop as long as this object lives. HapticThread
+/// has one; only a loop of its own that is to stop as safely needs another.
 class DrivenDevice {
  public:
   /// `device` outlives this object. No thread drives it yet.

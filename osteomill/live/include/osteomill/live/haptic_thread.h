@@ -18,11 +18,12 @@
 
 namespace osteomill {
 
-/// Is told of every tick in the haptic thread, after the wrench has gone out: its record, the bone, and where
-/// it changed. Must keep to the rules of the tick: no allocation, lock, log, exception or system call.
+/// A function that the haptic thread calls in every tick, after the wrench has gone out: with its record, the
+/// bone, and where it changed. Must keep to the rules of the tick: no allocation, lock, log, exception or
+/// system call.
 using TickListener = std::function<void(const TickRecord&, const Volume&, const VolumeChange&)>;
 
-/// The state after a tick.
+/// The state after a tick (HapticThread::state).
 struct LiveState {
   TickRecord record;
   bool spindle_on = false;

@@ -19,7 +19,7 @@
 
 namespace osteomill {
 
-/// A bone made ready for milling, which takes seconds.
+/// A bone made ready for milling, which takes seconds (prepare_milling()).
 struct PreparedMilling {
   /// The fingerprint of the scan, before anything was milled (fingerprint_of).
   std::uint64_t scan_hash = 0;

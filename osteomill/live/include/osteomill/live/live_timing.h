@@ -15,9 +15,10 @@ namespace osteomill {
 /// Nanoseconds of the system's monotonic clock.
 using Nanoseconds = std::int64_t;
 
+/// Returns the time of that clock. Safe in the haptic tick.
 Nanoseconds monotonic_now_ns() noexcept;
 
-/// The deadline `periods` after an earlier one, met or not.
+/// The deadline `periods` after an earlier one, met or not (next_deadline()).
 struct NextDeadline {
   Nanoseconds deadline_ns;
   int periods;

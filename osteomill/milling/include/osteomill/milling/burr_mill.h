@@ -25,8 +25,9 @@ struct CuttingSettings {
 /// the specific energy. Throws std::invalid_argument if a setting or the radius is not a positive number.
 double removal_rate_mm3_per_Ns(const CuttingSettings& cutting, double burr_radius_mm);
 
+/// The settings by which a BurrMill mills and the hand feels it (`milling_settings` of a MillingSetup).
 struct MillingSettings {
-  /// kappa: mm^3 of reference density removed a newton of burr force and second.
+  /// kappa: the bone removed per newton of burr force and second, in mm^3 of reference density.
   double removal_rate_mm3_per_Ns =
       osteomill::removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm);
   /// The cutting force along the burr's speed as a share of its force, if the hand is to feel it

@@ -42,12 +42,13 @@ struct CuttingBall {
   double radius_mm = 0;
 };
 
-/// Lists of one entry a voxel, with room for `kLanes` entries behind the last.
+/// The lists in which CutVoxels gathers, with one entry a voxel and room for `kLanes` entries behind the
+/// last.
 struct CutLists {
   static constexpr std::size_t kLanes = 8;
   std::size_t size = 0;
-  /// The squared distance from the ball's centre, the distance ahead of it, and voxels a mm along the
-  /// ball's normal.
+  /// The squared distance from the ball's centre, the distance ahead of it, and the number of voxels per mm
+  /// along the ball's normal.
   std::vector<float> distance2_mm2, ahead_mm, voxels_per_mm;
   std::vector<int> columns;
   std::vector<float> before, after;

@@ -34,6 +34,7 @@ class CuttingReaction {
   /// Takes in, after each tick, what was removed with this force on the bone in `dt_s`. Safe in the haptic
   /// tick.
   void follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) noexcept;
+  /// Forgets the reaction, as before the first tick.
   void reset() noexcept { wrench_ = {}; }
 
  private:

@@ -24,9 +24,9 @@ class Socket;
 /// own, for which neither the haptic thread nor anyone else waits longer than such a box takes to be copied.
 class BoneSender {
  public:
-  /// To HOST:PORT. `bone` outlives this. Throws InputError if the address is none, nothing listens there,
-  /// or the bone does not fit into a message (2 GiB). At its end the bone is sent as it is by then, if
-  /// that takes no longer than two seconds.
+  /// Connects to the address HOST:PORT. `bone` outlives this. Throws InputError if the address is none,
+  /// nothing listens there, or the bone does not fit into a message (2 GiB). At its end the bone is sent as
+  /// it is by then, if that takes no longer than two seconds.
   BoneSender(const BoneFollower& bone, const std::string& address, double tool_rate_Hz);
 
   /// Sets the state of the tool that is sent from now on. Any thread.

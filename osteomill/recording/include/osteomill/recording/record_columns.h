@@ -9,9 +9,12 @@
 
 namespace osteomill {
 
-/// Flags of the fields of a TickRecord: the CSV log has it (recordings have all); a clock measured it, so
-/// that it differs from run to run; it is not finite if the device gave no pose.
-inline constexpr unsigned kInLog = 1, kMeasuredTime = 2, kMayBeNotFinite = 4;
+/// A flag of the fields of a TickRecord: the CSV log has it (recordings have all).
+inline constexpr unsigned kInLog = 1;
+/// A flag of the fields of a TickRecord: a clock measured it, so that it differs from run to run.
+inline constexpr unsigned kMeasuredTime = 2;
+/// A flag of the fields of a TickRecord: it is not finite if the device gave no pose.
+inline constexpr unsigned kMayBeNotFinite = 4;
 
 /// Returns the columns of recordings and logs, those of the CSV log in its order.
 template <>

@@ -31,8 +31,8 @@ class Recorder {
   /// Number of records (16 s at 1000 Hz) that can wait to be written before any is lost.
   static constexpr std::size_t kCapacity = 16384;
 
-  /// When the first session's records are written: at once, for a session that begins with the recording, or
-  /// from when `begin_session` says what it began from.
+  /// The time from which the first session's records are written: at once, for a session that begins with the
+  /// recording, or from when `begin_session` says what it began from.
   enum class FirstSession : unsigned char { begins_at_once, begins_when_announced };
 
   /// The fate of the file if the recorder is destroyed without `close`. It is removed in any case if nothing

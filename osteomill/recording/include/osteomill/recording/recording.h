@@ -32,10 +32,12 @@ struct RunPicture {
   std::vector<unsigned char> png;
 };
 
-/// The names of the pictures that reports lay side by side: the bone before the run and after it, and after
-/// it seen along the entry if the other view does not show what was removed.
+/// The name of the picture of the bone before the run; reports lay the pictures side by side.
 inline constexpr std::string_view kPictureBefore = "before";
+/// The name of the picture of the bone after the run.
 inline constexpr std::string_view kPictureAfter = "after";
+/// The name of the picture after the run, seen along the entry: there if the other view does not show what
+/// was removed.
 inline constexpr std::string_view kPictureAlong = "along";
 
 /// The key of the further setting of a run that has no pictures because OpenGL could not be had.

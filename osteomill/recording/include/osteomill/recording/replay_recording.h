@@ -34,7 +34,7 @@ struct ReplayHooks {
 /// of another scan, lost ticks, or what it goes by is unknown here or out of range.
 void replay_recording(const Volume& scan, const Recording& recording, const ReplayHooks& hooks);
 
-/// The first tick in which a recording and its replay differ.
+/// The first tick in which a recording and its replay differ (Verification).
 struct Difference {
   std::size_t record = 0;
   double time_s = 0;
@@ -42,6 +42,7 @@ struct Difference {
   std::string what;
 };
 
+/// The result of `verify_recording`.
 struct Verification {
   /// The number of ticks that were the same, and that of those after which the bone was compared with the
   /// recording's.

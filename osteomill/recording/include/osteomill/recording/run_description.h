@@ -29,16 +29,17 @@ struct RunSetting {
 /// The key of the further setting that holds the command by which the run can be repeated (reports show it).
 inline constexpr std::string_view kCommandLineKey = "command_line";
 
-/// The key of the one that says which parts of its plan a run did not reach, in words; a recording that
-/// reached all has none.
+/// The key of the further setting that names, in words, the parts of its plan that a run did not reach; a
+/// recording that reached all has none.
 inline constexpr std::string_view kNotReachedKey = "not_reached";
 
-/// The key of the one that says by which comparison a recording was made: the same text in all of its
-/// recordings, and in no others. Recordings that are not part of a comparison have none.
+/// The key of the further setting that names the comparison by which a recording was made: the same text in
+/// all of its recordings, and in no others. Recordings that are not part of a comparison have none.
 inline constexpr std::string_view kComparisonKey = "comparison";
 
-/// The keys of the stiffness of a simulated hand, in N/mm, and of its damping, in N s/mm.
+/// The key of the stiffness of a simulated hand, in N/mm.
 inline constexpr std::string_view kHandStiffnessKey = "hand.stiffness";
+/// The key of the damping of a simulated hand, in N s/mm.
 inline constexpr std::string_view kHandDampingKey = "hand.damping";
 
 /// The place and time at which a recording was made. Holds nothing about a patient.
@@ -84,7 +85,7 @@ struct RunDescription {
   std::vector<Label> labels;
 };
 
-/// The name that a recording has for a part of a run's description.
+/// The name that a recording has for a part of a run's description (visit_attributes()).
 struct RunAttribute {
   std::string name;
   /// True if it is part of what was run, by which runs can be compared; false if it says when, where or which
@@ -143,13 +144,13 @@ void put_setting(RunDescription& run, const FieldDescription& field, double valu
 std::optional<double> taken_setting(const RunDescription& run, const FieldDescription& field,
                                     const std::filesystem::path& path);
 
-/// Puts every field that files have (FieldDescription::name) among a run's settings, and takes them back from
-/// there. Throws as `taken_setting`.
+/// Puts every field that files have (FieldDescription::name) among a run's settings.
 template <typename Struct>
 void put_fields(RunDescription& run, const Struct& s) {
   for (const Field<Struct>& setting : fields_of<Struct>())
     if (!setting.name.empty()) put_setting(run, setting, setting.get(s));
 }
+/// Takes every field that files have back from a run's settings. Throws as `taken_setting`.
 template <typename Struct>
 void take_fields(const RunDescription& run, const std::filesystem::path& path, Struct& s) {
   for (const Field<Struct>& setting : fields_of<Struct>()) {
@@ -163,15 +164,17 @@ struct SessionSettings {
   MillingSetup setup;
   BoneDensities densities;
 };
+/// Returns every number of a session's settings, except those of its algorithm.
 template <>
 const std::vector<Field<SessionSettings>>& fields_of<SessionSettings>();
 
-/// Puts all of them into a run's description, in the place of those that it has. `sample_points` is the
-/// number that the algorithm works with.
+/// Puts all settings of a session into a run's description, in the place of those that it has.
+/// `sample_points` is the number that the algorithm works with.
 void set_session_settings(RunDescription& run, const SessionSettings& session, int sample_points);
 
-/// Reads them back, without the algorithm: the run has only its name, and the caller knows which one is
-/// meant. Throws InputError, naming the recording's `path`, if a setting is missing.
+/// Returns a session's settings as the run's description has them, without the algorithm: the run has only
+/// its name, and the caller knows which one is meant. Throws InputError, naming the recording's `path`, if a
+/// setting is missing.
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path);
 
 /// Returns all that a recording says about a session on this bone, without what the caller alone knows and

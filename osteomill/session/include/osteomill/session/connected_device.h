@@ -16,6 +16,7 @@
 
 namespace osteomill {
 
+/// Opens a device: a function that returns its connection, or throws InputError.
 using OpenConnection = std::function<std::unique_ptr<Connection>()>;
 
 /// The state of a device, for people to read. From any thread.
@@ -90,16 +91,20 @@ class ConnectedDevice final : public Device {
 
   const DeviceCapabilities& capabilities() const { return capabilities_; }
 
-  /// Set how the handle moves the tool, and from where the operator looks (from the front unless set). For
-  /// one other thread (the window's). The tool stays where it is. Throws std::invalid_argument as Workspace.
+  /// Sets how the handle moves the tool, which stays where it is. For one other thread (the window's). Throws
+  /// std::invalid_argument as Workspace.
   void set_workspace(const WorkspaceSettings& settings);
+  /// Sets the rotation of the operator's view, from its axes V to W (from the front unless set). For the
+  /// thread that sets the workspace.
   void set_view(const Quat& R_WV);
   const WorkspaceSettings& workspace() const { return requested_mapping_.settings; }
   /// Returns the most that the device gives and `limits` allow, in W (Workspace::limits_W).
   WrenchLimits limits_W(const WrenchLimits& limits) const {
     return Workspace(capabilities_, workspace()).limits_W(limits);
   }
+  /// Holds the clutch, or lets it go, as the handle's second button does. Any thread.
   void set_clutched(bool clutched) { clutched_.store(clutched, std::memory_order_relaxed); }
+  /// Returns the state of the device. Any thread; not for the tick.
   DeviceReport report() const;
 
   Pose read_pose() noexcept override;

@@ -7,7 +7,7 @@
 
 namespace osteomill {
 
-/// The abilities of a device, as it reports them or its maker states them.
+/// The abilities of a device, as it reports them or its maker states them (Connection::capabilities).
 struct DeviceCapabilities {
   /// Maker, model and, if it has one, serial number. The device's workspace is kept under this name.
   std::string name;
@@ -36,6 +36,7 @@ struct DeviceInput {
   const char* remark = nullptr;
 };
 
+/// The result of a call of a Connection.
 enum class ConnectionStatus : unsigned char {
   /// The input is one that the device has measured since the last, by its own word (a count, a time stamp, a
   /// status); the wrench has gone out.

@@ -8,8 +8,8 @@
 
 namespace osteomill {
 
-/// Returns the fraction of a requested force that the sent one gives in its direction, 0 to 1. Safe in the
-/// haptic tick.
+/// Returns the share, 0 to 1, of a force that was asked for that the force which was sent gives in its
+/// direction. Safe in the haptic tick.
 inline double sent_fraction(const Vec3& asked, const Vec3& sent) noexcept {
   return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
 }
@@ -21,12 +21,12 @@ inline double sent_fraction(const Vec3& asked, const Vec3& sent) noexcept {
 class Device {
  public:
   virtual ~Device() = default;
-  /// The handle's pose now, as a tool pose in W. Not finite if the device has none to give.
+  /// Returns the handle's pose now, as a tool pose in W. Not finite if the device has none to give.
   virtual Pose read_pose() OSTEOMILL_NONBLOCKING = 0;
   /// Sends a wrench that is already safe (finite, within the limits).
   virtual void write_wrench(const Wrench& wrench) OSTEOMILL_NONBLOCKING = 0;
-  /// Returns the fraction of the written force that has reached the hand (sent_fraction). Milling removes
-  /// bone for that fraction alone.
+  /// Returns the share, 0 to 1, of the force that was written that has reached the hand (sent_fraction). Milling
+  /// removes bone for that share alone.
   virtual double delivered_fraction() const noexcept OSTEOMILL_NONBLOCKING { return 1; }
   /// Returns whether what is written from now on reaches a hand; asked after `read_pose`. A device that was
   /// not driven since the last tick, however shortly, returns false once: its hand may have sunk into bone,

@@ -72,7 +72,7 @@ class Tremor {
   /// negative or not finite.
   Tremor(std::uint64_t seed, double rms);
 
-  /// Safe in the haptic tick.
+  /// Returns the displacement in mm, or the rotation vector in rad, at a time. Safe in the haptic tick.
   Vec3 at(double time_s) const noexcept;
 
  private:
@@ -86,13 +86,14 @@ class Tremor {
   std::array<std::array<Sine, kSines>, 3> axes_;
 };
 
-/// Random numbers that are the same bits with every compiler and library: the engine is fixed by the
-/// standard, the mapping to a range is our own (std::uniform_real_distribution is left to the library).
+/// Draws random numbers that are the same bits with every compiler and library, as of a hand (random_hand())
+/// or its Tremor: the engine is fixed by the standard, the mapping to a range is our own
+/// (std::uniform_real_distribution is left to the library).
 class SeededRandom {
  public:
   explicit SeededRandom(std::uint64_t seed) : engine_(seed) {}
 
-  /// Uniform in [least, greatest), in steps of 2^-53 of the range.
+  /// Returns the next number, uniform in [min, max), in steps of 2^-53 of the range.
   double uniform(double min, double max) {
     return min + (max - min) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
   }

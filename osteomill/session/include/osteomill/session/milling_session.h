@@ -66,10 +66,10 @@ class MillingSession {
   /// out of range or the tool cannot work (`require_workable`).
   MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
 
-  /// One haptic tick, all of it: reads the device's pose, computes and sends the wrench, removes as much bone
-  /// as the force that was sent pays for, and tells the device that the tick is done. A wrench that is not
-  /// finite, or a device pose that is not, sends zero and is recorded as the record's fault. Real-time safe:
-  /// no allocation, lock, log or system call, and no exception but the device's.
+  /// Runs one haptic tick, all of it: reads the device's pose, computes and sends the wrench, removes as much
+  /// bone as the force that was sent pays for, and tells the device that the tick is done. A wrench that is
+  /// not finite, or a device pose that is not, sends zero and is recorded as the record's fault. Real-time
+  /// safe: no allocation, lock, log or system call, and no exception but the device's.
   TickRecord tick(Device& device, const TickInput& input) OSTEOMILL_NONBLOCKING;
 
   /// Returns the guard between the algorithm and the hand. As safe as `tick`.
@@ -95,11 +95,13 @@ class MillingSession {
   const VolumeChange& last_change() const { return last_change_; }
   /// Returns HapticStep::intersection_W of the last tick, to be drawn.
   const std::optional<Vec3>& intersection_W() const { return intersection_W_; }
+  /// Returns the bone removed since the start, in mm^3 of reference density.
   double removed_mm3() const { return removed_mm3_; }
   /// Goes on counting from what was removed of this bone before.
   void count_removed_from(double removed_mm3) { removed_mm3_ = removed_mm3; }
 
   const Volume& volume() const { return *volume_; }
+  /// Returns the bone for a session that goes on with it.
   const std::shared_ptr<Volume>& shared_volume() const { return volume_; }
   const HapticAlgorithm& algorithm() const { return *algorithm_; }
   /// Returns the setup that it was made with.

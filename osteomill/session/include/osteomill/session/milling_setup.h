@@ -39,11 +39,17 @@ struct MillingSetup {
   double tick_s = 1e-3;
 };
 
-/// Flags of the fields of a MillingSetup. kOfTheTool, kOfTheCutting and kOfTheLimits name the part of the
-/// setup. kOfTheRecording: a replay keeps the recording's value, because a recording is of one scan, milled
-/// with one tool. kFollows: unless set, the value follows from other fields.
-inline constexpr unsigned kOfTheTool = 1, kOfTheCutting = 2, kOfTheLimits = 4, kOfTheRecording = 8,
-                          kFollows = 16;
+/// A flag of the fields of a MillingSetup: a part of the tool.
+inline constexpr unsigned kOfTheTool = 1;
+/// A flag of the fields of a MillingSetup: a part of the cutting.
+inline constexpr unsigned kOfTheCutting = 2;
+/// A flag of the fields of a MillingSetup: one of the device's limits.
+inline constexpr unsigned kOfTheLimits = 4;
+/// A flag of the fields of a MillingSetup: a replay keeps the recording's value, because a recording is of
+/// one scan, milled with one tool.
+inline constexpr unsigned kOfTheRecording = 8;
+/// A flag of the fields of a MillingSetup: unless set, the value follows from other fields.
+inline constexpr unsigned kFollows = 16;
 
 /// Returns every number of a setup except the tick and the algorithm's own settings, which its description
 /// has.

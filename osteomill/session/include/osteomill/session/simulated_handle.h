@@ -41,7 +41,7 @@ class SimulatedHandle {
   /// At rest at `X_WD`. Throws std::invalid_argument as `require_valid` does.
   SimulatedHandle(const HandleSettings& settings, const Pose& X_WD);
 
-  /// At rest at `X_WD`, with nothing commanded.
+  /// Puts the handle at `X_WD`, at rest, with nothing commanded.
   void reset(const Pose& X_WD) noexcept;
 
   /// Returns the pose as the encoder reads it now: position to whole steps in W, orientation to whole steps
@@ -54,12 +54,13 @@ class SimulatedHandle {
   void advance(const Wrench& other) noexcept;
 
   const HandleSettings& settings() const { return settings_; }
-  /// The true pose and velocity.
+  /// Returns the true pose, without the encoder's steps.
   const Pose& pose() const { return X_WD_; }
+  /// Returns the true velocity.
   const Twist& velocity() const { return velocity_; }
   /// Returns the wrench that the motors gave in the last substep.
   const Wrench& motor_wrench() const { return motor_wrench_; }
-  /// Kinetic energy in N mm (mJ).
+  /// Returns the kinetic energy in N mm (mJ).
   double kinetic_energy_Nmm() const;
 
  private:

@@ -11,6 +11,7 @@
 
 namespace osteomill {
 
+/// The settings of a SimulatedOperator.
 struct OperatorSettings {
   HandleSettings handle;
   HandSettings hand;

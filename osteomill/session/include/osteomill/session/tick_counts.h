@@ -12,18 +12,20 @@
 
 namespace osteomill {
 
-/// Counts the ticks whose wrench could not be sent as it was. `add` is safe in the haptic tick.
+/// Counts the ticks whose wrench could not be sent as it was, from every TickRecord in turn. `add` is safe in
+/// the haptic tick.
 class FaultCount {
  public:
   void add(const TickRecord& record) noexcept;
-  /// Wrenches that were shortened to the device's limits.
+  /// Returns how many wrenches were shortened to the device's limits.
   int limited() const;
-  /// Ticks that sent zero: the wrench was no number; the device gave no pose; the pose jumped or the tick
-  /// came too late to be safe.
+  /// Returns how many ticks sent zero because the wrench was not finite.
   int not_finite() const;
+  /// Returns how many ticks sent zero because the device gave no pose.
   int without_pose() const;
+  /// Returns how many ticks sent zero because the pose jumped or the tick came too late.
   int unsafe() const;
-  /// Ticks that sent zero since the hand was held back (WrenchGuard).
+  /// Returns how many ticks sent zero because the hand was held back (WrenchGuard).
   int held_back() const;
   /// Returns a sentence about them for people to read; nothing if there were none. Not for the tick.
   std::optional<std::string> sentence() const;
@@ -39,6 +41,7 @@ class FaultCount {
 /// tick.
 class LabelCount {
  public:
+  /// The counts of one label.
   struct Entry {
     /// In mm^3 of reference density, as TickRecord counts.
     double removed_mm3 = 0;
@@ -73,7 +76,7 @@ class LabelCount {
   std::vector<Entry> entries_;
 };
 
-/// A line for each label that was cut or touched, without line feeds.
+/// Returns a line for each label that was cut or touched, without line feeds.
 std::vector<std::string> label_lines(const LabelCount& count);
 
 }  // namespace osteomill

@@ -32,6 +32,7 @@ std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
 /// A device that gives the pose it was put at, and remembers the wrench it was sent: for replays and tests.
 class PosedDevice : public Device {
  public:
+  /// Sets what the device gives from the next reading on.
   void put(const Pose& X_WD, double delivered_fraction = 1, bool is_driven = true) noexcept {
     pose_ = X_WD;
     delivered_fraction_ = delivered_fraction;

@@ -45,8 +45,8 @@ class VirtualHand final : public Device {
   Pose X_W_target_;
 };
 
-/// A hand for pointing devices: as firm as the simulated operator's, without tremor, and damped so that it
-/// does not swing with the default handle.
+/// Returns a hand for pointing devices: as firm as the simulated operator's, without tremor, and damped so
+/// that it does not swing with the default handle.
 HandSettings pointing_hand();
 
 }  // namespace osteomill

@@ -46,8 +46,9 @@ class Workspace {
 
   /// Sets valid settings, and the operator's view. The way of moving changes, so anchor again.
   void set(const WorkspaceSettings& settings, const Quat& R_WV);
-  /// From now on the handle at `X_DH` holds the tool at `X_WT`.
+  /// Lets the handle at `X_DH` hold the tool at `X_WT` from now on.
   void anchor(const Pose& X_WT, const Pose& X_DH) noexcept;
+  /// Returns the pose of the tool in W that the handle at `X_DH` holds.
   Pose tool_pose(const Pose& X_DH) const noexcept;
 
   /// Returns the wrench that the device is to send for one on the tool. By virtual work: whatever small

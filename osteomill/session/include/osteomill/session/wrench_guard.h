@@ -16,7 +16,7 @@ struct GuardSettings {
   WrenchRates rates = kHandWrenchRates;
   /// The time of a blend from the wrench sent before to the one asked for, when they need not agree.
   double blend_s = 0.1;
-  /// The furthest that a device may move and turn in a tick, and the longest tick; beyond them zero is sent.
+  /// The furthest that a device may move and turn in a tick, and the longest tick; zero is sent beyond them.
   double max_move_mm = 5;
   double max_turn_rad = 0.2;
   double max_tick_s = 0.005;
@@ -91,6 +91,7 @@ class WrenchGuard {
   /// if no hand is protected (`blend_s` is 0).
   void hold_back() noexcept;
   bool is_held_back() const { return held_back_; }
+  /// The force and the torque up to which an algorithm asks for next to nothing.
   static constexpr double kFreeForce_N = 0.5;
   static constexpr double kFreeTorque_Nmm = 12.5;
   /// Brings the wrench down to zero slowly, from now on, and keeps it there until `restart`.

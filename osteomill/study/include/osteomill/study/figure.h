@@ -13,13 +13,14 @@
 
 namespace osteomill {
 
-/// A figure that was drawn.
+/// The files of a figure that was drawn (draw_figure()).
 struct Figure {
   std::filesystem::path svg;
   std::filesystem::path png;
 };
 
-/// Panels of one size in rows and columns, below what stands at the figure's head. In pixels.
+/// The grid that `draw_panels` draws: panels of one size in rows and columns, below what stands at the
+/// figure's head. In pixels.
 struct PanelGrid {
   double height_px = 0;
   std::size_t columns = 1;
@@ -32,7 +33,7 @@ struct PanelGrid {
   static constexpr double kWidth_px = 1150;
 };
 
-/// A figure to be drawn as SVG and as PNG from one description.
+/// A figure to be drawn as SVG and as PNG from one description (draw_figure()).
 struct FigureScript {
   /// The name of its files, without extension.
   std::string name;
@@ -49,21 +50,26 @@ struct FigureScript {
   std::string data(std::string_view bytes);
 };
 
-/// One panel's room: its upper left corner, from the figure's lower left, and its size.
+/// One panel's room in a PanelGrid: its upper left corner, from the figure's lower left, and its size.
 struct PanelCell {
   double left_px, top_px, wide_px, high_px;
 };
+/// Returns the room of the panel in this column and row, both counted from 0.
 PanelCell panel_cell(const PanelGrid& grid, std::size_t column, std::size_t row);
 
-/// gnuplot commands: axes and grid lines ("y", or empty for both) of all panels; where one's axes stand; and
-/// a row of names across the figure's head, each in its colour and so wide.
+/// Returns the gnuplot commands that begin a multiplot, with the axes and grid lines ("y", or empty for both)
+/// of all panels.
 std::string begin_panels(std::string_view grid_lines);
+/// Returns the gnuplot commands that place one panel's axes.
 std::string panel_margins(const PanelGrid& grid, const PanelCell& cell);
+/// A name in the legend of a figure: its colour ("#rrggbb") and the width that it takes (legend_row()).
 struct LegendEntry {
   std::string text;
   std::string_view colour;
   double wide_px;
 };
+/// Returns the gnuplot commands for a row of names across the head of a PanelGrid, as wide as the entries
+/// say, in its middle.
 std::string legend_row(const PanelGrid& grid, const std::vector<LegendEntry>& entries);
 
 /// Runs gnuplot and puts NAME.svg and NAME.png into `folder`. Throws InputError if gnuplot or writing
@@ -77,13 +83,13 @@ Figure draw_panels(
     const std::function<std::string(std::size_t column, std::size_t row, FigureScript& script)>& panel,
     const std::filesystem::path& folder);
 
-/// The indices of a curve's samples that a drawing about `bins` pixels wide needs: of each of `bins` equal
-/// parts the least and the greatest sample, in order, so that no spike is lost. All indices if there are
-/// few samples.
+/// Returns the indices of a curve's samples that a drawing about `bins` pixels wide needs: of each of `bins`
+/// equal parts the least and the greatest sample, in order, so that no spike is lost. All indices if there
+/// are few samples.
 std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::size_t bins);
 
-/// Samples that stand for a cloud of unit directions: of each part its first sample and the one farthest from
-/// `centre`.
+/// Returns the indices of samples that stand for a cloud of unit directions: of each of `bins` equal parts
+/// its first sample and the one farthest from `centre`.
 std::vector<std::size_t> thin_out_cloud(std::span<const Vec3> directions, const Vec3& centre,
                                         std::size_t bins);
 
@@ -92,7 +98,8 @@ std::vector<std::size_t> thin_out_cloud(std::span<const Vec3> directions, const 
 void run_gnuplot(const std::filesystem::path& folder, const std::string& script,
                  const std::string& program = "gnuplot");
 
-/// `text` between quotes that gnuplot takes as they are, without line breaks and other control characters.
+/// Returns `text` between quotes that gnuplot takes as they are, without line breaks and other control
+/// characters.
 std::string gnuplot_quoted(const std::string& text);
 
 }  // namespace osteomill

@@ -8,15 +8,20 @@
 
 namespace osteomill {
 
+/// The verdict on a Finding. `not_settled`: the recordings speak neither for it nor against it;
+/// `not_recorded`: runs that it needs are not there; `lost_contact`: a run that it needs had not enough
+/// contact.
 enum class Verdict : unsigned char { agrees, does_not_agree, not_settled, not_recorded, lost_contact };
 
-/// "agrees", "does not agree", "not settled", "not recorded", "lost contact".
+/// Returns "agrees", "does not agree", "not settled", "not recorded" or "lost contact".
 std::string_view name_of(Verdict verdict);
+/// Returns whether the recordings sufficed to apply the finding's rule.
 inline bool is_tested(Verdict verdict) {
   return verdict <= Verdict::not_settled;
 }
 
-/// One thing that the paper says it found, held against the recordings by a rule that is stated.
+/// One thing that the paper says it found, held against the recordings by a rule that is stated
+/// (check_findings()).
 struct Finding {
   /// In its own words, restored where its text has gaps.
   std::string paper_says;
@@ -36,8 +41,8 @@ inline constexpr std::array<double, 3> kGrips{0.5, 1, 2};
 /// tried, not a number if contact was lost.
 using GripForces = std::vector<double>;
 
-/// The nine findings of the paper's section 8, as its text has them. One that needs runs which are not there
-/// is `not_recorded`, one that needs a run that had not enough contact `lost_contact`.
+/// Returns the nine findings of the paper's section 8, as its text has them. One that needs runs which are
+/// not there is `not_recorded`, one that needs a run that had not enough contact `lost_contact`.
 std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips);
 
 }  // namespace osteomill

@@ -10,7 +10,7 @@
 
 namespace osteomill {
 
-/// The greatest stiffness at which a wall stays passive.
+/// The greatest stiffness at which a wall stays passive (seek_stiffness_limit()).
 struct StiffnessLimit {
   enum class Kind : unsigned char {
     /// To within 3 %.
@@ -27,15 +27,15 @@ struct StiffnessLimit {
   double felt_N_per_mm = 0;
 };
 
-/// Seeks the limit from `start_N_per_mm` by doubling or halving until it is enclosed, then by bisection of
-/// the logarithm. If the wall is passive, not passive and passive again as it gets stiffer, it finds one
-/// of the limits.
+/// Returns the greatest passive stiffness, sought from `start_N_per_mm` by doubling or halving until it is
+/// enclosed, then by bisection of the logarithm. If the wall is passive, not passive and passive again as it
+/// gets stiffer, it finds one of the limits.
 StiffnessLimit seek_stiffness_limit(const std::function<WallPressResult(double stiffness_N_per_mm)>& press,
                                     double start_N_per_mm);
 
-/// The greatest stiffness of an ideal wall, sampled every `tick_s` and felt `delay_s` later, that a device of
-/// this damping keeps passive when it swings slowly against the tick: 2 b / (T + 2 tau), after Colgate and
-/// Schenkel (1997) and Diolaiti et al. (2006).
+/// Returns the greatest stiffness of an ideal wall, sampled every `tick_s` and felt `delay_s` later, that a
+/// device of this damping keeps passive when it swings slowly against the tick: 2 b / (T + 2 tau), after
+/// Colgate and Schenkel (1997) and Diolaiti et al. (2006).
 double passive_stiffness_rule_N_per_mm(double damping_Ns_per_mm, double tick_s, double delay_s);
 
 /// The greatest stiffness of an algorithm on a device of this damping and delay.
@@ -49,13 +49,13 @@ struct PassivityRow {
   double rule_N_per_mm = 0;
 };
 
-/// Every algorithm that has a setting of the option "stiffness", on devices with 1, 2, 5 and 10 N s/m of
-/// damping and 0.3, 1 and 2 ms of delay; all else as in `settings`.
+/// Returns the cases of the passivity test: every algorithm that has a setting of the option "stiffness", on
+/// devices with 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of delay; all else as in `settings`.
 std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
                                            const TrialSettings& settings = {});
 
-/// Bone that fills z < 0, wide and deep enough to press this tool on, of voxels a twelfth of the burr's
-/// radius (0.05 to 0.5 mm).
+/// Returns bone that fills z < 0, wide and deep enough to press this tool on, of voxels a twelfth of the
+/// burr's radius (0.05 to 0.5 mm).
 Volume flat_wall(const MillingTool& tool);
 
 /// Presses on the wall (wall_press.h) with the algorithm, tool, tick and device of `settings`. Throws

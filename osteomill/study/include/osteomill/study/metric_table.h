@@ -11,24 +11,27 @@
 
 namespace osteomill {
 
-/// Returns what a field is, with its unit: "force above 20 Hz, rms (N)".
+/// Returns a text with its unit behind it: "force above 20 Hz, rms (N)".
 std::string with_unit(const std::string& text, const std::string& unit);
+/// Returns a field's description with its unit.
 inline std::string label_of(const FieldDescription& field) {
   return with_unit(field.doc, field.unit);
 }
 
-/// Returns the head of summary.csv, and a row of it, without line ends.
+/// Returns the head of summary.csv, without a line end.
 std::string summary_columns();
+/// Returns a run's row of summary.csv, without a line end.
 std::string summary_fields(const MeasuredRun& run);
 
-/// Returns the names of fields as the head of a CSV file, and the values of `s` as a row of it, each behind a
-/// comma; what is not a number is empty.
+/// Returns the names of fields as a part of the head of a CSV file, each behind a comma.
 template <typename Struct>
 std::string csv_names(const std::vector<Field<Struct>>& fields) {
   std::string names;
   for (const Field<Struct>& metric : fields) names += "," + metric.name;
   return names;
 }
+/// Returns the values of the fields of `s` as a part of a row of that file, each behind a comma; one that is
+/// not a number is empty.
 template <typename Struct>
 std::string csv_values(const std::vector<Field<Struct>>& fields, const Struct& s) {
   std::string values;

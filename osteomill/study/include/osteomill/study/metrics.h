@@ -37,9 +37,10 @@ struct Contact {
 
   bool any() const { return force || torque; }
 };
+/// Returns the contacts of a tick.
 Contact contact_of(const TickRecord& record);
 
-/// The shares of a recording's ticks in which the tool touched.
+/// The shares of a recording's ticks in which the tool touched (RunMetrics::contact).
 struct ContactShares {
   double any = 0;
   double burr = 0;
@@ -77,6 +78,7 @@ struct VectorMetrics {
   /// `hp_rms` against the mean; 0 if that is zero.
   double hp_share = 0;
 };
+/// The figures of a vector that was not felt for long enough to be measured.
 inline constexpr VectorMetrics kNotFelt{kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured};
 /// Returns the figures over the ticks that are `counted` (empty: all); a step counts if one of its two ticks
 /// does. Zeros for none.
@@ -84,11 +86,12 @@ VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
                              const std::vector<bool>& counted = {});
 
 /// The spread of unit directions about their mean (the direction of their sum), in degrees: the root of the
-/// mean square angle, and the greatest angle. Zeros for no directions.
+/// mean square angle, and the greatest angle.
 struct DirectionMetrics {
   double spread_deg = 0;
   double excursion_deg = 0;
 };
+/// Returns the spread of unit directions; zeros if there are none.
 DirectionMetrics direction_metrics(std::span<const Vec3> directions);
 
 /// The turn of the shaft within 50 ms, in degrees: the greatest, and that about the greatest step of the
@@ -148,9 +151,10 @@ inline RunMetrics run_metrics(const Recording& recording) {
   return run_metrics(recording, 0);
 }
 
-/// Flags of the fields of RunMetrics: a smaller one is better (unrest in the hand, and time); the machine's
-/// clock decides, so that it differs from run to run.
-inline constexpr unsigned kLessIsBetter = 1, kOfTheMachine = 2;
+/// A flag of the fields of RunMetrics: a smaller one is better (unrest in the hand, and time).
+inline constexpr unsigned kLessIsBetter = 1;
+/// A flag of the fields of RunMetrics: the machine's clock decides, so that it differs from run to run.
+inline constexpr unsigned kOfTheMachine = 2;
 
 /// Returns every figure of a run, the columns of summary.csv in their order. A value is not a number if it
 /// could not be measured.

@@ -20,7 +20,7 @@ struct TrialSettings : MillingSetup {
   bool spindle = true;
 };
 
-/// The CPU time that this thread has taken so far, in s. A system call, so not for the tick.
+/// Returns the CPU time that this thread has taken so far, in s. A system call, so not for the tick.
 double thread_cpu_s();
 
 /// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the
@@ -28,9 +28,10 @@ double thread_cpu_s();
 /// any machine, except for the compute times.
 class MillingTrial {
  public:
+  /// A tick of the trial.
   struct Tick {
     TickRecord record;
-    /// The first part of the test, as against holding still.
+    /// True in the first part of the test, false while the hand holds still.
     bool milling_phase;
   };
 
@@ -46,10 +47,10 @@ class MillingTrial {
   bool finished() const { return operator_.finished(); }
   /// Returns what the hand could not bring about.
   const ScriptShortfall& shortfall() const { return operator_.shortfall(); }
-  /// The next tick; then the hand and the device move on. No allocation.
+  /// Runs and returns the next tick; then the hand and the device move on. No allocation.
   Tick tick();
 
-  /// The bone as milled so far.
+  /// Returns the bone as milled so far.
   const Volume& volume() const { return session_.volume(); }
   const HapticAlgorithm& algorithm() const { return session_.algorithm(); }
 

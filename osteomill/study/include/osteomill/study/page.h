@@ -13,6 +13,7 @@ enum class Look : unsigned char { plain, strong, agrees, differs, faint, words }
 
 /// A cell of a table: plain text, whose line breaks stay, in pieces that each have a look of their own.
 struct Cell {
+  /// Text of one look.
   struct Piece {
     std::string text;
     Look look = Look::plain;
@@ -38,13 +39,13 @@ struct Table {
 /// Returns the table for a terminal: its columns below each other.
 std::string plain_text(const Table& table);
 
-/// An SVG or PNG, which stands in the page itself, not as a link.
+/// An SVG or PNG with its caption; it stands in the page itself, not as a link.
 struct CaptionedFigure {
   std::filesystem::path file;
   std::string caption;
 };
 
-/// A part of a page, shown in the order of its fields; what is empty is not shown. All text is plain.
+/// A part of a Page, shown in the order of its fields; what is empty is not shown. All text is plain.
 struct Section {
   std::string title;
   /// Sentences that a reader must know before believing the rest.
@@ -57,12 +58,14 @@ struct Section {
   std::vector<Section> parts;
 };
 
+/// A page of HTML (write_page()).
 struct Page {
   std::string title;
   std::vector<Section> sections;
 };
 
-/// Returns a section whose title is of this level (<h2>). Throws InputError if a figure cannot be read.
+/// Returns a section whose title is a heading of this level, 2 for the page's own sections. Throws InputError
+/// if a figure cannot be read.
 std::string html(const Section& section, int level = 2);
 
 /// Returns a whole page with its own style sheet, which loads nothing from anywhere. Throws as `html` of a
@@ -75,7 +78,9 @@ std::string html(const Page& page);
 std::filesystem::path write_page(const std::filesystem::path& out_dir, const std::string& name,
                                  const std::function<Page(const std::filesystem::path& beside)>& make);
 
+/// Returns the text with the characters that HTML gives a meaning (& < > ") as entities.
 std::string html_escaped(std::string_view text);
+/// Returns the bytes in base 64 (RFC 4648).
 std::string base64(std::string_view bytes);
 
 /// Returns the text with U+FFFD for every byte that is no part of a character in UTF-8 (RFC 3629): names in

@@ -5,7 +5,7 @@
 
 namespace osteomill {
 
-/// An algorithm felt where the right answer is known.
+/// An algorithm felt where the right answer is known (probe()).
 struct Probe {
   /// felt_stiffness_N_per_mm: with the burr on a flat wall.
   double felt_N_per_mm = 0;
@@ -14,9 +14,10 @@ struct Probe {
   double torque_error = 0;
 };
 
-/// The keys of the settings in which a recording has a Probe's figures; they are missing if it was not
+/// The key of the setting in which a recording has Probe::felt_N_per_mm; it is missing if it was not
 /// measured.
 inline constexpr const char* kFeltStiffnessKey = "probe.felt_stiffness";
+/// The key of the setting in which a recording has Probe::torque_error; it is missing if it was not measured.
 inline constexpr const char* kTorqueErrorKey = "probe.torque_error";
 
 /// Returns bone with a sharp edge along y (W) at the origin, both its faces falling away at 45 degrees: wide

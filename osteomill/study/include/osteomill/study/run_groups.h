@@ -20,9 +20,11 @@ struct RunGroup {
   /// Returns the run of an algorithm in a phase; null if there is none.
   const MeasuredRun* find(std::string_view algorithm, std::string_view phase) const;
 
+  /// Returns the runs of a phase.
   std::vector<const MeasuredRun*> runs_of(std::string_view phase) const;
-  /// Those that have a run: phases in the order in which they began, algorithms in that of their labels.
+  /// Returns the phases that have a run, in the order in which they began.
   std::vector<std::string> phases() const;
+  /// Returns the algorithms that have a run, in the order of their labels.
   std::vector<AlgorithmId> algorithms() const;
 };
 

@@ -15,8 +15,9 @@
 
 namespace osteomill {
 
-/// The one way in which many trials are run: `try_one` of each, side by side on `threads` threads, each in
-/// simulated time; results stand in the order of the trials. `what` is being done, for who watches.
+/// Runs `try_one` of each trial, side by side on `threads` threads, each in simulated time, and returns the
+/// results in the order of the trials. `what` names the work for RunEvents::progress. Every command that runs
+/// many trials runs them by this function.
 template <typename Trial, typename TryOne>
 auto run_trials(const std::vector<Trial>& trials, const std::string& what, std::size_t threads,
                 const RunEvents& events, const TryOne& try_one) {
@@ -28,22 +29,24 @@ auto run_trials(const std::vector<Trial>& trials, const std::string& what, std::
   return results;
 }
 
-/// The result of a trial of a study.
+/// The result of a trial of a study (try_trial()).
 struct TriedTrial {
   /// One for each part of its test, without the trial's number.
   std::vector<TrialRow> rows;
-  /// One sentence on ticks that were not as they should be.
+  /// One sentence on ticks that were not as they should be; nothing if all were.
   std::optional<std::string> faults;
   double cpu_s = 0;
 };
-/// One trial of a study, on this thread. Of the plan, `wall` takes the settings, and the bone for the wall.
+/// Runs one trial of a study on this thread. With the test `wall`, of the plan only the settings count, and
+/// its bone is the wall.
 TriedTrial try_trial(StudyTest test, const TrialPlan& plan);
 
-/// The plan's trial with another seed, in the hand that this seed draws (random_hand); what the published
-/// ranges do not say of a hand (its push, its tremor) stays the plan's.
+/// Returns the plan's trial with another seed, in the hand that this seed draws (random_hand); what the
+/// published ranges do not say of a hand (its push, its tremor) stays the plan's.
 TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
 
-/// The plan's trial of algorithm 2 in its hand's other grips, for the paper's finding on them (findings.h).
+/// Returns the plan's trial of algorithm 2 in its hand's other grips, for the paper's finding on them
+/// (findings.h).
 std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan);
 
 /// Runs the trials, measures both phases, and keeps nothing else. Trials run side by side on `threads`

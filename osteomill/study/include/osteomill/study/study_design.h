@@ -21,7 +21,7 @@ const std::string* find_value(const StudySettings& settings, std::string_view ke
 /// together (a tool, a hand).
 using StudyAxis = std::vector<StudySettings>;
 
-/// A number's range, evenly or, if `logarithmic`, evenly in its logarithm.
+/// A number's range that is gone through evenly or, if `logarithmic`, evenly in its logarithm (steps_of()).
 struct StudyRange {
   double from = 0;
   double to = 0;
@@ -30,7 +30,8 @@ struct StudyRange {
   double at(double share) const;
 };
 
-/// `steps` values from the range's beginning to its end. Throws std::invalid_argument if there are none.
+/// Returns `steps` values from the range's beginning to its end. Throws std::invalid_argument if there are
+/// none.
 std::vector<double> steps_of(const StudyRange& range, std::size_t steps);
 
 /// Trials spread over several options at once (McKay, Beckman and Conover 1979): for `trials` trials each
@@ -66,7 +67,7 @@ struct StudyMap {
   bool line_of_equality = false;
 };
 
-/// The names in what a map shows: one, or the two of a ratio.
+/// Returns the names in what a map shows: one, or the two of a ratio.
 std::vector<std::string> names_in(std::string_view shown);
 
 /// The trials of a study: every combination of the hypercube's trials and the grid's axes, numbered from 0,
@@ -80,9 +81,9 @@ class StudyDesign {
   std::size_t trial_count() const { return count_; }
   /// Returns all settings of a trial: those that are fixed, and those that vary in the order of `varied`.
   StudySettings trial(std::size_t number) const;
-  /// The options that differ between trials, in the order of the axes.
+  /// Returns the options that differ between trials, in the order of the axes.
   const std::vector<std::string>& varied() const { return varied_; }
-  /// An option with its unit: "push (N)".
+  /// Returns an option with its unit: "push (N)".
   std::string label_of(const std::string& option) const;
 
   std::string title;

@@ -9,8 +9,8 @@
 
 namespace osteomill {
 
-/// Trials that did not do all of their test (MeasuredRun::not_reached): counted with the others and marked,
-/// or left out.
+/// The treatment, by `write_study_report`, of trials that did not do all of their test
+/// (MeasuredRun::not_reached): counted with the others and marked, or left out.
 enum class Unreached : unsigned char { marked, dropped };
 
 /// Writes into the folder's report/ what the study's slices hold so far: trials.csv, a row for each part of
@@ -21,8 +21,9 @@ enum class Unreached : unsigned char { marked, dropped };
 std::filesystem::path write_study_report(const StudyDesign& design, const StudyFolder& study,
                                          Unreached unreached = Unreached::marked);
 
-/// "number,ALGORITHM,...": a head and a row for each trial, what varies.
+/// Returns the head of a study's list of trials: "trial," and the options that vary, separated by commas.
 std::string list_head(const StudyDesign& design);
+/// Returns the row of the trial of this number, from 0, in that list.
 std::string list_row(const StudyDesign& design, std::size_t number);
 
 }  // namespace osteomill

@@ -36,24 +36,25 @@ struct StudyRecord {
 /// Returns a hash of a file's bytes. Throws InputError if it cannot be read.
 std::uint64_t hash_of_file(const std::filesystem::path& path);
 
-/// study.h5 in `folder`, whole or not at all; reading gives nothing if there is none. Throws InputError
-/// if it cannot be written, or is no such file.
+/// Writes study.h5 into `folder`, whole or not at all. Throws InputError if it cannot be written.
 void write_study_record(const std::filesystem::path& folder, const StudyRecord& record);
+/// Returns what study.h5 in `folder` holds; nothing if there is no such file. Throws InputError if it is not
+/// what `write_study_record` writes.
 std::optional<StudyRecord> read_study_record(const std::filesystem::path& folder);
 
-/// A study that was begun.
+/// A study that was begun, by its folder.
 struct StudyFolder {
   std::filesystem::path path;
   StudyRecord record;
   StudyTest test = StudyTest::milling;
 };
 
-/// Trials that follow each other, and what came of them.
+/// Trials that follow each other, and what came of them (run_slice()).
 struct Slice {
   std::size_t number = 0;
-  /// By trial, then by part of the test.
+  /// The rows, by trial and then by part of the test.
   std::vector<TrialRow> rows;
-  /// On all threads.
+  /// The CPU time on all threads.
   double cpu_s = 0;
 };
 
@@ -61,7 +62,7 @@ struct Slice {
 /// trial; nothing that was said of them is lost.
 [[noreturn]] void throw_of_trial(const std::filesystem::path& file, std::size_t trial);
 
-/// "slice-12.h5".
+/// Returns the path of a slice's file: FOLDER/slice-12.h5.
 std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_t number);
 
 /// Runs the trials of a slice, side by side on `threads` threads; except for times, the rows are the same for
@@ -69,16 +70,17 @@ std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_
 Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<TrialPlan>& trials,
                 std::size_t threads, const RunEvents& events);
 
-/// Written under another name and renamed. Throws InputError if it cannot be written.
+/// Writes a slice's file, whole or not at all. Throws InputError if it cannot be written.
 void write_slice(const StudyFolder& study, const Slice& slice);
 
-/// Returns nothing if there is no such file, or it is cut short, damaged, or of another study: it is to be
-/// run (again). Throws InputError if another program holds a lock on it.
+/// Returns the slice of this number; nothing if there is no such file, or it is cut short, damaged, or of
+/// another study, so that the slice is to be run (again). Throws InputError if another program holds a lock
+/// on it.
 std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number);
 
-/// The progress of a study, by the files of its folder; the rows that these hold are put behind `rows`.
+/// The progress of a study, by the files of its folder.
 struct StudyStatus {
-  /// By their numbers, all slices.
+  /// The numbers of the slices that are done, and of those that are missing.
   std::vector<std::size_t> done;
   std::vector<std::size_t> missing;
   std::size_t trials_done = 0;
@@ -90,6 +92,7 @@ struct StudyStatus {
 };
 /// Throws InputError if a file is locked, and what is done therefore not known.
 void require_none_locked(const StudyStatus& status);
+/// Returns the progress of a study. Puts the rows that are done behind `rows`, if that is not null.
 StudyStatus study_status(const StudyFolder& study, std::vector<TrialRow>* rows = nullptr);
 
 }  // namespace osteomill

@@ -12,7 +12,7 @@
 
 namespace osteomill {
 
-/// A trial, and what its recordings say about it.
+/// A trial of the test of section 8.2, and what its recordings say about it (record_trial()).
 struct TrialPlan {
   /// The bone as scanned; outlives the plan.
   const Volume& bone;
@@ -60,10 +60,14 @@ std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettin
 /// lost contact and did not find it again.
 RunMetrics phase_metrics(const Recording& recording);
 
-/// The limits of a hold: the least share of the time in contact and of the time with the shaft
-/// against the wall, the furthest that the shaft may turn from its mean direction, and the longest path of
-/// the burr per second. Hands that hold still keep to 0.2 degrees and, by their tremor, 0.9 mm/s.
-inline constexpr double kHeldContact = 0.9, kHeldShaft = 0.5, kHeldTurn_deg = 3, kHeldPath_mm_per_s = 2;
+/// The least share of the time of a hold in contact.
+inline constexpr double kHeldContact = 0.9;
+/// The least share of the time of a hold with the shaft against the wall.
+inline constexpr double kHeldShaft = 0.5;
+/// The furthest that the shaft may turn from its mean direction in a hold. Hands that hold still keep to 0.2.
+inline constexpr double kHeldTurn_deg = 3;
+/// The longest path of the burr per second of a hold. Hands that hold still keep, by their tremor, to 0.9.
+inline constexpr double kHeldPath_mm_per_s = 2;
 
 /// Returns which of these a holding of section 8.2 broke: "the tool touched for less than 90 % of the
 /// holding; the shaft turned by more than 3 degrees". Empty for none, and for a milling.

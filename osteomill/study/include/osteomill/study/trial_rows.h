@@ -14,22 +14,28 @@ namespace osteomill {
 /// for each phase; or a device without a hand is pressed on a flat wall (wall_press.h), one row.
 enum class StudyTest : unsigned char { milling, wall };
 
+/// The names of the tests, in their order.
 inline constexpr std::string_view kStudyTests[] = {"milling", "wall"};
+/// Returns the name of a test, as files of studies have it.
 inline std::string_view name_of(StudyTest test) {
   return kStudyTests[static_cast<int>(test)];
 }
 
-/// The parts of a test, one row each.
+/// Returns the names of a test's parts, one row each.
 std::span<const std::string_view> parts_of(StudyTest test);
 
-/// The result of a press on a wall.
+/// The figures of a press on a wall, as a TrialRow has them.
 struct WallFigures {
   /// 1 if the handle came to rest; not a number if the wall gave way.
   double passive = kNotMeasured;
+  /// 1 if the wall carried the force.
   double carries = 0;
+  /// WallPressResult::felt_N_per_mm.
   double felt_N_per_mm = kNotMeasured;
+  /// The greatest stiffness of an ideal wall there (passive_stiffness_rule_N_per_mm).
   double rule_N_per_mm = 0;
 };
+/// Returns the figures of a press with these settings.
 WallFigures wall_figures(const TrialSettings& settings, const WallPressResult& result);
 
 /// A part of a trial: of `milling` a run, of `wall` a press.

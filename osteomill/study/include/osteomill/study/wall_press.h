@@ -19,6 +19,7 @@ struct WallPress {
 /// motion to speak of.
 enum class WallMotion : unsigned char { dies_out, goes_on, gives_way };
 
+/// The result of a press on a wall (press_on_wall()).
 struct WallPressResult {
   WallMotion motion = WallMotion::gives_way;
   /// The slope of the force over the depth about the pressing force, pressed slowly: the stiffness that a

@@ -12,13 +12,13 @@
 
 namespace osteomill {
 
-/// A row of the table of metrics.
+/// A row of the table of metrics, as PageText adds them.
 struct MetricLine {
   std::string label;
   std::function<Cell(const MeasuredRun&)> cell;
 };
 
-/// The parts of a report that its caller adds; any may be empty. A plain session adds none.
+/// The parts of a report that the caller of write_report() adds; any may be empty. A plain session adds none.
 struct PageText {
   std::string title = "What was milled, and what the hand felt";
   /// The section at the page's top, with the answer that a reader looks for. Without it the page says there

@@ -6,12 +6,12 @@
 
 namespace osteomill {
 
-/// Looks obliquely down at where a tool enters the bone at `entry_W` along the unit vector `into_W`: at all
-/// of the bone if it is small (a tooth), else at what lies around the entry. `lateral_W` is a unit vector
-/// across, which turns the view about the entry. For square pictures. From far away, so that lengths can be
-/// read off: what is nearer by half of the picture's height is drawn 2 % larger.
+/// Returns a camera that looks obliquely down at where a tool enters the bone at `entry_W` along the unit
+/// vector `into_W`: at all of the bone if it is small (a tooth), else at what lies around the entry.
+/// `lateral_W` is a unit vector across, which turns the view about the entry. For square pictures. From far
+/// away, so that lengths can be read off: what is nearer by half of the picture's height is drawn 2 % larger.
 Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W);
-/// A camera that looks at the entry straight along `into_W`, with `lateral_W` upwards.
+/// Returns a camera that looks at the entry straight along `into_W`, with `lateral_W` upwards.
 Camera camera_along(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W);
 
 /// Draws a picture of the bone on white with a scale bar, coloured and lit as in the window (scene.h says

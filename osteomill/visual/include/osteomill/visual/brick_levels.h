@@ -18,6 +18,7 @@ namespace osteomill {
 /// a gap.
 struct BrickLevels {
   static constexpr std::size_t kCount = 4;
+  /// A part of the indices.
   struct Range {
     std::size_t first = 0;
     std::size_t count = 0;

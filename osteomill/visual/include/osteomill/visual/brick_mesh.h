@@ -22,10 +22,11 @@ struct MeshVertex {
 };
 static_assert(sizeof(MeshVertex) == 28 && std::is_trivially_copyable_v<MeshVertex>);
 
-/// Read three floats of a vertex as a vector, and write a vector into them.
+/// Returns three floats of a vertex as a vector.
 inline Vec3 vec3_of(const std::array<float, 3>& numbers) {
   return Eigen::Map<const Eigen::Vector3f>(numbers.data()).cast<double>();
 }
+/// Writes a vector into three floats of a vertex.
 inline void put(const Vec3& vector, std::array<float, 3>& numbers) {
   Eigen::Map<Eigen::Vector3f>(numbers.data()) = vector.cast<float>();
 }

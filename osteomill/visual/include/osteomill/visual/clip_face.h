@@ -18,7 +18,7 @@ struct ClipFace {
   std::vector<std::array<unsigned char, 3>> pixels;
 };
 
-/// The densities that are drawn black and white.
+/// The densities that a ClipFace draws black and white (window_level_of()).
 struct WindowLevel {
   double black = 0;
   double white = 1;
@@ -28,16 +28,16 @@ struct WindowLevel {
 /// too).
 WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density);
 
-/// The densities where the plane meets the grid, a pixel a voxel but no more than `max_pixels` along a side,
-/// as grey values; black outside the grid. With `labels`, tinted by those of the voxels nearest to the
-/// pixels. Nothing (no pixels) if the plane misses it. Not for the tick.
+/// Returns the densities where the plane meets the grid, a pixel a voxel but no more than `max_pixels` along
+/// a side, as grey values; black outside the grid. With `labels`, tinted by those of the voxels nearest to
+/// the pixels. There are no pixels if the plane misses the grid. Not for the tick.
 ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
                    const LabelMap* labels = nullptr, int max_pixels = 320);
 
-/// The corners of a box of voxels, with the first voxel first and the last one last.
+/// Returns the corners of a box of voxels, with the first voxel first and the last one last.
 std::array<Vec3, 8> corners_W(const GridGeometry& geometry, const VoxelBox& voxels);
 
-/// The least and the greatest normal . p over such corners: how far a plane can be moved.
+/// Returns the least and the greatest normal . p over such corners: how far a plane can be moved.
 std::array<double, 2> extent_along(const std::array<Vec3, 8>& corners, const Vec3& normal_W);
 
 }  // namespace osteomill

@@ -14,7 +14,7 @@ struct Image {
   int height = 0;
   std::vector<unsigned char> rgb;
 
-  /// The first of the pixel's three bytes; the pixel must lie in the image.
+  /// Returns the first of the pixel's three bytes; the pixel must lie in the image.
   unsigned char* pixel(int x, int y) { return rgb.data() + offset(x, y); }
   const unsigned char* pixel(int x, int y) const { return rgb.data() + offset(x, y); }
 
@@ -24,17 +24,17 @@ struct Image {
   }
 };
 
-/// A smaller image, of width / factor x height / factor pixels: each is the mean of a square of `factor` x
-/// `factor` pixels. `factor` is 1 or more; columns at the right and rows at the bottom that fill no square
-/// are dropped.
+/// Returns a smaller image, of width / factor x height / factor pixels: each is the mean of a square of
+/// `factor` x `factor` pixels. `factor` is 1 or more; columns at the right and rows at the bottom that fill
+/// no square are dropped.
 Image averaged_down(const Image& image, int factor);
 
-/// The image as the bytes of a PNG file. Throws std::invalid_argument if the number of bytes in `rgb` is
-/// not that of width and height.
+/// Returns the image as the bytes of a PNG file. Throws std::invalid_argument if the number of bytes in `rgb`
+/// is not that of width and height.
 std::vector<unsigned char> encode_png(const Image& image);
 
-/// The image of a PNG file's bytes; where it is transparent, white shows through. Nothing if the bytes are
-/// not a whole PNG of at most 4096 x 4096 pixels.
+/// Returns the image of a PNG file's bytes; where it is transparent, white shows through. Returns nothing if
+/// the bytes are not a whole PNG of at most 4096 x 4096 pixels.
 std::optional<Image> decode_png(std::span<const unsigned char> png);
 
 /// Writes a PNG file, whole or not at all. Throws InputError, naming the file, if it cannot be written.

@@ -7,12 +7,13 @@
 
 namespace osteomill {
 
-/// Files of triangles: binary STL; PLY, binary and little endian, with normals and densities; OBJ with
-/// normals. All in W (the patient's LPS frame, mm), which STL and the comments of the others say as
-/// "SPACE=LPS".
+/// The formats of files of triangles that write_mesh() writes: binary STL; PLY, binary and little endian,
+/// with normals and densities; OBJ with normals. All in W (the patient's LPS frame, mm), which STL and the
+/// comments of the others say as "SPACE=LPS".
 enum class MeshFormat : unsigned char { stl, ply, obj };
 
-/// By the file name's extension, in capitals or not. Throws InputError if it is none of these.
+/// Returns the format by the file name's extension, in capitals or not. Throws InputError if it is none of
+/// these.
 MeshFormat mesh_format_of(const std::filesystem::path& path);
 
 /// Returns whether files of this format hold a colour for each vertex.

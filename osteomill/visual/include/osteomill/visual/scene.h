@@ -12,12 +12,14 @@
 
 namespace osteomill {
 
-/// Everything on this side of a plane is cut away: points p of W with normal . p < offset.
+/// A cut through the picture: everything on one side of a plane is cut away, the points p of W with
+/// normal . p < offset.
 struct ClipPlane {
   Vec3 normal_W = Vec3::UnitZ();
   double offset_mm = 0;
   friend bool operator==(const ClipPlane&, const ClipPlane&) = default;
 };
+/// The number of cuts that a scene may have.
 inline constexpr std::size_t kMaxClipPlanes = 4;
 
 /// Everything that a picture shows beside the bone, all in W.
@@ -45,8 +47,9 @@ struct ViewScene {
   std::array<float, 3> light_from_below{0.20f, 0.17f, 0.16f};
 };
 
-/// A force arrow's length a newton, and a torque arrow's a newton millimetre.
+/// A force arrow's length per newton.
 inline constexpr double kArrow_mm_per_N = 3.0;
+/// A torque arrow's length per newton millimetre.
 inline constexpr double kArrow_mm_per_Nmm = 0.4;
 
 /// Returns the point of the tool's surface at which the wrench's force alone would give the wrench, as far as

@@ -10,13 +10,13 @@ namespace osteomill {
 
 /// The state of a spindle, from which its sound follows.
 struct SpindleState {
-  /// Turns a minute that it is set to; 0 is off.
+  /// The speed that it is set to; 0 is off.
   double speed_rpm = 0;
   /// The load of cutting, 0 to 1.
   double load = 0;
 };
 
-/// The sound of a spindle, computed: the tone of its turning with its overtones, a little lower and a good
+/// Computes the sound of a spindle: the tone of its turning with its overtones, a little lower and a good
 /// deal louder under load, and the noise of cutting. The same states give the same samples. For one thread.
 class SpindleSound {
  public:

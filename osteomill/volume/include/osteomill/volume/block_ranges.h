@@ -15,6 +15,7 @@ namespace osteomill {
 class BlockRanges {
  public:
   static constexpr int kBrickVoxels = 8;
+  /// The least and the greatest density of a brick.
   struct Range {
     float min;
     float max;

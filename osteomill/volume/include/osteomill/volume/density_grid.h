@@ -16,6 +16,7 @@ namespace osteomill {
 /// The densities of a scan, one float a voxel (Hounsfield units if the scan has them), in rows along i.
 /// Outside the grid there is nothing: every voxel there counts as `outside_density()`. Copies share the
 /// memory of all that was changed in none of them. Reading is safe in the haptic tick; one thread writes.
+/// `read_scan` and `builtin_tooth` make one.
 class DensityGrid {
  public:
   DensityGrid() = default;
@@ -39,7 +40,7 @@ class DensityGrid {
   }
   std::ptrdiff_t row_stride() const { return static_cast<std::ptrdiff_t>(layout_.row_stride); }
   std::ptrdiff_t slice_stride() const { return static_cast<std::ptrdiff_t>(layout_.slice_stride); }
-  /// Returns whether the scan has a density for a voxel, by its number (`linear_index`). What it has none for
+  /// Returns whether the scan has a density for a voxel, by its number (linear_index()). A voxel without one
   /// counts in no statistics.
   bool has_density(std::size_t voxel) const { return !without_density_ || !(*without_density_)[voxel]; }
   std::size_t voxels_without_density() const { return voxels_without_density_; }
@@ -91,7 +92,7 @@ class DensityGrid {
   float outside_density_ = 0;
 };
 
-/// Takes every row, a std::span<const float>, to `use`, j running fastest. Long work (WorkProgress).
+/// Calls `use` with every row, a std::span<const float>, j running fastest. Long work (WorkProgress).
 template <typename Use>
 void for_each_row(const DensityGrid& grid, const Use& use) {
   VoxelBox rows = grid.geometry().all_voxels();
@@ -110,11 +111,12 @@ void for_each_density(const DensityGrid& grid, const Use& use) {
   });
 }
 
-/// Returns the densities of every `every`th voxel in the order of their numbers, of those that have one.
+/// Returns the densities of every `every`th voxel, in the order of their numbers, without the voxels that
+/// have none.
 std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every);
 
-/// Returns one voxel's part in a hash that is the sum of all parts (modulo 2^64). So a change costs only what
-/// changes, in any order. Safe in the haptic tick.
+/// Returns one voxel's part in a hash that is the sum of all parts (modulo 2^64): after a change, in any
+/// order, only the parts of the changed voxels are computed again. Safe in the haptic tick.
 inline std::uint64_t density_hash(std::size_t voxel, float density) noexcept {
   std::uint64_t x = (static_cast<std::uint64_t>(voxel) << 32) ^ std::bit_cast<std::uint32_t>(density);
   x *= 0x9e3779b97f4a7c15;
@@ -123,7 +125,7 @@ inline std::uint64_t density_hash(std::size_t voxel, float density) noexcept {
   return x ^ (x >> 32);
 }
 
-/// Hashes words by FNV-1a, a word at a time.
+/// Hashes words by FNV-1a, a word at a time, as fingerprint_of() does with a grid's densities.
 class WordHash {
  public:
   void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3; }

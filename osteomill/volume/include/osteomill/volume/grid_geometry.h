@@ -77,7 +77,7 @@ void for_each(const VoxelBox& box, const Use& use) {
   }
 }
 
-/// Does the same for long work: reports after each slice how far it is (WorkProgress).
+/// Calls `use` as `for_each` does, and reports before each slice how far it is (WorkProgress): for long work.
 template <typename Use>
 void for_each_with_progress(const VoxelBox& box, const Use& use) {
   for (int k = box.first.k; k <= box.last.k; ++k) {
@@ -101,10 +101,12 @@ struct GridGeometry {
   VoxelBox all_voxels() const { return {{0, 0, 0}, {dims[0] - 1, dims[1] - 1, dims[2] - 1}}; }
   double voxel_volume_mm3() const { return spacing_mm.prod(); }
 
+  /// Returns the point in W, mm, of continuous voxel coordinates.
   Vec3 world_from_voxel(const Vec3& voxel) const {
     return origin_mm + direction * spacing_mm.cwiseProduct(voxel);
   }
   Vec3 world_from_voxel(const VoxelIndex& v) const { return world_from_voxel(Vec3(v.i, v.j, v.k)); }
+  /// Returns the continuous voxel coordinates of a point in W, mm.
   Vec3 voxel_from_world(const Vec3& point_W) const {
     return (direction.transpose() * (point_W - origin_mm)).cwiseQuotient(spacing_mm);
   }

@@ -65,6 +65,7 @@ struct DensityHistogram {
   float max = 1;
   std::array<float, 128> log_counts{};
 };
+/// Returns the histogram of some million of the grid's voxels. Not for the tick.
 DensityHistogram histogram_of(const DensityGrid& grid);
 
 }  // namespace osteomill

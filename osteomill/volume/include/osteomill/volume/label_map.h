@@ -9,7 +9,7 @@
 
 namespace osteomill {
 
-/// All that a label map knows about one of its labels.
+/// A label of a LabelMap: its value, its name and colour, and whether a burr may touch it.
 struct Label {
   /// The value in the map's file.
   int value = 0;

@@ -12,7 +12,8 @@ namespace osteomill {
 /// within one voxel. Safe in the haptic tick.
 double density_at(const DensityGrid& grid, const Vec3& point_W) noexcept;
 
-/// Returns the trilinear density at continuous voxel coordinates.
+/// Returns the trilinear density at continuous voxel coordinates, as `density_at` does. Safe in the haptic
+/// tick.
 double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) noexcept;
 
 /// Returns the gradient of the density in W (density per mm). Each difference is averaged over its 3 x 3

@@ -79,7 +79,8 @@ class Volume {
   std::shared_ptr<const LabelMap> labels_;
 };
 
-/// Takes every bone voxel to `visit`, along i fastest; passes over bricks without bone. Long work.
+/// Calls `visit` with every bone voxel, i running fastest; passes over bricks without bone. Long work
+/// (WorkProgress).
 template <typename Visit>
 void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   constexpr int kSide = BlockRanges::kBrickVoxels;
@@ -95,8 +96,8 @@ void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   });
 }
 
-/// The change that milling made in one step: every voxel whose density fell lies in `voxels` (empty if none
-/// fell).
+/// The change that milling made in one step (BurrMill): every voxel whose density fell lies in `voxels`,
+/// which is empty if none fell.
 struct VolumeChange {
   VoxelBox voxels;
 };
