@@ -19,7 +19,7 @@ import xml.etree.ElementTree as ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PUBLIC_HEADER = re.compile(r"osteomill/\w+/include/(osteomill/.+\.h)")
-EXAMPLES = sorted(ROOT.glob("examples/*.cpp"))
+EXAMPLES = [path for path in sorted(ROOT.glob("examples/*.cpp")) if "#include <osteomill/" in path.read_text()]
 CODE = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.S)
 LANGUAGES = {".c": "c", ".cpp": "cpp", ".py": "python", ".toml": "toml", ".cff": "yaml"}
 
@@ -88,14 +88,11 @@ def reference(work):
         elif kind == "file" and name.endswith(".h"):
             entities.append(Entity(compound, compound.find("location").get("file"), kind))
         elif kind in ("class", "struct", "group"):
-            outer = None
-            if kind != "group":
-                outer = Entity(compound, name.replace("osteomill::", ""), kind)
-                entities.append(outer)
-            for member in compound.iter("memberdef"):
-                if member.get("prot") == "public":
-                    scope = f"{outer.name}::" if outer else ""
-                    entities.append(Entity(member, scope + member.findtext("name"), member.get("kind"), outer or kind))
+            outer = Entity(compound, name.replace("osteomill::", ""), kind)
+            entities.append(outer)
+            scope = "" if kind == "group" else f"{outer.name}::"
+            entities += [Entity(member, scope + member.findtext("name"), member.get("kind"), outer)
+                         for member in compound.iter("memberdef") if member.get("prot") == "public"]
     return entities, shown
 
 
@@ -104,7 +101,7 @@ def examples(work):
     or any test that names it; what its comment links to, what it is a part of, or a function that takes or returns it, with
     the test of that; or a source of the project. A nested type is shown by the one around it. Fails for a type without any."""
     entities, shown = reference(work)
-    shown |= {entity.outer.id for entity in entities if entity.id in shown and isinstance(entity.outer, Entity)}
+    shown |= {entity.outer.id for entity in entities if entity.id in shown and entity.outer and entity.outer.kind != "group"}
     scopes = {entity.name for entity in entities if entity.kind in ("class", "struct")}
     words = {path: collections.Counter(re.findall(r"\w+", CODE.sub("", path.read_text()))) for path in ROOT.glob("[!b]*/**/*.cpp")}
     tests = [path for path in words if path.stem.endswith("_test")]
@@ -118,7 +115,7 @@ def examples(work):
     for entity in entities:
         if entity.kind not in ("class", "struct", "enum") or entity.id in shown or entity.name.rpartition("::")[0] in scopes:
             continue
-        users = [one.outer if isinstance(one.outer, Entity) else one for one in entities
+        users = [one.outer if one.outer and one.outer.kind != "group" else one for one in entities
                  if one.id in entity.links or entity.id in one.signature]
         by = next((one for one in [entity, *users] if one.id in shown or best_of(one, tests)), entity)
         source = None if by.id in shown else best_of(by, tests) or best_of(by, words)
@@ -133,7 +130,7 @@ def examples(work):
             lines.append(f"@ref use_of_{source.stem} \"{source.name}\"")
         blocks.append("\n".join([*lines, "*/"]))
         used |= {source} - {None}
-    blocks += [f"/** @page use_of_{path.stem} {path.name}\nThe example of types that no program in examples/ uses.\n"
+    blocks += [f"/** @page use_of_{path.stem} {path.name}\n`{path.relative_to(ROOT)}`, an example of types that no program in examples/ uses.\n"
                f"@include {path.relative_to(ROOT)} */" for path in sorted(used)]
     with (work / "rooms.dox").open("a") as dox:
         dox.write("\n".join(blocks))
@@ -148,6 +145,21 @@ def linked_names(entities):
         if entity.kind in ("class", "struct", "file") or "::" in name or "_" in name.strip("_") or entity.kind in ("enum", "typedef", "variable"):
             names.setdefault(name, entity.url)
     return names
+
+
+def as_python_markdown(text):
+    """Writes CommonMark's lists as MkDocs takes them: behind an empty line, and four spaces deep in another list."""
+    lines, in_list, before = [], False, ""
+    for line in text.split("\n"):
+        item = re.match(r" {0,3}(?:[-*]|(\d+)\.) ", line)
+        if item and not in_list and before.strip() and item[1] in (None, "1"):
+            lines.append("")
+        if item and in_list and line.startswith("  "):
+            line = "    " + line.lstrip()
+        in_list = bool(item) or in_list and (line.startswith(" ") or line == "" or before != "")
+        lines.append(line)
+        before = line
+    return "\n".join(lines)
 
 
 def pages(work):
@@ -182,7 +194,7 @@ def pages(work):
         parts = re.split(r"(?ms)(^```.*?^```|^#.*?$)", text)
         pattern = re.compile(r"(!?\[(?:[^\[\]]|\[[^\]]*\])*\])\(([^)\s]+)\)|(`[^`\n]+`)")
         for n in range(0, len(parts), 2):
-            parts[n] = pattern.sub(lambda m: of_code(page, m[3]) if m[3] else f"{m[1]}({of_link(page, m[2])})", parts[n])
+            parts[n] = pattern.sub(lambda m: of_code(page, m[3]) if m[3] else f"{m[1]}({of_link(page, m[2])})", as_python_markdown(parts[n]))
         return "".join(parts)
 
     for name in listed.splitlines():
@@ -236,8 +248,11 @@ def finish(work, site):
     entities, _ = reference(work)
     index = site / "search/search_index.json"
     search = json.loads(index.read_text())
-    search["docs"] += [{"location": entity.url, "title": entity.name, "text": entity.brief} for entity in entities
-                       if entity.kind in ("class", "struct", "enum", "function", "typedef", "define") and (entity.brief or "::" not in entity.name)]
+    # The search wants a page, then its title as the first place on it, then other places. Members would crowd out documents.
+    for entity in entities:
+        if entity.kind in ("group", "class", "struct") or entity.outer and entity.outer.kind == "group" and entity.kind in ("enum", "function", "typedef"):
+            entry = {"location": entity.url, "title": entity.name, "text": entity.brief}
+            search["docs"] += [entry] if "#" in entity.url else [entry, {**entry, "location": entity.url + "#details"}]
     index.write_text(json.dumps(search, separators=(",", ":")))
 
     (site / "404.html").unlink()  # for servers of one address alone
