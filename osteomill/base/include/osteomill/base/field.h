@@ -32,7 +32,7 @@ struct NumberRange {
   static constexpr NumberRange finite() { return {}; }
   static constexpr NumberRange positive() { return {.min = std::numeric_limits<double>::min()}; }
   static constexpr NumberRange not_negative() { return {.min = 0}; }
-  /// Not negative; infinite for no limit.
+  /// Returns the range of a limit: not negative, and infinite for no limit.
   static constexpr NumberRange limit() { return {.min = 0, .max = std::numeric_limits<double>::infinity()}; }
   static constexpr NumberRange on_or_off() { return {.min = 0, .max = 1, .whole = true}; }
   static constexpr NumberRange count(int min, int max = std::numeric_limits<int>::max()) {

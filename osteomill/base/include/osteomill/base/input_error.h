@@ -24,8 +24,8 @@ inline std::string in_one_line(std::string_view text) {
 /// haptic tick.
 class InputError : public std::runtime_error {
  public:
-  /// `subject` names the file (or option), `reason` says what is wrong with it, without a full stop.
-  /// `what()` is one line whatever they hold.
+  /// Makes the message "SUBJECT: REASON". `subject` names the file (or option), `reason` says what is wrong
+  /// with it, without a full stop. `what()` is one line whatever they hold.
   InputError(std::string_view subject, std::string_view reason)
       : std::runtime_error(in_one_line(std::string(subject) + ": " + std::string(reason))) {}
 };

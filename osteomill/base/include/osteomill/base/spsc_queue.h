@@ -18,7 +18,7 @@ namespace osteomill {
 template <typename T>
 class SpscQueue {
  public:
-  /// Room for `capacity` values or a few more. Touches all its memory, so that no tick is the first to.
+  /// Makes room for `capacity` values or a few more. Touches all its memory, so that no tick is the first to.
   explicit SpscQueue(std::size_t capacity) : queue_(capacity) {
     while (queue_.try_enqueue(T())) {
     }

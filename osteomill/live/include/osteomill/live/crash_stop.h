@@ -40,7 +40,8 @@ class CrashStop {
   /// Has all live devices sent zero until `engage`, and waits up to 50 ms until it has gone out. For a
   /// signal handler of the program's own; any thread, with or without an object of this class.
   static void disengage() noexcept;
-  /// After `disengage`: what the sessions ask for is sent again, coming up slowly. As safe.
+  /// Ends what `disengage` began: what the sessions ask for is sent again, and comes up slowly. For the same
+  /// callers.
   static void engage() noexcept;
 };
 
@@ -48,18 +49,19 @@ class CrashStop {
 /// has one; only a loop of its own that is to stop as safely needs another.
 class DrivenDevice {
  public:
-  /// `device` outlives this object. No thread drives it yet.
+  /// Makes the device known. It outlives this object, and no thread drives it yet.
   explicit DrivenDevice(Device& device);
   /// Returns once no signal handler uses the device any more.
   ~DrivenDevice();
   DrivenDevice(const DrivenDevice&) = delete;
   DrivenDevice& operator=(const DrivenDevice&) = delete;
 
-  /// Returns true when the haptic thread is to send zero and call `note_stopped`. Asked at every tick;
-  /// real-time safe.
+  /// Returns true when the haptic thread is to send zero and call `note_stopped`. Asked at every tick; real-time
+  /// safe.
   bool is_stop_requested() const { return stop_requested_.load(std::memory_order_acquire); }
-  /// The haptic thread begins to drive the device, or has sent zero for the last time.
+  /// Notes that the haptic thread begins to drive the device. Real-time safe.
   void note_started() { is_stopped_.store(false, std::memory_order_release); }
+  /// Notes that the haptic thread has sent zero for the last time. Real-time safe.
   void note_stopped() { is_stopped_.store(true, std::memory_order_release); }
 
  private:

@@ -41,7 +41,7 @@ struct LiveState {
 /// (CrashStop).
 class HapticThread {
  public:
-  /// `device` outlives this object. Does not start yet.
+  /// Takes the session over. `device` outlives this object. Does not start yet.
   HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {});
 
   /// Starts the haptic thread and returns when it runs; does nothing if it runs already. Throws
@@ -66,6 +66,7 @@ class HapticThread {
   /// nothing is milled, so that the hand feels no step; then the device is put there (Device::put_at), and
   /// the algorithm begins again. One at a time: does nothing while `is_placing`.
   void place(const Pose& X_WD);
+  /// Returns whether the tool is being brought to the pose given to `place`.
   bool is_placing() const { return placing_.load(std::memory_order_acquire); }
   /// Replaces the listener; an empty one for none.
   void set_listener(TickListener listener);
@@ -74,7 +75,7 @@ class HapticThread {
   const LiveState& state() { return state_.read(); }
   /// Returns every tick's record in turn. The queue holds 4 s; records that find it full are lost.
   std::optional<TickRecord> next_record();
-  /// From any thread.
+  /// Returns how well the session keeps its time. From any thread.
   TimingSummary timing() const { return timing_.summary(); }
   /// Returns in one line what real-time scheduling the system refused; empty if nothing. Valid once started.
   const std::string& refused_real_time() const { return refused_real_time_; }
@@ -83,9 +84,10 @@ class HapticThread {
   /// signal ended it. For the commanding thread.
   std::exception_ptr failure() const { return is_running() ? nullptr : failure_; }
 
-  /// Return the session now in use, and how many were replaced before it. Its volume's densities may be read
-  /// only while held, or while not running.
+  /// Returns the session now in use. Its volume's densities may be read only while held, or while not
+  /// running.
   const MillingSession& session() const { return *session_; }
+  /// Returns how many sessions were replaced before the one in use.
   std::uint32_t session_number() const { return session_number_; }
 
  private:

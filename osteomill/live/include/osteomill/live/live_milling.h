@@ -40,13 +40,15 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
 /// throws std::system_error and changes nothing.
 class LiveMilling {
  public:
-  /// `device` outlives this object; its handle is where the tool may begin. Does not start yet.
+  /// Takes over what was prepared. `device` outlives this object; its handle is where the tool may begin.
+  /// Does not start yet.
   LiveMilling(PreparedMilling prepared, Device& device);
   LiveMilling(std::shared_ptr<Volume> bone, const MillingSetup& setup, Device& device)
       : LiveMilling(prepare_milling(std::move(bone), setup), device) {}
 
   /// Starts the haptic thread, as HapticThread::start does, failures included.
   void start();
+  /// Stops the haptic thread; the device is sent zero.
   void stop() { live_.stop(); }
   bool is_running() const { return live_.is_running(); }
   /// Returns the exception with which the device ended the milling (HapticThread::failure).
@@ -59,7 +61,7 @@ class LiveMilling {
   void finish_preparing();
   bool is_preparing() const { return preparation_.valid(); }
 
-  /// Switching it on begins another cut, which `undo` takes back by itself.
+  /// Switches the spindle. Switching it on begins another cut, which `undo` takes back by itself.
   void set_spindle(bool on);
   bool is_spindle_requested() const { return spindle_; }
   void set_paused(bool paused) { live_.set_paused(paused); }
@@ -70,9 +72,11 @@ class LiveMilling {
   /// something is being prepared already: then it does nothing, and the caller asks again once that is in
   /// place.
   [[nodiscard]] bool change(const MillingSetup& setup);
+  /// Begins to prepare the bone at another isovalue; what was milled stays milled. Returns as `change` does.
   [[nodiscard]] bool change_isovalue(double isovalue);
-  /// Takes the last cut back; or all of them.
+  /// Begins to take the last cut back. Returns as `change` does.
   [[nodiscard]] bool undo();
+  /// Begins to take all cuts back. Returns as `change` does.
   [[nodiscard]] bool reset();
 
   /// Returns how much of each label's bone is gone, mm^3 of reference density, by the labels' places from 1;
@@ -99,7 +103,7 @@ class LiveMilling {
   bool has_recording_failed() const { return recorder_ && recorder_->failed(); }
 
   const LiveState& state() { return live_.state(); }
-  /// Every tick in turn (HapticThread::next_record).
+  /// Returns every tick in turn (HapticThread::next_record).
   std::optional<TickRecord> next_record() { return live_.next_record(); }
   TimingSummary timing() const { return live_.timing(); }
   const std::string& refused_real_time() const { return live_.refused_real_time(); }
@@ -109,11 +113,11 @@ class LiveMilling {
   const GridGeometry& geometry() const { return live_.session().volume().geometry(); }
   double isovalue() const { return live_.session().volume().isovalue(); }
 
-  /// The bone as it is milled, some ticks behind: its surface, cuts and densities; from any thread.
+  /// Returns the bone as it is milled, some ticks behind: its surface, cuts and densities; from any thread.
   const BoneFollower& follower() const { return *follower_; }
-  /// Pass on to BoneFollower: what changed of its surface since the last call, and the surface at another
-  /// isovalue.
+  /// Returns what changed of the surface since the last call (BoneFollower::take_changed_bricks).
   ChangedBricks take_changed_bricks() { return follower_->take_changed_bricks(); }
+  /// Lets the surface be meshed at another isovalue (BoneFollower::show_isovalue).
   void show_isovalue(double isovalue) { follower_->show_isovalue(isovalue); }
 
  private:

@@ -24,7 +24,7 @@ struct CutProfile {
   /// dense as the reference.
   static constexpr double kReach_voxels = 1.55;
 
-  /// The isovalue and the reference are above the surroundings.
+  /// Returns the profile for these densities; the isovalue and the reference are above the surroundings.
   static CutProfile between(double surroundings, double isovalue, double reference) {
     return {static_cast<float>(surroundings), static_cast<float>(isovalue),
             static_cast<float>(isovalue - surroundings), static_cast<float>(4 * (reference - surroundings))};

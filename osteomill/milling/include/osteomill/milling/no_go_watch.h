@@ -12,7 +12,7 @@ namespace osteomill {
 /// wide as that is found when the burr reaches it, bone or not.
 class NoGoWatch {
  public:
-  /// Allocates. `labels` may be null: then nothing is found.
+  /// Places the points on the burr. Allocates. `labels` may be null: then nothing is found.
   NoGoWatch(std::shared_ptr<const LabelMap> labels, double burr_radius_mm);
 
   /// Adds to `tally` every no-go label that the burr touches, with nothing removed. Safe in the haptic tick.

@@ -38,7 +38,7 @@ void require_valid(const HandleSettings& settings);
 /// Made outside the tick (it allocates); everything else is safe in it.
 class SimulatedHandle {
  public:
-  /// At rest at `X_WD`. Throws std::invalid_argument as `require_valid` does.
+  /// Makes a handle at rest at `X_WD`. Throws std::invalid_argument as `require_valid` does.
   SimulatedHandle(const HandleSettings& settings, const Pose& X_WD);
 
   /// Puts the handle at `X_WD`, at rest, with nothing commanded.

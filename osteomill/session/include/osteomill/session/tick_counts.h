@@ -68,7 +68,7 @@ class LabelCount {
   std::optional<double> last_no_go_s() const;
 
   const std::vector<Label>& labels() const { return labels_; }
-  /// One for each label.
+  /// Returns the counts, one for each label.
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:

@@ -21,13 +21,13 @@ using ChangedBricks = std::map<std::size_t, BrickLevels>;
 /// Holds no densities. For one thread.
 class SurfaceUpkeep {
  public:
-  /// Making a brick's levels takes five times as long as its mesh, and while the brick is milled they are not
-  /// seen. So they are made once this many calls of `remesh` in a row found the brick unmarked, and ...
+  /// The number of calls of `remesh` in a row that find a brick unmarked before its levels are made: making
+  /// them takes five times as long as its mesh, and while the brick is milled they are not seen.
   static constexpr int kCallsUntilRest = 10;
-  /// ... for at most this number of bricks in one call.
+  /// The most bricks whose levels are made in one call.
   static constexpr std::size_t kMaxRefinedPerCall = 2;
 
-  /// At first every brick has to be meshed.
+  /// Marks every brick, because none is meshed yet.
   explicit SurfaceUpkeep(const SurfaceBricks& layout);
 
   /// Marks the bricks that depend on these voxels (in the grid), whose densities changed, up or down.

@@ -55,7 +55,7 @@ class DensityGrid {
     return v.i >= 0 && v.j >= 0 && v.k >= 0 && v.i < geometry_.dims[0] && v.j < geometry_.dims[1] &&
            v.k < geometry_.dims[2];
   }
-  /// `v` must lie in the grid.
+  /// Returns the density of `v`, which must lie in the grid.
   float operator[](const VoxelIndex& v) const { return *address_of(v); }
   /// Returns the density of any `v`; the outside density beyond the border.
   float at_or_outside(const VoxelIndex& v) const noexcept {

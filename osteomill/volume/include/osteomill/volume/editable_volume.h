@@ -10,7 +10,7 @@ namespace osteomill {
 /// is prepared later sees the bone as it then is. Not for the tick.
 class EditableVolume {
  public:
-  /// `bone` outlives it.
+  /// Makes the bone editable. `bone` outlives this object.
   explicit EditableVolume(Volume& bone) : bone_(bone) {}
 
   /// Puts the block's densities into the bone, and the bone's into the block: a second call undoes the first.
