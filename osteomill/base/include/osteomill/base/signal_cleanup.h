@@ -18,8 +18,8 @@ class SignalCleanup {
   int slot_;
 };
 
-/// Lets SIGTERM, SIGINT and SIGHUP remove every SignalCleanup before they do what they did; one that is ignored
-/// stays so. For a program to call as it starts.
+/// Lets SIGTERM, SIGINT and SIGHUP remove every SignalCleanup before they do what they did; one that is
+/// ignored stays so. For a program to call as it starts.
 void install_signal_cleanup();
 
 }  // namespace osteomill

@@ -56,8 +56,8 @@ class DrivenDevice {
   DrivenDevice(const DrivenDevice&) = delete;
   DrivenDevice& operator=(const DrivenDevice&) = delete;
 
-  /// Returns true when the haptic thread is to send zero and call `note_stopped`. Asked at every tick; real-time
-  /// safe.
+  /// Returns true when the haptic thread is to send zero and call `note_stopped`. Asked at every tick;
+  /// real-time safe.
   bool is_stop_requested() const { return stop_requested_.load(std::memory_order_acquire); }
   /// Notes that the haptic thread begins to drive the device. Real-time safe.
   void note_started() { is_stopped_.store(false, std::memory_order_release); }

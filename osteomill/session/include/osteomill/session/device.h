@@ -25,8 +25,8 @@ class Device {
   virtual Pose read_pose() OSTEOMILL_NONBLOCKING = 0;
   /// Sends a wrench that is already safe (finite, within the limits).
   virtual void write_wrench(const Wrench& wrench) OSTEOMILL_NONBLOCKING = 0;
-  /// Returns the share, 0 to 1, of the force that was written that has reached the hand (sent_fraction). Milling
-  /// removes bone for that share alone.
+  /// Returns the share, 0 to 1, of the force that was written that has reached the hand (sent_fraction).
+  /// Milling removes bone for that share alone.
   virtual double delivered_fraction() const noexcept OSTEOMILL_NONBLOCKING { return 1; }
   /// Returns whether what is written from now on reaches a hand; asked after `read_pose`. A device that was
   /// not driven since the last tick, however shortly, returns false once: its hand may have sunk into bone,
