@@ -36,10 +36,13 @@ def code_of_page(page):
 
 def doxygen(work):
     """Writes WORK/rooms.dox, WORK/Doxyfile and the C++ of the documents as examples."""
-    rooms = [(room, purpose[0].upper() + purpose[1:]) for room, purpose in re.findall(r"^### `(\w+)`.*?\n- \*\*Purpose\*\*: (.*?)(?=\n- \*\*)", (ROOT / "docs/architecture.md").read_text(), re.M | re.S)]
-    text = ["@mainpage API reference", "The public headers, by room ([architecture](../docs/architecture.html#the-rooms)); a room is a component of the installed package",
-            "([how to link it](../docs/library.html#link)). Units, frames and errors follow the [conventions](../docs/conventions.html).", "",
-            "| room | purpose |", "|---|---|"]
+    architecture = (ROOT / "docs/architecture.md").read_text()
+    rooms = [(room, purpose[0].upper() + purpose[1:]) for room, purpose in
+             re.findall(r"^### `(\w+)`.*?\n- \*\*Purpose\*\*: (.*?)(?=\n- \*\*)", architecture, re.M | re.S)]
+    text = ["@mainpage API reference",
+            "The public headers, by room ([architecture](../docs/architecture.html#the-rooms)); a room is a component of the",
+            "installed package ([how to link it](../docs/library.html#link)). Units, frames and errors follow the",
+            "[conventions](../docs/conventions.html).", "", "| room | purpose |", "|---|---|"]
     text += [f"| @ref {room} | {' '.join(purpose.split())} |" for room, purpose in rooms]
     text += ["", "A member without a comment is what its name and unit say. Whole programs: [examples](examples.html)."]
     blocks = [f"/**\n{chr(10).join(text)}\n*/"]
@@ -62,7 +65,8 @@ def doxygen(work):
 
 
 class Entity:
-    """Anything in the reference: its name, its page, the first sentence on it, what its comment links to, and the types that it is declared with."""
+    """Anything in the reference: its name, its page, the first sentence on it, what its comment links to, and the types that it is
+    declared with."""
 
     def __init__(self, node, name, kind, outer=None):
         self.id, self.name, self.kind, self.outer = node.get("id"), name, kind, outer
@@ -71,7 +75,8 @@ class Entity:
         comments = [node.find(part) for part in ("briefdescription", "detaileddescription")]
         self.brief = " ".join("".join(comments[0].itertext()).split())
         self.links = {ref.get("refid") for comment in comments if comment is not None for ref in comment.iter("ref")}
-        self.signature = {ref.get("refid") for part in ("type", "param") for found in node.findall(part) for ref in found.iter("ref")}
+        self.signature = {ref.get("refid") for part in ("type", "param") for found in node.findall(part)
+                          for ref in found.iter("ref")}
         self.header = node.find("location").get("file") if node.find("location") is not None else ""
 
 
@@ -103,17 +108,21 @@ def examples(work):
     entities, shown = reference(work)
     shown |= {entity.outer.id for entity in entities if entity.id in shown and entity.outer and entity.outer.kind != "group"}
     scopes = {entity.name for entity in entities if entity.kind in ("class", "struct")}
-    words = {path: collections.Counter(re.findall(r"\w+", CODE.sub("", path.read_text()))) for path in ROOT.glob("[!b]*/**/*.cpp")}
+    words = {path: collections.Counter(re.findall(r"\w+", CODE.sub("", path.read_text())))
+             for path in ROOT.glob("[!b]*/**/*.cpp")}
     tests = [path for path in words if path.stem.endswith("_test")]
 
     def best_of(entity, paths):
         name, header = entity.name.rpartition("::")[2], pathlib.PurePath(entity.header)
-        best = max(paths, key=lambda path: (words[path][name] > 0, path.stem == f"{header.stem}_test", words[path][name], path.stem))
+        best = max(paths, key=lambda path: (words[path][name] > 0, path.stem == f"{header.stem}_test", words[path][name],
+                                            path.stem))
         return best if words[best][name] > 0 else None
 
     blocks, used, fine = [], set(), True
     for entity in entities:
-        if entity.kind not in ("class", "struct", "enum") or entity.id in shown or entity.name.rpartition("::")[0] in scopes:
+        if entity.kind not in ("class", "struct", "enum") or entity.id in shown:
+            continue
+        if entity.name.rpartition("::")[0] in scopes:
             continue
         users = [one.outer if one.outer and one.outer.kind != "group" else one for one in entities
                  if one.id in entity.links or entity.id in one.signature]
@@ -142,7 +151,7 @@ def linked_names(entities):
     names = {}
     for entity in entities:
         name = entity.name
-        if entity.kind in ("class", "struct", "file") or "::" in name or "_" in name.strip("_") or entity.kind in ("enum", "typedef", "variable"):
+        if entity.kind in ("class", "struct", "file", "enum", "typedef", "variable") or "::" in name or "_" in name:
             names.setdefault(name, entity.url)
     return names
 
@@ -166,7 +175,8 @@ def pages(work):
     entities, _ = reference(work)
     names = linked_names(entities)
     to = work / "pages"
-    listed = subprocess.check_output(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md", "docs"], cwd=ROOT, text=True)
+    listed = subprocess.check_output(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md", "docs"],
+                                     cwd=ROOT, text=True)
     sources = set()
 
     def write(path, content):
@@ -179,10 +189,12 @@ def pages(work):
             return target
         file = pathlib.PurePosixPath(os.path.normpath(page.parent / path))
         up = os.path.relpath(".", page.parent)
-        if header := PUBLIC_HEADER.fullmatch(str(file)):
+        if (header := PUBLIC_HEADER.fullmatch(str(file))) and header[1] in names:
             return f"{up}/{names[header[1]]}"
         if ROOT / file in EXAMPLES:
             return f"{up}/api/{file.stem}_8cpp-example.html"
+        if not (ROOT / file).is_file():
+            sys.exit(f"{page}: {target} is not there")
         sources.add(file)
         return f"{path}.md"
 
@@ -194,7 +206,8 @@ def pages(work):
         parts = re.split(r"(?ms)(^```.*?^```|^#.*?$)", text)
         pattern = re.compile(r"(!?\[(?:[^\[\]]|\[[^\]]*\])*\])\(([^)\s]+)\)|(`[^`\n]+`)")
         for n in range(0, len(parts), 2):
-            parts[n] = pattern.sub(lambda m: of_code(page, m[3]) if m[3] else f"{m[1]}({of_link(page, m[2])})", as_python_markdown(parts[n]))
+            parts[n] = pattern.sub(lambda m: of_code(page, m[3]) if m[3] else f"{m[1]}({of_link(page, m[2])})",
+                                   as_python_markdown(parts[n]))
         return "".join(parts)
 
     for name in listed.splitlines():
@@ -204,10 +217,12 @@ def pages(work):
         content = (ROOT / name).read_bytes()
         write(page, rewritten(page, content.decode()).encode() if page.suffix == ".md" else content)
     for file in sources:
-        write(f"{file}.md", f"# {file}\n\n```{LANGUAGES.get(file.suffix, '')}\n{(ROOT / file).read_text()}\n```\n".encode())
+        text = (ROOT / file).read_text()
+        write(f"{file}.md", f"# {file}\n\n```{LANGUAGES.get(file.suffix, '')}\n{text}\n```\n".encode())
     write("pages.css", (ROOT / "scripts/site/pages.css").read_bytes())
-    (work / "mkdocs.yml").write_text(json.dumps({"INHERIT": str(ROOT / "scripts/site/mkdocs.yml"), "docs_dir": "pages", "nav": navigation(),
-                                                 "site_dir": "../site", "hooks": [str(ROOT / "scripts/site/hooks.py")]}))
+    (work / "mkdocs.yml").write_text(json.dumps({
+        "INHERIT": str(ROOT / "scripts/site/mkdocs.yml"), "hooks": [str(ROOT / "scripts/site/hooks.py")],
+        "docs_dir": "pages", "site_dir": "../site", "nav": navigation()}))
 
 
 def navigation():
@@ -248,11 +263,13 @@ def finish(work, site):
     entities, _ = reference(work)
     index = site / "search/search_index.json"
     search = json.loads(index.read_text())
-    # The search wants a page, then its title as the first place on it, then other places. Members would crowd out documents.
+    # The search wants a page, then its title as the first place on it, then other places. Members would crowd out
+    # documents.
     for entity in entities:
-        if entity.kind in ("group", "class", "struct") or entity.outer and entity.outer.kind == "group" and entity.kind in ("enum", "function", "typedef"):
+        is_page = entity.kind in ("group", "class", "struct")
+        if is_page or entity.outer and entity.outer.kind == "group" and entity.kind in ("enum", "function", "typedef"):
             entry = {"location": entity.url, "title": entity.name, "text": entity.brief}
-            search["docs"] += [entry] if "#" in entity.url else [entry, {**entry, "location": entity.url + "#details"}]
+            search["docs"] += [entry, {**entry, "location": entity.url + "#details"}] if is_page else [entry]
     index.write_text(json.dumps(search, separators=(",", ":")))
 
     (site / "404.html").unlink()  # for servers of one address alone
