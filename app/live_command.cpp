@@ -1,6 +1,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -197,6 +198,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   if (!options.record.empty()) {
     pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
     RunDescription run = milling.describe(loaded.name, command_line);
+    std::ranges::move(scan_settings(options.scan), std::back_inserter(run.settings));
     tool_source.describe(run);
     const auto picture = [&](std::string_view name) {
       std::optional<std::vector<unsigned char>> png;

@@ -91,14 +91,9 @@ void replay_trajectory(ReplayOptions options) {
   log.write();
 }
 
-// The scan that is named, or else the one that the recording names, read as it was for the recording.
-Volume scan_of(const ReplayOptions& options, const Recording& recording) {
-  ScanOptions scan = options.scan;
-  if (scan.scan.empty() && recording.description.scan_name != kBuiltinTooth)
-    scan.scan = recording.description.scan_name;
-  scan.isovalue = recording.description.isovalue;
-  scan.bone_fingerprint = recording.description.scan_hash;
-  LoadedBone bone = read_bone(scan);
+// Reads the scan that is named, or else the recording's, as it was read for the recording.
+Volume recorded_bone(const ReplayOptions& options, const Recording& recording) {
+  LoadedBone bone = read_bone(scan_of(recording.description, options.scan));
   require_made_with(recording, bone.volume);
   const auto& labels = bone.volume.labels();
   if (labels && labels->fingerprint() != recording.description.label_map_hash)
@@ -199,7 +194,7 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
   if (!options.verify && options.out.empty() && options.record.empty())
     throw CLI::RequiredError("--verify, --out or --record");
   const Recording recording = read_recording_chain(options.input);
-  const Volume scan = scan_of(options, recording);
+  const Volume scan = recorded_bone(options, recording);
   if (options.verify) verify(scan, recording);
   if (!options.out.empty() || !options.record.empty())
     replay_with_changes(options, command_line, scan, recording);
@@ -211,7 +206,7 @@ void refuse_what_is_recorded(const ReplayOptions& options) {
     if (options.is_given(option))
       throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
   };
-  refuse("--iso");
+  for (const Field<ScanOptions>& option : fields_of<ScanOptions>()) refuse("--" + option.option);
   for (const Field<MillingSetup>& setting : fields_of<MillingSetup>()) {
     if (setting.has(kOfTheRecording)) refuse("--" + setting.option);
   }

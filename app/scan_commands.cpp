@@ -40,9 +40,10 @@ void run_info(const InfoOptions& options) {
   if (is_within(scan.grid, isovalue)) {
     LabelsRead labels = labels_of(options.scan, scan);
     add(labels.warnings);
-    Volume bone = bone_of(scan, isovalue);
+    Volume bone = bone_of(scan, isovalue, options.scan.pieces).volume;
     bone.set_labels(std::move(labels.map));
     summary.labels = summarise_labels(bone);
+    summary.pieces_mm3 = piece_volumes_mm3(bone);
     add(entry_warnings(bone, MillingTool{}, place_entry(bone, MillingTool{})));
   }
   fmt::print("{}", options.json ? to_json(summary) : to_text(summary));
@@ -70,10 +71,7 @@ void add_write_options(CLI::App& command, WriteOptions& options, const std::stri
 LoadedBone load_milled_bone(const WriteOptions& options) {
   if (options.recording.empty()) return load_bone(options.scan);
   const Recording recording = read_recording_chain(options.recording);
-  ScanOptions scan = options.scan;
-  if (!scan.isovalue) scan.isovalue = recording.description.isovalue;
-  scan.bone_fingerprint = recording.description.scan_hash;
-  LoadedBone bone = read_bone(scan);
+  LoadedBone bone = read_bone(scan_of(recording.description, options.scan));
   repeat_milling(bone.volume, recording);
   for (const std::string& warning : bone.warnings) warn(warning);
   return bone;

@@ -39,37 +39,44 @@ Vec3 spacing_of(const std::string& given) {
 template <>
 const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>() {
   using S = app::ScanOptions;
-  static const std::vector<Field<S>> all{
-      {{"", "density", NumberRange::finite(), "Isovalue: bone where the density is greater",
-        app::kBoneChoiceField | app::kBoneField, "iso"},
-       [](const S& s) { return s.isovalue.value_or(std::numeric_limits<double>::quiet_NaN()); },
-       [](S& s, double value) { s.isovalue = value; }}};
+  static const std::vector<Field<S>> all = [] {
+    std::vector<Field<S>> fields{
+        {{"", "density", NumberRange::finite(), "Isovalue: bone where the density is greater",
+          app::kBoneChoiceField | app::kBoneField, "iso"},
+         [](const S& s) { return s.isovalue.value_or(std::numeric_limits<double>::quiet_NaN()); },
+         [](S& s, double value) { s.isovalue = value; }}};
+    for (Field<S>& piece : fields_within<S>(&S::pieces, fields_of<PieceChoice>())) {
+      piece.flags |= app::kBoneChoiceField | app::kBoneField;
+      fields.push_back(std::move(piece));
+    }
+    return fields;
+  }();
   return all;
 }
 
 template <>
 const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOptions, std::string>() {
   using S = app::ScanOptions;
-  const auto text = [](const char* option, const char* type, unsigned of, const char* doc) {
-    return FieldDescription{"", type, {}, doc, of | app::kBoneField, option};
+  const auto text = [](const char* name, const char* option, const char* type, unsigned of, const char* doc) {
+    return FieldDescription{name, type, {}, doc, of | app::kBoneField, option};
   };
-  FieldDescription no_go =
-      text("no-go", "LABEL,...", app::kNoGoField, "Labels that the burr must not touch, by name or value");
+  FieldDescription no_go = text("scan.no_go", "no-go", "LABEL,...", app::kNoGoField,
+                                "Labels that the burr must not touch, by name or value");
   no_go.range = NumberRange::count(1);
   static const std::vector<Field<S, std::string>> all{
       field<S>(
-          text("series", "SERIES", app::kSourceField,
+          text("scan.series", "series", "SERIES", app::kSourceField,
                "DICOM series to read if there are several: its number in what info lists (3, or 3.1 for one "
                "of several volumes in a series), or the beginning of its UID; else the largest CT"),
           [](auto& s) -> auto& { return s.read.series; }),
-      {text("spacing", "X,Y,Z", app::kSourceField,
+      {text("scan.spacing", "spacing", "X,Y,Z", app::kSourceField,
             "How far the voxels of a stack of PNG or TIFF pictures lie apart in mm: along columns, rows, "
             "slices"),
        [](const S& s) {
          return s.read.spacing_mm ? fmt::format("{}", fmt::join(*s.read.spacing_mm, ",")) : std::string();
        },
        [](S& s, const std::string& given) { s.read.spacing_mm = spacing_of(given); }},
-      {text("as", "scan|labels", app::kSourceField,
+      {text("", "as", "scan|labels", app::kSourceField,
             "Take the values as densities, or as labels, all of which are bone (default: by header and "
             "content, with --iso as densities)"),
        [](const S& s) { return s.as_labels ? *s.as_labels ? "labels" : "scan" : ""; },
@@ -79,11 +86,11 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
        }},
       field<S>(
           text(
-              "labels", "FILE", app::kBoneChoiceField,
+              "scan.labels", "labels", "FILE", app::kBoneChoiceField,
               "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage, DICOM segmentation), on any grid"),
           [](auto& s) -> auto& { return s.labels.map; }),
       field<S>(
-          text("label-table", "FILE", app::kBoneChoiceField,
+          text("scan.label_table", "label-table", "FILE", app::kBoneChoiceField,
                "Names and colours of labels: a colour table of 3D Slicer's or a label file of ITK-SNAP's"),
           [](auto& s) -> auto& { return s.labels.table; }),
       {no_go, [](const S& s) { return fmt::format("{}", fmt::join(s.labels.no_go, ",")); },
@@ -136,8 +143,10 @@ LabelGuess guess_content(const ScanOptions& options, const Scan& scan) {
   const auto of = [](bool labels) { return labels ? LabelGuess::labels : LabelGuess::densities; };
   if (options.as_labels) return of(*options.as_labels);
   if (options.bone_fingerprint != 0 && options.isovalue) {
+    DensityGrid labelled = bone_of_labels(scan.grid, *options.isovalue);
+    if (!options.pieces.keeps_all()) leave_out_pieces(labelled, *options.isovalue, options.pieces);
     return of(fingerprint_of(scan.grid) != options.bone_fingerprint &&
-              fingerprint_of(bone_of_labels(scan.grid, *options.isovalue)) == options.bone_fingerprint);
+              fingerprint_of(labelled) == options.bone_fingerprint);
   }
   if (options.isovalue) return LabelGuess::densities;
   return scan.is_labels ? LabelGuess::labels : guess_labels(scan.grid);
@@ -175,8 +184,43 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
   return suggest_isovalue(scan.grid, scan.in_hounsfield_units);
 }
 
-Volume bone_of(Scan scan, double isovalue) {
-  return Volume(scan.is_labels ? bone_of_labels(scan.grid, isovalue) : std::move(scan.grid), isovalue);
+ChosenBone bone_of(Scan scan, double isovalue, const PieceChoice& pieces) {
+  DensityGrid grid = scan.is_labels ? bone_of_labels(scan.grid, isovalue) : std::move(scan.grid);
+  PiecesLeftOut left_out;
+  if (!pieces.keeps_all()) {
+    left_out = leave_out_pieces(grid, isovalue, pieces);
+    if (left_out.kept == 0)
+      throw InputError(scan.name, fmt::format("has no piece of bone of {:g} mm^3", pieces.min_mm3));
+  }
+  return {Volume(std::move(grid), isovalue), left_out};
+}
+
+std::vector<RunSetting> scan_settings(const ScanOptions& options) {
+  std::vector<RunSetting> settings;
+  for (const Field<ScanOptions, std::string>& field : fields_of<ScanOptions, std::string>()) {
+    if (const std::string text = field.get(options); !field.name.empty() && !text.empty())
+      settings.push_back({field.name, text, ""});
+  }
+  for (const Field<ScanOptions>& field : fields_of<ScanOptions>()) {
+    if (const double value = field.get(options); !field.name.empty() && value != field.get({}))
+      settings.push_back({field.name, value, field.unit});
+  }
+  return settings;
+}
+
+ScanOptions scan_of(const RunDescription& run, ScanOptions given) {
+  if (given.scan.empty() && run.scan_name != kBuiltinTooth) given.scan = run.scan_name;
+  if (!given.isovalue) given.isovalue = run.isovalue;
+  given.bone_fingerprint = run.scan_hash;
+  for (const Field<ScanOptions, std::string>& field : fields_of<ScanOptions, std::string>()) {
+    const std::string* recorded = find_setting<std::string>(run, field.name);
+    if (recorded != nullptr && field.get(given).empty()) field.set(given, *recorded);
+  }
+  for (const Field<ScanOptions>& field : fields_of<ScanOptions>()) {
+    const double* recorded = find_setting<double>(run, field.name);
+    if (recorded != nullptr && field.get(given) == field.get({})) field.set(given, *recorded);
+  }
+  return given;
 }
 
 LabelsRead labels_of(const ScanOptions& options, const Scan& scan) {
@@ -214,7 +258,12 @@ LoadedBone read_bone(const ScanOptions& options) {
   warnings.insert(warnings.end(), labels.warnings.begin(), labels.warnings.end());
   std::string name = scan.name;
   const bool in_hounsfield_units = scan.in_hounsfield_units;
-  Volume bone = bone_of(std::move(scan), isovalue.value);
+  auto [bone, left_out] = bone_of(std::move(scan), isovalue.value, options.pieces);
+  if (left_out.pieces > 0) {
+    warnings.push_back(fmt::format(
+        "{}: {} pieces of bone of {:g} mm^3 in all are left out, {} kept", name, left_out.pieces,
+        static_cast<double>(left_out.voxels) * bone.geometry().voxel_volume_mm3(), left_out.kept));
+  }
   bone.set_labels(std::move(labels.map));
   return {std::move(bone), std::move(name), std::move(isovalue.how), std::move(warnings),
           in_hounsfield_units};

@@ -9,6 +9,8 @@
 #include "osteomill/base/field.h"
 #include "osteomill/ct/read_labels.h"
 #include "osteomill/ct/read_scan.h"
+#include "osteomill/recording/run_description.h"
+#include "osteomill/volume/bone_pieces.h"
 #include "osteomill/volume/isovalue.h"
 #include "osteomill/volume/volume.h"
 
@@ -26,6 +28,8 @@ struct ScanOptions {
   /// Whether the scan holds labels in the place of densities. If not given, the file's header or its values
   /// decide; with an isovalue given it holds none.
   std::optional<bool> as_labels{};
+  /// The pieces of bone that are kept.
+  PieceChoice pieces{};
   /// The fingerprint (fingerprint_of) of the bone that an earlier run made of this scan, 0 for none. It tells
   /// whether the scan was then taken for densities or for labels.
   std::uint64_t bone_fingerprint = 0;
@@ -59,7 +63,9 @@ inline constexpr const char* kBuiltinTooth = "built-in tooth";
 /// Adds SCAN and what it takes to read it: --series, --as, --max-memory.
 void add_scan_source(CLI::App& command, ScanOptions& options);
 
-/// Adds the options for which part of it is bone and for its labels: --iso, --labels, --label-table.
+/// Adds the options for which part of it is bone and for its labels: --iso, --keep-largest, --min-piece,
+/// --labels,
+/// --label-table.
 void add_bone_options(CLI::App& command, ScanOptions& options);
 
 /// All of these and --no-go.
@@ -72,9 +78,15 @@ Scan open_scan(const ScanOptions& options);
 /// Returns the isovalue for this scan if the user has given none.
 SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan);
 
+/// A bone, and what was left out of it.
+struct ChosenBone {
+  Volume volume;
+  PiecesLeftOut left_out;
+};
 /// Makes the bone of a scan: its densities with the isovalue, or, if it holds labels, all voxels labelled
-/// above the isovalue, at one density.
-Volume bone_of(Scan scan, double isovalue);
+/// above the isovalue, at one density; without the pieces that are not chosen. Throws InputError if none is
+/// left.
+ChosenBone bone_of(Scan scan, double isovalue, const PieceChoice& pieces);
 
 /// Reads the labels of a scan, if it has any: those of the label map that is named, or, if the scan is itself
 /// a label map, its own. Their warnings name the file.
@@ -92,6 +104,13 @@ struct LoadedBone {
   std::vector<std::string> warnings;
   bool in_hounsfield_units = false;
 };
+
+/// Returns the settings of a run that say how its scan was read, from which `scan_of` reads it again. The
+/// scan's name and the isovalue are attributes of every recording.
+std::vector<RunSetting> scan_settings(const ScanOptions& options);
+/// Returns the options that read the scan of a run again. Those that are set in `given` go before the
+/// recorded.
+ScanOptions scan_of(const RunDescription& run, ScanOptions given = {});
 
 /// Reads the bone with its labels. Throws InputError if the scan or the isovalue is at fault.
 LoadedBone read_bone(const ScanOptions& options);

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
+#include <iterator>
 #include <system_error>
 
 #include <fmt/chrono.h>
@@ -22,11 +23,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Keys of the options that opening the scan again needs, beside the attributes of every recording.
-constexpr const char* kSeriesKey = "scan.series";
-constexpr const char* kSpacingKey = "scan.spacing";
-constexpr const char* kLabelMapKey = "scan.labels";
-constexpr const char* kLabelTableKey = "scan.label_table";
 constexpr auto kInterval = 5s;
 constexpr int kWritingShare = 50;
 // 1 GiB.
@@ -50,17 +46,12 @@ std::string absolute_path(const fs::path& path) {
   return path.empty() ? std::string() : fs::absolute(path).lexically_normal().string();
 }
 
-const Field<ScanOptions, std::string>& spacing_field() {
-  return *std::ranges::find(fields_of<ScanOptions, std::string>(), "spacing",
-                            &Field<ScanOptions, std::string>::option);
-}
-
-RunDescription describe(const ScanOptions& scan, const LiveMilling& milling) {
+// The files may be sought from another folder later.
+RunDescription describe(ScanOptions scan, const LiveMilling& milling) {
   RunDescription run = milling.describe(scan.scan.empty() ? kBuiltinTooth : absolute_path(scan.scan), "");
-  run.settings.push_back({kSeriesKey, scan.read.series, ""});
-  run.settings.push_back({kSpacingKey, spacing_field().get(scan), ""});
-  run.settings.push_back({kLabelMapKey, absolute_path(scan.labels.map), ""});
-  run.settings.push_back({kLabelTableKey, absolute_path(scan.labels.table), ""});
+  scan.labels.map = absolute_path(scan.labels.map);
+  scan.labels.table = absolute_path(scan.labels.table);
+  std::ranges::move(scan_settings(scan), std::back_inserter(run.settings));
   return run;
 }
 
@@ -115,23 +106,6 @@ AutosaveFile::AutosaveFile(fs::path folder, FileLock lock)
 void AutosaveFile::clear() const {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_, ignored)) fs::remove(entry.path(), ignored);
-}
-
-ScanOptions scan_of(const SessionStart& leftover) {
-  const auto text = [&](const char* key) {
-    const std::string* value = find_setting<std::string>(leftover.run, key);
-    return value == nullptr ? std::string() : *value;
-  };
-  ScanOptions scan;
-  if (leftover.run.scan_name != kBuiltinTooth) scan.scan = leftover.run.scan_name;
-  scan.isovalue = leftover.run.isovalue;
-  scan.read.series = text(kSeriesKey);
-  if (const std::string spacing = text(kSpacingKey); !spacing.empty()) spacing_field().set(scan, spacing);
-  scan.labels = {text(kLabelMapKey), text(kLabelTableKey), {}};
-  for (const Label& label : leftover.run.labels)
-    if (label.no_go) scan.labels.no_go.push_back(std::to_string(label.value));
-  scan.bone_fingerprint = leftover.run.scan_hash;
-  return scan;
 }
 
 Autosave::Autosave(ScanOptions scan, std::optional<AutosaveFile> file)

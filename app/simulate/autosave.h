@@ -46,8 +46,6 @@ struct LeftoverMilling {
 };
 /// The newest that no other running program holds; nothing if there is none.
 std::optional<LeftoverMilling> last_leftover_milling();
-/// The scan that was milled, with all options that it takes to open it again.
-ScanOptions scan_of(const SessionStart& leftover);
 
 /// Keeps unsaved milled bone in such a file, as a recording of no ticks: the first time at once, then at most
 /// every 5 s and for no more than 2 % of the time. Reads the follower's copy and writes on a thread of its

@@ -1,5 +1,6 @@
 #include "app/simulate/simulation.h"
 
+#include <iterator>
 #include <thread>
 #include <utility>
 
@@ -82,6 +83,7 @@ Device& Simulation::take_tool(const MillingSetup& setup, const Volume& bone, con
 
 RunDescription Simulation::describe() const {
   RunDescription run = milling.describe(scan.name, command_line);
+  std::ranges::move(scan_settings(scan.source), std::back_inserter(run.settings));
   describe_device(run, tool_source.name, tool_source.hardware);
   return run;
 }

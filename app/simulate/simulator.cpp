@@ -273,7 +273,7 @@ class Simulator {
   }
 
   void open_leftover() {
-    ScanOptions scan = scan_of(leftover_->start);
+    ScanOptions scan = scan_of(leftover_->start.run);
     scan.read.max_memory_bytes = options_.scan.read.max_memory_bytes;
     // The labels that were asked for at this start come before those of the earlier run.
     std::error_code other;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "osteomill/base/input_error.h"
+#include "osteomill/volume/bone_pieces.h"
 
 namespace osteomill {
 
@@ -33,6 +35,22 @@ void summarise_values(double isovalue, ScanSummary& summary) {
   summary.value_max = static_cast<double>(max);
   summary.value_mean =
       sum / static_cast<double>(grid.geometry().voxel_count() - grid.voxels_without_density());
+}
+
+// "pieces      812 connected pieces of bone: 105000, 3020, 12.1 mm³ and smaller ones of 8.2 mm³ in all"
+std::string pieces_text(std::span<const double> volumes_mm3) {
+  constexpr std::size_t kListed = 3;
+  std::string text = fmt::format("pieces      {} connected piece{} of bone: ", volumes_mm3.size(),
+                                 volumes_mm3.size() == 1 ? "" : "s");
+  const std::span<const double> listed = volumes_mm3.first(std::min(kListed, volumes_mm3.size()));
+  const std::span<const double> others = volumes_mm3.subspan(listed.size());
+  for (const double& volume : listed)
+    text += fmt::format("{}{:.4g}", &volume == listed.data() ? "" : ", ", volume);
+  text += " mm³";
+  if (!others.empty())
+    text += fmt::format(", and smaller ones of {:.4g} mm³ in all",
+                        std::accumulate(others.begin(), others.end(), 0.0));
+  return text + "\n";
 }
 
 }  // namespace
@@ -62,6 +80,13 @@ std::vector<LabelSummary> summarise_labels(const Volume& bone) {
   return summaries;
 }
 
+std::vector<double> piece_volumes_mm3(const Volume& bone) {
+  std::vector<double> volumes_mm3;
+  for (const std::size_t voxels : piece_sizes(bone.grid(), bone.isovalue()))
+    volumes_mm3.push_back(static_cast<double>(voxels) * bone.geometry().voxel_volume_mm3());
+  return volumes_mm3;
+}
+
 std::string to_json(const ScanSummary& summary) {
   const GridGeometry& geometry = summary.scan.grid.geometry();
   std::array<std::array<double, 3>, 3> direction;
@@ -84,6 +109,10 @@ std::string to_json(const ScanSummary& summary) {
   if (!summary.scan.series.empty()) json["series"] = summary.scan.series;
   if (const std::size_t without = summary.scan.grid.voxels_without_density(); without > 0)
     json["voxels_without_density"] = without;
+  if (const std::vector<double>& all = summary.pieces_mm3; !all.empty()) {
+    const std::span<const double> largest(all.data(), std::min<std::size_t>(all.size(), 10));
+    json["pieces"] = {{"count", all.size()}, {"largest_mm3", largest}};
+  }
   for (const LabelSummary& of : summary.labels) {
     json["labels"].push_back({{"value", of.label.value},
                               {"name", of.label.name},
@@ -125,6 +154,7 @@ std::string to_text(const ScanSummary& summary) {
     text += fmt::format("boundary    {:.4g}, with {:.4g} below and {:.4g} above\n", of.density, of.below,
                         of.above);
   text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
+  if (!summary.pieces_mm3.empty()) text += pieces_text(summary.pieces_mm3);
   for (const std::string& series : summary.scan.series)
     text += fmt::format("series      {}\n", in_one_line(series));
   for (const LabelSummary& of : summary.labels) {

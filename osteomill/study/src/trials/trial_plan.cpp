@@ -28,6 +28,7 @@ RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::str
   run.scan_hash = plan.scan_hash;
   run.seed = person.seed;
   run.phase = phase;
+  run.settings.insert(run.settings.end(), plan.scan_settings.begin(), plan.scan_settings.end());
   run.settings.push_back({std::string(kScriptEntryKey), point_text(plan.entry.point_W), "mm"});
   run.settings.push_back({"script.direction", point_text(plan.entry.direction_W), ""});
   run.settings.push_back({"script.lateral", point_text(plan.entry.lateral_W), ""});

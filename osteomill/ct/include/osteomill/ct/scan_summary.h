@@ -33,6 +33,8 @@ struct ScanSummary {
   std::size_t voxels_above_iso = 0;
   /// A summary of each label; empty if the scan has none.
   std::vector<LabelSummary> labels{};
+  /// The volumes of the connected pieces of bone (piece_sizes), the largest first, mm^3.
+  std::vector<double> pieces_mm3{};
 };
 
 /// Summarises a scan in one pass over its voxels. `suggested_iso` is reported as the suggested one
@@ -42,9 +44,13 @@ ScanSummary summarise(Scan scan, SuggestedIsovalue suggested_iso, double isovalu
 /// Returns a summary of each of the bone's labels, if it has any. One pass over their voxels.
 std::vector<LabelSummary> summarise_labels(const Volume& bone);
 
+/// Returns the volumes of the bone's connected pieces, the largest first, mm^3.
+std::vector<double> piece_volumes_mm3(const Volume& bone);
+
 /// Returns a JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max,
 /// value_mean, suggested_iso, suggested_how, voxels_above_iso, warnings, boundaries, series if there are
-/// several, voxels_without_density and labels if there are any, and a line feed at its end. Bytes of a
+/// several, voxels_without_density and labels if there are any, pieces (their count and the volumes of the
+/// ten largest in mm^3), and a line feed at its end. Bytes of a
 /// warning that are not UTF-8 are replaced.
 std::string to_json(const ScanSummary& summary);
 

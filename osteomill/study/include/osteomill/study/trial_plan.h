@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "osteomill/recording/run_description.h"
 #include "osteomill/study/metrics.h"
@@ -34,6 +35,8 @@ struct TrialPlan {
   std::string comparison = {};
   /// The fingerprint of the bone as scanned (fingerprint_of), by which its recordings can be verified.
   std::uint64_t scan_hash = 0;
+  /// Further settings that its recordings carry: how the scan was read.
+  std::vector<RunSetting> scan_settings = {};
 };
 
 /// The key of the setting in which every recording of this test says where the tool enters.

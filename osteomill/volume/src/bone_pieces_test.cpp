@@ -1,0 +1,122 @@
+#include "osteomill/volume/bone_pieces.h"
+
+#include <algorithm>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/volume/density_grid.h"
+
+#include "tests/shapes.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::centred_cube;
+
+constexpr double kIsovalue = 0.5;
+
+DensityGrid made_of(const GridGeometry& geometry, const std::function<bool(const VoxelIndex&)>& is_bone) {
+  std::vector<float> densities;
+  for_each(geometry.all_voxels(), [&](const VoxelIndex& v) { densities.push_back(is_bone(v) ? 1 : -1); });
+
+  return DensityGrid(geometry, std::move(densities));
+}
+
+// Fills piece after piece, voxel by voxel.
+std::vector<std::size_t> filled_sizes(const DensityGrid& grid) {
+  std::vector<bool> seen(grid.geometry().voxel_count());
+  std::vector<std::size_t> sizes;
+  for_each(grid.geometry().all_voxels(), [&](const VoxelIndex& start) {
+    std::vector<VoxelIndex> waiting{start};
+    std::size_t size = 0;
+    while (!waiting.empty()) {
+      const VoxelIndex v = waiting.back();
+      waiting.pop_back();
+      if (!grid.contains(v) || seen[grid.linear_index(v)] || static_cast<double>(grid[v]) <= kIsovalue)
+        continue;
+      seen[grid.linear_index(v)] = true;
+      ++size;
+      for_each({{v.i - 1, v.j - 1, v.k - 1}, {v.i + 1, v.j + 1, v.k + 1}},
+               [&](const VoxelIndex& next) { waiting.push_back(next); });
+    }
+    if (size > 0) sizes.push_back(size);
+  });
+  std::sort(sizes.begin(), sizes.end(), std::greater<>());
+  return sizes;
+}
+
+TEST(BonePieces, AreThoseOfAFloodFillAtEveryShareOfBone) {
+  std::mt19937 random(7);
+  GridGeometry geometry = centred_cube(1, 0.5);
+  for (const auto& dims :
+       {std::array{13, 11, 9}, std::array{1, 17, 5}, std::array{20, 1, 1}, std::array{2, 2, 30}}) {
+    geometry.dims = dims;
+    for (const double share : {0.02, 0.05, 0.1, 0.2, 0.9}) {
+      std::bernoulli_distribution is_bone(share);
+      const DensityGrid grid = made_of(geometry, [&](const VoxelIndex&) { return is_bone(random); });
+      EXPECT_EQ(filled_sizes(grid), piece_sizes(grid, kIsovalue)) << share;
+    }
+  }
+}
+
+// A ball of 6 mm, one of 3 mm and a lone voxel in a grid of 0.25 mm.
+class TwoBalls : public testing::Test {
+ protected:
+  static bool is_in(const Vec3& p, double x_mm, double radius_mm) {
+    return (p - Vec3(x_mm, 0, 0)).norm() < radius_mm;
+  }
+  DensityGrid grid() const {
+    return made_of(geometry_, [&](const VoxelIndex& v) {
+      const Vec3 p = geometry_.world_from_voxel(v);
+      return is_in(p, -3.5, 6) || is_in(p, 7.5, 3) || v == lone_;
+    });
+  }
+  static double mm3(double radius_mm) { return 4.0 / 3 * std::numbers::pi * std::pow(radius_mm, 3); }
+
+  GridGeometry geometry_ = centred_cube(100, 0.25);
+  VoxelIndex lone_{97, 97, 97};
+};
+
+TEST_F(TwoBalls, HaveTheVolumesOfBalls) {
+  const std::vector<std::size_t> sizes = piece_sizes(grid(), kIsovalue);
+  ASSERT_EQ(3u, sizes.size());
+  EXPECT_NEAR(mm3(6), static_cast<double>(sizes[0]) * geometry_.voxel_volume_mm3(), 0.01 * mm3(6));
+  EXPECT_NEAR(mm3(3), static_cast<double>(sizes[1]) * geometry_.voxel_volume_mm3(), 0.01 * mm3(3));
+  EXPECT_EQ(1u, sizes[2]);
+}
+
+TEST_F(TwoBalls, OnlyTheLargestStays) {
+  DensityGrid left = grid();
+  const PiecesLeftOut out = leave_out_pieces(left, kIsovalue, {.only_largest = true});
+  EXPECT_EQ(2u, out.pieces);
+  EXPECT_EQ(1u, out.kept);
+  EXPECT_EQ(piece_sizes(grid(), kIsovalue)[1] + 1, out.voxels);
+  for_each(geometry_.all_voxels(), [&](const VoxelIndex& v) {
+    ASSERT_EQ(is_in(geometry_.world_from_voxel(v), -3.5, 6) ? 1 : -1, left[v]);
+  });
+}
+
+TEST_F(TwoBalls, PiecesBelowASizeGo) {
+  const auto kept = [&](const PieceChoice& choice) {
+    DensityGrid left = grid();
+    return leave_out_pieces(left, kIsovalue, choice).kept;
+  };
+  EXPECT_EQ(3u, kept({}));
+  EXPECT_EQ(3u, kept({.min_mm3 = geometry_.voxel_volume_mm3()}));
+  EXPECT_EQ(2u, kept({.min_mm3 = 1.001 * geometry_.voxel_volume_mm3()}));
+  EXPECT_EQ(1u, kept({.min_mm3 = 1.02 * mm3(3)}));
+  EXPECT_EQ(0u, kept({.min_mm3 = 1.02 * mm3(6)}));
+}
+
+TEST(BonePieces, OfGridWithoutBoneThereIsNone) {
+  DensityGrid none = made_of(centred_cube(4, 1), [](const VoxelIndex&) { return false; });
+  EXPECT_TRUE(piece_sizes(none, kIsovalue).empty());
+  EXPECT_EQ(0u, leave_out_pieces(none, kIsovalue, {.only_largest = true}).pieces);
+}
+
+}  // namespace
+}  // namespace osteomill
