@@ -96,7 +96,7 @@ void add_device_option(CLI::App& command, DeviceOption& option) {
       .add_option("--shaft-lever", option.shaft_lever_mm,
                   "Distance of the hand from the burr, mm: a device that drives only force then renders the "
                   "torque as a force (0: not)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_of(NumberRange::not_negative()))
       ->type_name("mm");
 }
 

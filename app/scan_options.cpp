@@ -125,7 +125,7 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
           },
           "Refuse a scan that needs more memory, including everything unpacked or made of it (default: the "
           "memory of the machine, or the program's share of it by cgroup v2)")
-      ->check(CLI::Range(1e-3, 1e6))
+      ->check(number_of({.min = 1e-3, .max = 1e6}))
       ->type_name("GB");
 }
 

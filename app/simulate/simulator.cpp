@@ -33,6 +33,7 @@
 #include "app/device_option.h"
 #include "app/memory_limit.h"
 #include "app/milling_options.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/simulate/files_panel.h"
@@ -587,7 +588,8 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   command
       ->add_option("--ui-scale", options->ui_scale,
                    "Scale of the text, 1 is usual and 2 suits 4K (default: as the screen asks for)")
-      ->check(CLI::Range(kMinScale, kMaxScale));
+      ->check(number_of({.min = kMinScale, .max = kMaxScale}))
+      ->type_name("NUMBER");
   command->add_flag("--no-help", options->no_help,
                     "Begin without the page that explains the controls (default: shown on the first start)");
   command->callback([=] {
