@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include <CLI/App.hpp>
@@ -8,11 +9,14 @@ namespace osteomill::app {
 
 class WindowDriver;
 
+/// Makes the command line: the program with every command. `command_line` is how the program was called, for
+/// recordings to say. `driver`, if there is one, works the window of `simulate`.
+std::unique_ptr<CLI::App> make_program(const std::string& command_line, WindowDriver* driver = nullptr);
+
 /// Runs the program and returns its exit code. `driver`, if there is one, works the window of `simulate`.
 int run_osteomill(int argc, char** argv, WindowDriver* driver = nullptr);
 
-/// Each adds a command to the program, which runs when the command line has been parsed. `command_line` is
-/// how the program was called, for recordings to say.
+/// Each adds a command to the program, which runs when the command line has been parsed.
 void add_compare_command(CLI::App& program, const std::string& command_line);
 void add_devices_command(CLI::App& program);
 void add_info_command(CLI::App& program);

@@ -1,5 +1,7 @@
 #include "app/device_option.h"
 
+#include <utility>
+
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 #include <fmt/core.h>
@@ -32,7 +34,7 @@ std::vector<std::string> device_names() {
 }
 
 CLI::Validator known_device() {
-  return CLI::Validator(
+  CLI::Validator check(
       [](std::string& text) -> std::string {
         const std::string name = name_in(text);
         const HardwareKind* kind = hardware_named(name);
@@ -45,6 +47,7 @@ CLI::Validator known_device() {
         return "there is no device " + name + (near.empty() ? "; osteomill devices lists them" : near);
       },
       "");
+  return with_choices(std::move(check), device_names());
 }
 
 // Options on the command line take precedence over stored ones.

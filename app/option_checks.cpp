@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <CLI/Error.hpp>
+#include <CLI/StringTools.hpp>
 #include <fmt/format.h>
 
 #include "osteomill/base/parse_number.h"
@@ -102,7 +103,7 @@ void require_word(const std::string& kind, const std::string& word, const std::v
 }
 
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names) {
-  return CLI::Validator(
+  CLI::Validator check(
       [=](std::string& word) {
         try {
           require_word(kind, word, names);
@@ -112,6 +113,22 @@ CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& n
         }
       },
       "");
+  return with_choices(std::move(check), names);
+}
+
+// A check has a name, which nothing shows.
+CLI::Validator with_choices(CLI::Validator check, const std::vector<std::string>& names) {
+  check.name(fmt::format("{}", fmt::join(names, "|")));
+  return check;
+}
+
+std::vector<std::string> choices_of(CLI::Option& option) {
+  try {
+    const std::string names = option.get_validator(0)->get_name();
+    return names.empty() ? std::vector<std::string>() : CLI::detail::split(names, '|');
+  } catch (const CLI::OptionNotFound&) {
+    return {};
+  }
 }
 
 std::vector<std::string> option_names(const CLI::App& command) {

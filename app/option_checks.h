@@ -22,6 +22,10 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 void require_word(const std::string& kind, const std::string& word, const std::vector<std::string>& names);
 /// Makes a check that refuses a text that is none of `names`; `kind` says what they are ("algorithm").
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names);
+/// Makes a check remember the names that it takes, for choices_of.
+CLI::Validator with_choices(CLI::Validator check, const std::vector<std::string>& names);
+/// Returns the names that an option takes if its first check remembers them, as that of one_of does.
+std::vector<std::string> choices_of(CLI::Option& option);
 
 /// Returns a number as an option shows its default: "0.3".
 std::string number_text(double value);

@@ -133,24 +133,8 @@ int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
     return report_error("the stack is limited to less than 256 KB (ulimit -s), which is not enough",
                         kBadInput);
   }
-  CLI::App program("6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
-  program.set_version_flag("--version", OSTEOMILL_VERSION);
-  program.formatter(std::make_shared<HelpText>());
-  program.get_formatter()->label("SUBCOMMAND", "COMMAND");
-  const std::string command_line = command_line_of(argc, argv);
-  osteomill::app::add_simulate_command(program, command_line, driver);
-  osteomill::app::add_compare_command(program, command_line);
-  osteomill::app::add_live_command(program, command_line);
-  osteomill::app::add_rates_command(program);
-  osteomill::app::add_replay_command(program, command_line);
-  osteomill::app::add_info_command(program);
-  osteomill::app::add_mesh_command(program);
-  osteomill::app::add_save_command(program);
-  osteomill::app::add_devices_command(program);
-  osteomill::app::add_settings_command(program);
-  osteomill::app::add_report_command(program);
-  osteomill::app::add_study_command(program);
-  for (CLI::App* command : program.get_subcommands({})) osteomill::app::check_values(*command);
+  const std::unique_ptr<CLI::App> made = osteomill::app::make_program(command_line_of(argc, argv), driver);
+  CLI::App& program = *made;
   const osteomill::WorkProgress watched([](double) { osteomill::app::check_memory_taken(); });
   try {
     osteomill::app::require_known_words(program, argc, argv);
@@ -186,6 +170,29 @@ int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
 }
 
 }  // namespace
+
+std::unique_ptr<CLI::App> osteomill::app::make_program(const std::string& command_line,
+                                                       WindowDriver* driver) {
+  auto program = std::make_unique<CLI::App>(
+      "6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
+  program->set_version_flag("--version", OSTEOMILL_VERSION);
+  program->formatter(std::make_shared<HelpText>());
+  program->get_formatter()->label("SUBCOMMAND", "COMMAND");
+  add_simulate_command(*program, command_line, driver);
+  add_compare_command(*program, command_line);
+  add_live_command(*program, command_line);
+  add_rates_command(*program);
+  add_replay_command(*program, command_line);
+  add_info_command(*program);
+  add_mesh_command(*program);
+  add_save_command(*program);
+  add_devices_command(*program);
+  add_settings_command(*program);
+  add_report_command(*program);
+  add_study_command(*program);
+  for (CLI::App* command : program->get_subcommands({})) check_values(*command);
+  return program;
+}
 
 int osteomill::app::run_osteomill(int argc, char** argv, WindowDriver* driver) {
   open_closed_streams();
