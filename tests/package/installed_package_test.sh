@@ -13,8 +13,10 @@ packages() { sed -nE "s/^set\(osteomill_($1)_packages (.*)\)$/\2/p" "$config" | 
 IFS=';' read -ra components < <(sed -nE 's/^set\(osteomill_rooms "(.*)"\)$/\1/p' "$config")
 fail() { echo "$*" >&2; exit 1; }
 
-for file in LICENSE README.md docs/architecture.md examples/press_on_a_ball.cpp; do
-  [ -s "prefix/share/doc/osteomill/$file" ] || fail "not installed: $file"
+for file in doc/osteomill/{LICENSE,README.md,docs/architecture.md,examples/press_on_a_ball.cpp} man/man1/osteomill{,-compare}.1 \
+  bash-completion/completions/osteomill zsh/site-functions/_osteomill fish/vendor_completions.d/osteomill.fish \
+  applications/osteomill.desktop icons/hicolor/scalable/apps/osteomill.svg mime/packages/osteomill.xml; do
+  [ -s "prefix/share/$file" ] || fail "not installed: $file"
 done
 
 # All headers compile from here, together; each alone: the dev preset.
