@@ -11,6 +11,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/parse_number.h"
 #include "osteomill/base/work_progress.h"
+#include "osteomill/volume/builtin_phantoms.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/label_scan.h"
 
@@ -114,7 +115,8 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
   command
       .add_option("scan", options.scan,
                   "DICOM folder or file, NRRD, MetaImage, NIfTI, a folder of PNG or TIFF slices, or one of "
-                  "them in a zip file; without one, the built-in tooth")
+                  "them in a zip file, or builtin:tooth, builtin:layers or builtin:mastoid; without one, the "
+                  "built-in tooth")
       ->check(not_empty());
   add_texts(command, options, kSourceField);
   command
@@ -138,6 +140,28 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
 
 namespace {
 
+constexpr std::string_view kBuiltinPrefix = "builtin:";
+
+bool is_builtin(const std::string& scan) {
+  return scan.starts_with(kBuiltinPrefix);
+}
+
+bool is_builtin_tooth(const std::string& scan) {
+  return scan.empty() || scan == fmt::format("{}tooth", kBuiltinPrefix);
+}
+
+// Returns the phantom of this name, null for another scan. Throws InputError for a name that none has.
+const BuiltinPhantom* phantom_of(const std::string& scan) {
+  if (!is_builtin(scan)) return nullptr;
+  const std::string name = scan.substr(kBuiltinPrefix.size());
+  std::vector<std::string> names{"tooth"};
+  for (const BuiltinPhantom& phantom : builtin_phantoms()) {
+    if (phantom.name == name) return &phantom;
+    names.emplace_back(phantom.name);
+  }
+  throw InputError(scan, "is no built-in scan" + did_you_mean(name, names));
+}
+
 // Looks at its values unless the user or the file says it.
 LabelGuess guess_content(const ScanOptions& options, const Scan& scan) {
   const auto of = [](bool labels) { return labels ? LabelGuess::labels : LabelGuess::densities; };
@@ -155,7 +179,10 @@ LabelGuess guess_content(const ScanOptions& options, const Scan& scan) {
 }  // namespace
 
 Scan open_scan(const ScanOptions& options) {
-  if (options.scan.empty()) return {builtin_tooth(options.refinement), kBuiltinTooth, "made up", {}};
+  if (is_builtin_tooth(options.scan))
+    return {builtin_tooth(options.refinement), kBuiltinTooth, "made up", {}};
+  if (const BuiltinPhantom* phantom = phantom_of(options.scan))
+    return {phantom->make(), options.scan, "made up", {}};
   Scan scan = read_scan(options.scan, options.read);
   const bool kind_is_known = scan.is_labels || options.as_labels || options.bone_fingerprint != 0;
   const LabelGuess guess = guess_content(options, scan);
@@ -177,9 +204,11 @@ Scan open_scan(const ScanOptions& options) {
 }
 
 SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan) {
-  if (options.scan.empty()) {
+  if (is_builtin_tooth(options.scan)) {
     return {kBuiltinToothIsovalue, "halfway between air and the tooth's dentine", boundaries_in(scan.grid)};
   }
+  if (const BuiltinPhantom* phantom = phantom_of(options.scan))
+    return {phantom->isovalue, "between air and all of its bone", boundaries_in(scan.grid)};
   if (scan.is_labels) return {isovalue_of_labels(scan.grid), "below all that is labelled"};
   return suggest_isovalue(scan.grid, scan.in_hounsfield_units);
 }
@@ -246,13 +275,14 @@ LoadedBone read_bone(const ScanOptions& options) {
   SuggestedIsovalue isovalue =
       options.isovalue ? SuggestedIsovalue{*options.isovalue, "given"} : suggested_isovalue(options, scan);
   std::vector<std::string> warnings = std::move(scan.warnings);
-  if (!options.isovalue && !options.scan.empty()) {
+  if (!options.isovalue && !options.scan.empty() && !is_builtin(options.scan)) {
     warnings.push_back(
         fmt::format("isovalue {:g} suggested, {}; --iso sets another", isovalue.value, isovalue.how));
   }
   const std::vector<std::string> of_isovalue = isovalue_warnings(scan.grid, isovalue.value);
   if (!is_within(scan.grid, isovalue.value)) throw InputError(scan.name, of_isovalue.front());
-  warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
+  // A phantom is cut off on purpose.
+  if (!is_builtin(options.scan)) warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
   for (std::string& warning : warnings) warning = scan.name + ": " + warning;
   LabelsRead labels = labels_of(options, scan);
   warnings.insert(warnings.end(), labels.warnings.begin(), labels.warnings.end());

@@ -18,7 +18,7 @@ namespace osteomill::app {
 
 /// The options that choose the bone to work on.
 struct ScanOptions {
-  /// The scan; empty for the built-in tooth.
+  /// The scan: a path, or "builtin:" and a name; empty for the built-in tooth.
   std::string scan;
   /// The isovalue; if not given, the built-in tooth's own, or one suggested from the scan's values.
   std::optional<double> isovalue;
