@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,17 +80,43 @@ class Log {
   std::vector<TickRecord> log_;
 };
 
-void replay_trajectory(ReplayOptions options) {
+void begin_recorder(std::optional<Recorder>& recorder, const std::string& path, const RunDescription& run,
+                    Recorder::FirstSession begins) {
+  recorder.emplace(path, run, begins, Recorder::UnfinishedFile::remove);
+  if (const std::string kept = recorder->leftover_note(); !kept.empty()) warn_always(kept);
+}
+
+void end_recorder(std::optional<Recorder>& recorder, const std::string& path) {
+  if (!recorder) return;
+  recorder->close();
+  fmt::print("{}\n", path);
+}
+
+void replay_trajectory(ReplayOptions options, const std::string& command_line) {
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.input);
   LoadedBone bone = load_bone(options.scan);
   warn_of_settings(options.milling.setup, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
+  const std::uint64_t scan_hash = options.record.empty() ? 0 : fingerprint_of(bone.volume.grid());
   MillingSetup& setup = options.milling.setup;
   setup.guard = GuardSettings::for_simulation(setup.guard.limits, setup.guard.passivity_controller);
   MillingSession session(std::make_shared<Volume>(std::move(bone.volume)), densities, setup);
   Log log(options, trajectory.size(), session.volume());
-  replay(session, trajectory, [&](const TickRecord& record) { log.add(record); });
+  std::optional<Recorder> recorder;
+  if (!options.record.empty()) {
+    RunDescription run = describe_run(session.volume(), {setup, densities},
+                                      session.algorithm().sample_point_count(), command_line);
+    run.scan_name = bone.name;
+    run.scan_hash = scan_hash;
+    std::ranges::move(scan_settings(options.scan), std::back_inserter(run.settings));
+    begin_recorder(recorder, options.record, run, Recorder::FirstSession::begins_at_once);
+  }
+  replay(session, trajectory, [&](const TickRecord& record) {
+    log.add(record);
+    if (recorder) recorder->push_waiting(record);
+  });
   log.write();
+  end_recorder(recorder, options.record);
 }
 
 // Reads the scan that is named, or else the recording's, as it was read for the recording.
@@ -164,11 +192,8 @@ void replay_with_changes(const ReplayOptions& options, const std::string& comman
       if (setting.key == kSamplePointsKey)
         setting.value = static_cast<double>(session.algorithm().sample_point_count());
     }
-    if (!recorder) {
-      recorder.emplace(options.record, start.run, Recorder::FirstSession::begins_when_announced,
-                       Recorder::UnfinishedFile::remove);
-      if (const std::string kept = recorder->leftover_note(); !kept.empty()) warn_always(kept);
-    }
+    if (!recorder)
+      begin_recorder(recorder, options.record, start.run, Recorder::FirstSession::begins_when_announced);
     recorder->begin_session(session_number++, std::move(start));
   };
   hooks.on_tick = [&](const TickRecord&, const TickRecord& now) {
@@ -178,18 +203,14 @@ void replay_with_changes(const ReplayOptions& options, const std::string& comman
   };
   replay_recording(scan, recording, hooks);
   log.write();
-  if (recorder) {
-    recorder->close();
-    fmt::print("{}\n", options.record);
-  }
+  end_recorder(recorder, options.record);
 }
 
 void run_replay(const ReplayOptions& options, const std::string& command_line) {
   if (!is_hdf5(options.input)) {
-    if (options.verify || !options.record.empty())
-      throw InputError(options.input, "is no recording, so there is nothing to verify or to record again");
-    if (options.out.empty()) throw CLI::RequiredError("--out");
-    return replay_trajectory(options);
+    if (options.verify) throw InputError(options.input, "is no recording, so there is nothing to verify");
+    if (options.out.empty() && options.record.empty()) throw CLI::RequiredError("--out or --record");
+    return replay_trajectory(options, command_line);
   }
   if (!options.verify && options.out.empty() && options.record.empty())
     throw CLI::RequiredError("--verify, --out or --record");
