@@ -18,7 +18,9 @@ int run_osteomill(int argc, char** argv, WindowDriver* driver = nullptr);
 
 /// Each adds a command to the program, which runs when the command line has been parsed.
 void add_compare_command(CLI::App& program, const std::string& command_line);
+void add_debrief_command(CLI::App& program);
 void add_devices_command(CLI::App& program);
+void add_exercise_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_live_command(CLI::App& program, const std::string& command_line);
 void add_mesh_command(CLI::App& program);

@@ -24,6 +24,7 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
+#include "app/exercise_options.h"
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
@@ -36,6 +37,7 @@ namespace {
 struct ReplayOptions {
   std::string input;
   ScanOptions scan;
+  ExerciseOptions exercise;
   MillingOptions milling;
   std::string out;
   std::string record;
@@ -94,7 +96,14 @@ void end_recorder(std::optional<Recorder>& recorder, const std::string& path) {
 
 void replay_trajectory(ReplayOptions options, const std::string& command_line) {
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.input);
-  LoadedBone bone = load_bone(options.scan);
+  std::optional<RecordedExercise> exercise;
+  LoadedBone bone = [&] {
+    if (!options.exercise.given()) return load_bone(options.scan);
+    LoadedExercise loaded = load_exercise(options.exercise.file, options.scan);
+    require_allowed_burr(loaded.placed.exercise, options.milling.setup.tool.burr_radius_mm);
+    exercise = to_be_recorded(loaded.placed.exercise, options.exercise);
+    return std::move(loaded.bone);
+  }();
   warn_of_settings(options.milling.setup, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   const std::uint64_t scan_hash = options.record.empty() ? 0 : fingerprint_of(bone.volume.grid());
@@ -109,6 +118,7 @@ void replay_trajectory(ReplayOptions options, const std::string& command_line) {
     run.scan_name = bone.name;
     run.scan_hash = scan_hash;
     std::ranges::move(scan_settings(options.scan), std::back_inserter(run.settings));
+    if (exercise) put_exercise(run, *exercise);
     begin_recorder(recorder, options.record, run, Recorder::FirstSession::begins_at_once);
   }
   replay(session, trajectory, [&](const TickRecord& record) {
@@ -228,6 +238,7 @@ void refuse_what_is_recorded(const ReplayOptions& options) {
       throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
   };
   for (const Field<ScanOptions>& option : fields_of<ScanOptions>()) refuse("--" + option.option);
+  for (const char* option : {"--exercise", "--trainee", "--guidance"}) refuse(option);
   for (const Field<MillingSetup>& setting : fields_of<MillingSetup>()) {
     if (setting.has(kOfTheRecording)) refuse("--" + setting.option);
   }
@@ -247,6 +258,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
       ->required()
       ->type_name("TRAJECTORY|RECORDING");
   add_scan_options(*command, options->scan);
+  add_exercise_options(*command, options->exercise);
   command->option_defaults()->group("The replay");
   command->add_flag("--verify", options->verify,
                     "Check that a recording replays to the bit, or print the first tick that differs");

@@ -190,6 +190,8 @@ std::unique_ptr<CLI::App> osteomill::app::make_program(const std::string& comman
   add_settings_command(*program);
   add_report_command(*program);
   add_study_command(*program);
+  add_exercise_command(*program);
+  add_debrief_command(*program);
   for (CLI::App* command : program->get_subcommands({})) check_values(*command);
   return program;
 }

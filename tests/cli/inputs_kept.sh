@@ -26,10 +26,10 @@ labels="--labels labels.nhdr --label-table table.txt"
 milling=made/line-proxy-milling.h5 holding=made/line-proxy-holding.h5
 
 # Every option that takes a file or a folder is here, or it is not known what becomes of the file.
-for command in simulate compare live rates replay report info mesh save; do
+for command in simulate compare live rates replay report info mesh save exercise debrief; do
   for option in $("$osteomill" $command --help | grep -oE '^  --[a-z-]+ (FILE|FOLDER)' | awk '{ print $1 }'); do
     case "$command $option" in
-      *" --labels" | *" --label-table" | *" --config" | *" --after" | *" --out" | *" --record") ;;
+      *" --labels" | *" --label-table" | *" --config" | *" --after" | *" --out" | *" --record" | *" --exercise") ;;
       *) fault "$command $option: add it to this test" ;;
     esac
   done
@@ -64,6 +64,10 @@ kept "poses.csv $scan $beside c.toml" a.csv replay poses.csv ball.nhdr --algorit
 kept "$holding $milling $scan c.toml" a.csv replay "$holding" ball.nhdr --config c.toml --out out/a.csv
 kept "$holding $milling $scan c.toml" a.h5 replay "$holding" ball.nhdr --config c.toml --record out/a.h5
 kept "$holding ball.nhdr" a.csv replay "$holding" --out out/a.csv
+printf 'title = "t"\nscan = "ball.nhdr"\niso = 750\n[target]\nbox = { min = [-99, -99, -99], max = [99, 99, 99] }\n' >e.toml
+kept "poses.csv $scan e.toml" a.h5 replay poses.csv --exercise e.toml --record out/a.h5
+"$osteomill" replay poses.csv --exercise e.toml --record e.h5 --quiet >/dev/null
+kept "e.h5 $scan e.toml" debrief.csv debrief e.h5 --out out
 kept "$milling $holding" report.html report "$milling" "$holding" --out out
 kept "$milling" line-proxy-milling.csv report "$milling" --csv --out out
 kept "$scan $beside $milling $holding" a.ply mesh ball.nhdr $labels --after "$holding" --out out/a.ply

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What readers copy from README.md and docs/: C++ compiles, studies are read, Python runs on a comparison, MATLAB reads what
+# What readers copy from README.md and docs/: C++ compiles, studies and exercises are read, Python runs on a comparison, MATLAB reads what
 # is there, and every option of a command in an indented line is one of that command's. (CMake: the package test.)
 #   code_blocks_test.sh SOURCE_DIR PROGRAM
 set -euo pipefail
@@ -39,7 +39,11 @@ HEADERS
   g++ "${flags[@]}" "$block" || fault "${block##*/} does not compile"
 done
 for block in "$folder"/*.toml; do
-  "$osteomill" study "$block" --list >/dev/null || fault "${block##*/} is no study"
+  if grep -q '^\[target\]' "$block"; then
+    "$osteomill" exercise "$block" --check >/dev/null || fault "${block##*/} is no exercise"
+  else
+    "$osteomill" study "$block" --list >/dev/null || fault "${block##*/} is no study"
+  fi
 done
 
 # In the folder with the comparison that they read.

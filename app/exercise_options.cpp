@@ -1,0 +1,86 @@
+#include "app/exercise_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+#include <variant>
+
+#include <CLI/Error.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/recording/replay_recording.h"
+
+#include "app/exercise_file.h"
+#include "app/option_checks.h"
+
+namespace osteomill::app {
+
+void add_exercise_options(CLI::App& command, ExerciseOptions& options) {
+  command.option_defaults()->group("Exercise");
+  command
+      .add_option("--exercise", options.file,
+                  "Exercise to work on: a TOML file, which names the scan; docs/exercises.md")
+      ->check(not_empty())
+      ->type_name("FILE");
+  command.add_option("--trainee", options.trainee, "Name to record with the exercise (default: none)")
+      ->check(not_empty())
+      ->type_name("NAME");
+  command.add_flag(
+      "--guidance,!--no-guidance", options.has_guidance,
+      "Show steps, colours and distances, and record that they were shown; --no-guidance hides them");
+}
+
+ScanOptions scan_of(const Exercise& exercise, const ScanOptions& options) {
+  const auto refuse = [](const char* option) {
+    throw CLI::ValidationError(option, "is the exercise's own, and cannot be given with --exercise");
+  };
+  if (!options.scan.empty()) refuse("scan");
+  if (options.isovalue) refuse("--iso");
+  if (!options.labels.map.empty()) refuse("--labels");
+  if (!options.labels.table.empty()) refuse("--label-table");
+  const std::filesystem::path folder = exercise.file.parent_path();
+  ScanOptions scan = options;
+  scan.isovalue = exercise.isovalue;
+  scan.scan = exercise.scan.starts_with("builtin:") ? exercise.scan : (folder / exercise.scan).string();
+  if (!exercise.labels.empty()) scan.labels.map = folder / exercise.labels;
+  if (!exercise.label_table.empty()) scan.labels.table = folder / exercise.label_table;
+  return scan;
+}
+
+LoadedExercise load_exercise(const std::string& file, const ScanOptions& options,
+                             const Recording* recording) {
+  const Exercise exercise = read_exercise_file(file);
+  ScanOptions scan = scan_of(exercise, options);
+  if (recording != nullptr) scan.bone_fingerprint = recording->description.scan_hash;
+  LoadedBone bone = load_bone(scan);
+  if (recording != nullptr) require_made_with(*recording, bone.volume);
+  PlacedExercise placed = place_exercise(exercise, bone.volume);
+  for (const NoGoStructure& structure : exercise.no_go) {
+    const auto* label = std::get_if<LabelShape>(&structure.region.shapes.front());
+    if (label != nullptr && structure.region.shapes.size() == 1) scan.labels.no_go.push_back(label->label);
+  }
+  if (!scan.labels.no_go.empty() && !scan.labels.map.empty())
+    bone.volume.set_labels(read_labels(scan.labels, bone.volume.geometry(), scan.read.max_memory_bytes).map);
+  return {std::move(bone), std::move(placed)};
+}
+
+void require_allowed_burr(const Exercise& exercise, double burr_radius_mm) {
+  constexpr double kSame_mm = 1e-6;
+  const std::vector<double>& radii_mm = exercise.burr_radii_mm;
+  if (radii_mm.empty()) return;
+  if (std::ranges::any_of(radii_mm, [&](double one) { return std::abs(one - burr_radius_mm) <= kSame_mm; }))
+    return;
+  throw InputError(exercise.file.string(),
+                   fmt::format("its tools are burrs of {} mm radius, not {:g} mm; --burr-radius sets one",
+                               fmt::join(radii_mm, ", "), burr_radius_mm));
+}
+
+RecordedExercise to_be_recorded(const Exercise& exercise, const ExerciseOptions& options) {
+  return {options.file, text_fingerprint(options.file), exercise.title, options.trainee,
+          options.has_guidance};
+}
+
+}  // namespace osteomill::app

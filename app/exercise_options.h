@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/App.hpp>
+
+#include "osteomill/exercise/placed_exercise.h"
+#include "osteomill/exercise/recorded_exercise.h"
+#include "osteomill/recording/recording.h"
+
+#include "app/scan_options.h"
+
+namespace osteomill::app {
+
+/// The options of a command that can be worked as an exercise.
+struct ExerciseOptions {
+  std::string file;
+  std::string trainee;
+  bool has_guidance = true;
+
+  bool given() const { return !file.empty(); }
+};
+
+/// Adds --exercise, --trainee and --no-guidance.
+void add_exercise_options(CLI::App& command, ExerciseOptions& options);
+
+/// An exercise on its scan.
+struct LoadedExercise {
+  LoadedBone bone;
+  PlacedExercise placed;
+};
+/// Reads an exercise and its scan, prints the scan's warnings to standard error, and places the exercise. If
+/// structures of the label map must not be touched, the bone's labels say so. Throws InputError, naming the
+/// file and the line, if the exercise is at fault; and as `scan_of` and `load_bone`. If there is a recording,
+/// the scan is read as it was for it, and InputError names the recording if it is of another scan.
+LoadedExercise load_exercise(const std::string& file, const ScanOptions& options,
+                             const Recording* recording = nullptr);
+
+/// Returns `options` with the exercise's scan, isovalue and labels in the place of the user's own. Throws
+/// CLI::ValidationError if the user has named any of these.
+ScanOptions scan_of(const Exercise& exercise, const ScanOptions& options);
+
+/// Throws InputError, naming the exercise, if its burrs do not include one of this radius.
+void require_allowed_burr(const Exercise& exercise, double burr_radius_mm);
+
+/// Returns what a recording says of the exercise.
+RecordedExercise to_be_recorded(const Exercise& exercise, const ExerciseOptions& options);
+
+}  // namespace osteomill::app

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "osteomill/exercise/placed_exercise.h"
+#include "osteomill/exercise/voxel_set.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// One tick of an attempt, as measures see it.
+struct AttemptTick {
+  double time_s = 0;
+  double dt_s = 0;
+  Vec3 burr_W = Vec3::Zero();
+  double burr_radius_mm = 0;
+  double force_N = 0;
+  /// In mm^3 of the reference density, as TickRecord counts.
+  double removed_mm3 = 0;
+  bool spindle_on = false;
+  /// False in pauses, and without a pose: then the burr's place means nothing.
+  bool is_placed = true;
+  bool is_cutting() const { return removed_mm3 > 0; }
+};
+
+/// A recorded session, held against its exercise.
+struct Attempt {
+  /// Stays the caller's.
+  const PlacedExercise* exercise = nullptr;
+  const Volume* scan = nullptr;
+  /// The bone at the end, and which voxels are no longer bone.
+  Volume after;
+  VoxelSet removed;
+  std::vector<AttemptTick> ticks;
+  /// The distance of the burr's surface from each structure, mm, structure by structure in each tick.
+  std::vector<double> distances_mm;
+  /// By structure (`thickness_left_mm`).
+  std::vector<std::vector<double>> thickness_left_mm;
+
+  /// Returns the distance from one structure in a tick; not a number if the burr has no place.
+  double distance_mm(std::size_t tick, std::size_t structure) const {
+    return distances_mm[tick * exercise->structures.size() + structure];
+  }
+  /// Returns the distance from the nearest of all structures.
+  double distance_mm(std::size_t tick) const;
+};
+
+/// Returns the ticks of a recording.
+std::vector<AttemptTick> attempt_ticks(const Recording& recording);
+
+/// Returns for each structure the bone that milling left over it, mm, at each voxel of its surface over which
+/// it became thinner by a voxel or more: from face to face, between the structure and the space that is open
+/// from outside, at most 8 mm. Long work.
+std::vector<std::vector<double>> thickness_left_mm(const PlacedExercise& exercise, const Volume& before,
+                                                   const Volume& after);
+
+/// Runs the recording's milling again on the exercise's scan. Throws InputError, naming the recording, as
+/// `repeat_milling` does. `exercise` and `scan` outlive the attempt. Long work.
+Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const Recording& recording);
+
+/// A piece of the burr's path on which it cut and kept its direction.
+struct Stroke {
+  double duration_s = 0;
+  double length_mm = 0;
+};
+
+/// Returns the strokes of a session. A stroke ends when the burr has not cut for 0.1 s, or when its path
+/// turns by more than a right angle; the path is looked at in steps of 0.5 mm, as k-cosine metrics do, so
+/// that a shaking hand makes no strokes. Shorter pieces are left out.
+std::vector<Stroke> strokes_of(const std::vector<AttemptTick>& ticks);
+
+}  // namespace osteomill

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "osteomill/base/pose.h"
+
+namespace osteomill {
+
+/// A box along the axes of W.
+struct BoxShape {
+  Vec3 min_W = Vec3::Zero();
+  Vec3 max_W = Vec3::Zero();
+};
+struct SphereShape {
+  Vec3 center_W = Vec3::Zero();
+  double radius_mm = 0;
+};
+/// A cylinder with flat ends.
+struct CylinderShape {
+  Vec3 from_W = Vec3::Zero();
+  Vec3 to_W = Vec3::UnitZ();
+  double radius_mm = 0;
+};
+/// The outermost layer of the bone. Hollows that the bone encloses have none.
+struct ShellShape {
+  double thickness_mm = 0;
+};
+/// A structure of the label map, by name (case does not matter) or value.
+struct LabelShape {
+  std::string label;
+};
+/// The bone that at least `at_least` of these recordings removed.
+struct RecordedShape {
+  std::vector<std::filesystem::path> recordings;
+  int at_least = 1;
+};
+using Shape = std::variant<BoxShape, SphereShape, CylinderShape, ShellShape, LabelShape, RecordedShape>;
+
+/// A part of the scan: everything that lies in all of its shapes.
+struct Region {
+  std::vector<Shape> shapes;
+  /// The line of the file that errors name.
+  int line = 0;
+};
+
+/// A structure that the burr must not touch.
+struct NoGoStructure {
+  std::string name;
+  Region region;
+  /// The distance of the burr's surface below which the trainee is warned. None of the facial nerves was
+  /// damaged at 3 mm, while 1 and 2 mm failed (Voormolen et al.).
+  double warn_mm = 3;
+};
+
+struct ExerciseStep {
+  std::string text;
+  Region region;
+  /// The share of the region's bone that must be gone, percent.
+  double done_percent = 95;
+};
+
+/// A measure with its limits; at least one of them is there.
+struct ExerciseItem {
+  std::string measure;
+  /// The structure that it is measured of; empty for the worst of all, or if there is nothing to choose.
+  std::string structure;
+  std::optional<double> at_least;
+  std::optional<double> at_most;
+  std::string source;
+  /// The weight that the source gives the item, if it has one.
+  std::optional<double> weight;
+  int line = 0;
+};
+
+/// A task on a scan, and what counts as doing it well.
+struct Exercise {
+  /// The file; errors name it, and its paths are relative to its folder.
+  std::filesystem::path file;
+  std::string title;
+  std::string task;
+  /// A path, or "builtin:NAME".
+  std::string scan;
+  std::optional<double> isovalue;
+  std::filesystem::path labels;
+  std::filesystem::path label_table;
+  Region target;
+  /// Removed bone counts as outside only if it lies farther than this from the target.
+  double margin_mm = 0;
+  /// Bone that must stay, wherever it lies.
+  std::optional<Region> keep;
+  std::vector<NoGoStructure> no_go;
+  std::optional<Vec3> entry_W_mm;
+  /// The radii of the burrs that may be used, mm; empty for any.
+  std::vector<double> burr_radii_mm;
+  std::optional<double> time_s;
+  std::vector<ExerciseStep> steps;
+  std::vector<ExerciseItem> items;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "osteomill/exercise/exercise.h"
+#include "osteomill/exercise/structure_distance.h"
+#include "osteomill/exercise/voxel_set.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+struct PlacedStructure {
+  std::string name;
+  double warn_mm = 3;
+  VoxelSet voxels;
+  StructureDistance distance;
+  /// The shortest distance of the target from the structure, mm.
+  double from_target_mm = 0;
+};
+
+/// An exercise on its scan.
+struct PlacedExercise {
+  Exercise exercise;
+  GridGeometry scan;
+  /// The bone to be removed.
+  VoxelSet target;
+  /// Every voxel that may be removed: the target, and all within the margin around it.
+  VoxelSet allowed;
+  /// Bone that must stay, of the region that the exercise names.
+  VoxelSet keep;
+  std::vector<PlacedStructure> structures;
+  /// The bone of each step.
+  std::vector<VoxelSet> steps;
+
+  /// Returns whether removing a voxel's bone counts as outside.
+  bool is_outside(const VoxelIndex& v) const { return !allowed.contains(v) || keep.contains(v); }
+  double volume_mm3(std::size_t voxels) const {
+    return static_cast<double>(voxels) * scan.voxel_volume_mm3();
+  }
+};
+
+/// Places an exercise on its scan. Throws InputError, naming the file and the line, as `region_voxels` does
+/// and if the target holds no bone, overlaps a structure that must not be touched, or a step or a structure
+/// is empty. Long work.
+PlacedExercise place_exercise(const Exercise& exercise, const Volume& scan);
+
+/// Returns the distance of a burr's surface from the nearest structure, mm: negative if the burr reaches into
+/// one, not a number if the exercise has none. Safe in the haptic tick.
+double no_go_distance_mm(const PlacedExercise& placed, const Vec3& burr_centre_W,
+                         double burr_radius_mm) noexcept;
+
+/// Returns lines for people: the target and its volume, structures and distances, steps and items.
+std::vector<std::string> describe(const PlacedExercise& placed);
+
+}  // namespace osteomill

@@ -1,0 +1,423 @@
+#include "osteomill/exercise/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ostream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/csv_field.h"
+#include "osteomill/base/distribution.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+double ratio(double part, double whole) {
+  return whole > 0 ? part / whole : kNone;
+}
+
+double share(std::vector<double> values, double part) {
+  return values.empty() ? kNone : percentile(std::move(values), part);
+}
+
+// The bone that is gone.
+
+std::size_t removed_of(const Attempt& attempt, const VoxelSet& voxels) {
+  std::size_t count = 0;
+  voxels.for_each([&](const VoxelIndex& v) {
+    if (attempt.removed.contains(v)) ++count;
+  });
+  return count;
+}
+
+double target_removed_percent(const Attempt& attempt) {
+  const VoxelSet& target = attempt.exercise->target;
+  return 100 * ratio(static_cast<double>(removed_of(attempt, target)), static_cast<double>(target.count()));
+}
+
+double removed_outside_mm3(const Attempt& attempt) {
+  std::size_t outside = 0;
+  attempt.removed.for_each([&](const VoxelIndex& v) {
+    if (attempt.exercise->is_outside(v)) ++outside;
+  });
+  return attempt.exercise->volume_mm3(outside);
+}
+
+double removed_outside_percent(const Attempt& attempt) {
+  const PlacedExercise& exercise = *attempt.exercise;
+  return 100 * ratio(removed_outside_mm3(attempt), exercise.volume_mm3(exercise.target.count()));
+}
+
+double removed_mm3(const Attempt& attempt) {
+  return attempt.exercise->volume_mm3(attempt.removed.count());
+}
+
+double dice_percent(const Attempt& attempt) {
+  const VoxelSet& target = attempt.exercise->target;
+  return 200 * ratio(static_cast<double>(removed_of(attempt, target)),
+                     static_cast<double>(target.count() + attempt.removed.count()));
+}
+
+double keep_removed_mm3(const Attempt& attempt) {
+  const PlacedExercise& exercise = *attempt.exercise;
+  return exercise.keep.empty() ? kNone : exercise.volume_mm3(removed_of(attempt, exercise.keep));
+}
+
+// Structures that must not be touched. Each is measured alone, or the worst of all.
+
+using OfStructure = std::function<double(const Attempt&, std::size_t)>;
+
+// Returns the measure of all structures: the least or greatest of those that have a value.
+std::function<double(const Attempt&)> worst_of(OfStructure one, bool is_least) {
+  return [one = std::move(one), is_least](const Attempt& attempt) {
+    double worst = kNone;
+    for (std::size_t n = 0; n < attempt.exercise->structures.size(); ++n)
+      worst = is_least ? std::fmin(worst, one(attempt, n)) : std::fmax(worst, one(attempt, n));
+    return worst;
+  };
+}
+
+// Calls `use` with every tick in which the turning burr reaches into a structure.
+template <typename Distance, typename Use>
+void for_each_contact(const Attempt& attempt, const Distance& distance_mm, const Use& use) {
+  for (std::size_t n = 0; n < attempt.ticks.size(); ++n)
+    if (attempt.ticks[n].spindle_on && distance_mm(n) <= 0) use(attempt.ticks[n]);
+}
+
+template <typename Distance>
+double contacts(const Attempt& attempt, const Distance& distance_mm) {
+  constexpr double kApart_s = 0.5;
+  double count = 0, last_s = -std::numeric_limits<double>::infinity();
+  for_each_contact(attempt, distance_mm, [&](const AttemptTick& tick) {
+    if (tick.time_s - last_s >= kApart_s) ++count;
+    last_s = tick.time_s;
+  });
+  return count;
+}
+
+template <typename Distance>
+double contact_s(const Attempt& attempt, const Distance& distance_mm) {
+  double sum_s = 0;
+  for_each_contact(attempt, distance_mm, [&](const AttemptTick& tick) { sum_s += tick.dt_s; });
+  return sum_s;
+}
+
+template <typename Distance>
+double first_contact_s(const Attempt& attempt, const Distance& distance_mm) {
+  double first_s = kNone;
+  for_each_contact(attempt, distance_mm,
+                   [&](const AttemptTick& tick) { first_s = std::fmin(first_s, tick.time_s); });
+  return first_s;
+}
+
+template <typename Distance>
+double contact_force_max_N(const Attempt& attempt, const Distance& distance_mm) {
+  double force_N = kNone;
+  for_each_contact(attempt, distance_mm,
+                   [&](const AttemptTick& tick) { force_N = std::fmax(force_N, tick.force_N); });
+  return force_N;
+}
+
+template <typename Distance>
+double min_distance_mm(const Attempt& attempt, const Distance& distance_mm) {
+  double least_mm = kNone;
+  for (std::size_t n = 0; n < attempt.ticks.size(); ++n) least_mm = std::fmin(least_mm, distance_mm(n));
+  return least_mm;
+}
+
+double no_go_removed_mm3(const Attempt& attempt, std::size_t structure) {
+  const PlacedExercise& exercise = *attempt.exercise;
+  return exercise.volume_mm3(removed_of(attempt, exercise.structures[structure].voxels));
+}
+
+double no_go_removed_of_all_mm3(const Attempt& attempt) {
+  const PlacedExercise& exercise = *attempt.exercise;
+  std::size_t count = 0;
+  attempt.removed.for_each([&](const VoxelIndex& v) {
+    const bool is_in = std::ranges::any_of(
+        exercise.structures, [&](const PlacedStructure& one) { return one.voxels.contains(v); });
+    if (is_in) ++count;
+  });
+  return exercise.structures.empty() ? kNone : exercise.volume_mm3(count);
+}
+
+// Makes the measure of all structures and of each from one function that takes the distance in a tick.
+template <typename Function>
+Measure of_contact(std::string name, std::string unit, std::string formula, std::string source,
+                   Function function) {
+  return {std::move(name),
+          std::move(unit),
+          std::move(formula),
+          std::move(source),
+          [function](const Attempt& attempt) {
+            if (attempt.exercise->structures.empty()) return kNone;
+            return function(attempt, [&](std::size_t tick) { return attempt.distance_mm(tick); });
+          },
+          [function](const Attempt& attempt, std::size_t structure) {
+            return function(attempt, [&](std::size_t tick) { return attempt.distance_mm(tick, structure); });
+          }};
+}
+
+double thickness_left_min_mm(const Attempt& attempt, std::size_t structure) {
+  return share(attempt.thickness_left_mm[structure], 0);
+}
+
+double thickness_left_median_mm(const Attempt& attempt, std::size_t structure) {
+  return share(attempt.thickness_left_mm[structure], 0.5);
+}
+
+// Time, strokes and force.
+
+double duration_s(const Attempt& attempt) {
+  double sum_s = 0;
+  for (const AttemptTick& tick : attempt.ticks) sum_s += tick.dt_s;
+  return sum_s;
+}
+
+double cutting_s(const Attempt& attempt) {
+  double sum_s = 0;
+  for (const AttemptTick& tick : attempt.ticks) sum_s += tick.is_cutting() ? tick.dt_s : 0;
+  return sum_s;
+}
+
+double idle_s(const Attempt& attempt) {
+  return duration_s(attempt) - cutting_s(attempt);
+}
+
+double strokes(const Attempt& attempt) {
+  return static_cast<double>(strokes_of(attempt.ticks).size());
+}
+
+double of_strokes(const Attempt& attempt, double Stroke::*quantity) {
+  std::vector<double> values;
+  for (const Stroke& stroke : strokes_of(attempt.ticks)) values.push_back(stroke.*quantity);
+  return share(std::move(values), 0.5);
+}
+
+/// A range of distances from the nearest structure, mm.
+struct Zone {
+  double from_mm = -std::numeric_limits<double>::infinity();
+  double to_mm = std::numeric_limits<double>::infinity();
+  const char* name = "";
+};
+constexpr double kNear_mm = 4, kFar_mm = 8;
+constexpr Zone kNear{.to_mm = kNear_mm, .name = "near"};
+constexpr Zone kMiddle{.from_mm = kNear_mm, .to_mm = kFar_mm, .name = "middle"};
+constexpr Zone kFar{.from_mm = kFar_mm, .name = "far"};
+
+// Returns the ticks that cut in a zone; without a zone, all that cut.
+std::vector<AttemptTick> cutting_ticks(const Attempt& attempt, const Zone* zone) {
+  std::vector<AttemptTick> ticks;
+  for (std::size_t n = 0; n < attempt.ticks.size(); ++n) {
+    if (!attempt.ticks[n].is_cutting()) continue;
+    const double distance_mm = zone == nullptr ? 0 : attempt.distance_mm(n);
+    if (zone == nullptr || (distance_mm >= zone->from_mm && distance_mm < zone->to_mm))
+      ticks.push_back(attempt.ticks[n]);
+  }
+  return ticks;
+}
+
+double cutting_share(const Attempt& attempt, const Zone* zone, double AttemptTick::*quantity, double part) {
+  std::vector<double> values;
+  for (const AttemptTick& tick : cutting_ticks(attempt, zone)) values.push_back(tick.*quantity);
+  return share(std::move(values), part);
+}
+
+double removal_rate_mm3_s(const Attempt& attempt, const Zone* zone) {
+  double removed = 0, time_s = 0;
+  for (const AttemptTick& tick : cutting_ticks(attempt, zone)) {
+    removed += tick.removed_mm3;
+    time_s += tick.dt_s;
+  }
+  return ratio(removed, time_s);
+}
+
+// Recordings have no camera.
+double not_recorded(const Attempt&) {
+  return kNone;
+}
+
+constexpr const char* kZones =
+    "10.1097/MAO.0000000000001398: experts press harder and remove faster far from structures";
+constexpr const char* kTeachers = "PMC3413455: no violation of the facial nerve";
+
+void add_bone(std::vector<Measure>& all) {
+  all.push_back({"target_removed_percent", "%",
+                 "100 |R ∩ T| / |T|: R the voxels that were bone and are no more, T the target's bone", "",
+                 target_removed_percent});
+  all.push_back(
+      {"removed_outside_mm3", "mm³",
+       "volume of the voxels of R that lie farther than keep.margin_mm from T, or in the bone to be kept", "",
+       removed_outside_mm3});
+  all.push_back(
+      {"removed_outside_percent", "%", "100 removed_outside_mm3 / volume of T", "", removed_outside_percent});
+  all.push_back({"removed_mm3", "mm³", "volume of R", "", removed_mm3});
+  all.push_back({"dice_percent", "%", "200 |R ∩ T| / (|R| + |T|)", "Dice 1945", dice_percent});
+  all.push_back({"keep_removed_mm3", "mm³", "volume of R within the bone to be kept; empty without such bone",
+                 "", keep_removed_mm3});
+  const std::string over =
+      "bone between a structure and the space open from outside, {} over the structure's "
+      "surface as far as milling made it thinner by a voxel or more; empty beyond 8 mm";
+  all.push_back({"thickness_left_min_mm", "mm", fmt::format(fmt::runtime(over), "least"), "",
+                 worst_of(thickness_left_min_mm, true), thickness_left_min_mm});
+  all.push_back({"thickness_left_median_mm", "mm", fmt::format(fmt::runtime(over), "median"), "",
+                 worst_of(thickness_left_median_mm, true), thickness_left_median_mm});
+}
+
+void add_contacts(std::vector<Measure>& all) {
+  all.push_back(
+      of_contact("no_go_contacts", "",
+                 "times at which the turning burr's surface reached into a structure; half a second "
+                 "without parts one from the next",
+                 kTeachers, [](const auto& a, const auto& d) { return contacts(a, d); }));
+  all.push_back(of_contact("no_go_contact_s", "s", "length of the ticks with contact", kTeachers,
+                           [](const auto& a, const auto& d) { return contact_s(a, d); }));
+  all.push_back(of_contact("no_go_first_contact_s", "s", "time of the first tick with contact; empty without",
+                           kTeachers, [](const auto& a, const auto& d) { return first_contact_s(a, d); }));
+  all.push_back(of_contact("no_go_force_max_N", "N", "greatest force of the burr in contact; empty without",
+                           "PMC3413455: no excessive force near the facial nerve",
+                           [](const auto& a, const auto& d) { return contact_force_max_N(a, d); }));
+  all.push_back({"no_go_removed_mm3", "mm³", "volume of R within structures", kTeachers,
+                 no_go_removed_of_all_mm3, no_go_removed_mm3});
+  all.push_back(of_contact("no_go_min_distance_mm", "mm",
+                           "least distance of the burr's surface from a structure; negative if it reached in",
+                           "Voormolen: 3 mm left every facial nerve undamaged, 1 and 2 mm did not",
+                           [](const auto& a, const auto& d) { return min_distance_mm(a, d); }));
+}
+
+void add_work(std::vector<Measure>& all) {
+  all.push_back({"duration_s", "s", "length of all ticks", "", duration_s});
+  all.push_back({"cutting_s", "s", "length of the ticks that removed bone", "", cutting_s});
+  all.push_back({"idle_s", "s", "duration_s - cutting_s", "", idle_s});
+  all.push_back(
+      {"strokes", "",
+       "pieces of the path while cutting; one ends when the path, in steps of 0.5 mm, turns by more than "
+       "90°, or after 0.1 s without cutting",
+       "PMC7411937", strokes});
+  all.push_back({"stroke_length_median_mm", "mm", "median length of strokes", "PMC3413455: broad strokes",
+                 [](const Attempt& a) { return of_strokes(a, &Stroke::length_mm); }});
+  all.push_back({"stroke_duration_median_s", "s", "median duration of strokes", "PMC7411937",
+                 [](const Attempt& a) { return of_strokes(a, &Stroke::duration_s); }});
+  const auto force = [](const Zone* zone, double part) {
+    return [=](const Attempt& a) { return cutting_share(a, zone, &AttemptTick::force_N, part); };
+  };
+  all.push_back({"force_median_N", "N", "median force of the burr over the ticks that removed bone", "",
+                 force(nullptr, 0.5)});
+  all.push_back({"force_p95_N", "N", "95th percentile of that force", "", force(nullptr, 0.95)});
+  for (const Zone* zone : {&kNear, &kMiddle, &kFar}) {
+    const std::string where = zone == &kNear     ? "with the burr's surface under 4 mm from a structure"
+                              : zone == &kMiddle ? "4 to 8 mm from the nearest structure"
+                                                 : "over 8 mm from any structure";
+    all.push_back({fmt::format("force_median_{}_N", zone->name), "N", "median force " + where, kZones,
+                   force(zone, 0.5)});
+    all.push_back({fmt::format("removal_rate_{}_mm3_s", zone->name), "mm³/s",
+                   "bone of reference density removed " + where + ", by the time of cutting there", kZones,
+                   [zone](const Attempt& a) { return removal_rate_mm3_s(a, zone); }});
+    all.push_back(
+        {fmt::format("burr_radius_median_{}_mm", zone->name), "mm", "median burr radius " + where, kZones,
+         [zone](const Attempt& a) { return cutting_share(a, zone, &AttemptTick::burr_radius_mm, 0.5); }});
+  }
+  all.push_back({"hidden_cutting_percent", "%",
+                 "share of the cutting in which the burr's contact was hidden from the camera; empty because "
+                 "recordings have no camera yet",
+                 "PMC3413455: visibility while removing bone", not_recorded});
+}
+
+std::string limit_text(const ExerciseItem& item) {
+  std::string text;
+  if (item.at_least) text = fmt::format("at least {}", *item.at_least);
+  if (item.at_most) text += fmt::format("{}at most {}", text.empty() ? "" : " and ", *item.at_most);
+  return text;
+}
+
+bool is_met(const ExerciseItem& item, double value) {
+  return (!item.at_least || value >= *item.at_least) && (!item.at_most || value <= *item.at_most);
+}
+
+// A row for each item that limits the measure, or one without a limit.
+void add_rows(std::vector<MeasuredValue>& rows, const Measure& measure, const std::string& structure,
+              double value, const Exercise& exercise) {
+  MeasuredValue row{structure.empty() ? measure.name : measure.name + "." + structure,
+                    {},
+                    measure.unit,
+                    "",
+                    {},
+                    measure.source};
+  if (std::isfinite(value)) row.value = value;
+  bool is_limited = false;
+  for (const ExerciseItem& item : exercise.items) {
+    if (item.measure != measure.name || item.structure != structure) continue;
+    MeasuredValue limited = row;
+    limited.limit = limit_text(item);
+    if (row.value) limited.is_met = is_met(item, *row.value);
+    if (!item.source.empty()) limited.source = item.source;
+    rows.push_back(std::move(limited));
+    is_limited = true;
+  }
+  if (!is_limited) rows.push_back(std::move(row));
+}
+
+}  // namespace
+
+const std::vector<Measure>& all_measures() {
+  static const std::vector<Measure> all = [] {
+    std::vector<Measure> measures;
+    add_bone(measures);
+    add_contacts(measures);
+    add_work(measures);
+    return measures;
+  }();
+  return all;
+}
+
+const Measure* find_measure(std::string_view name) {
+  const auto found = std::ranges::find(all_measures(), name, &Measure::name);
+  return found == all_measures().end() ? nullptr : &*found;
+}
+
+std::vector<std::string> measure_names() {
+  std::vector<std::string> names;
+  for (const Measure& measure : all_measures()) names.push_back(measure.name);
+  return names;
+}
+
+std::string measures_table() {
+  std::string table = "| measure | unit | definition | each structure | source |\n|---|---|---|---|---|\n";
+  for (const Measure& measure : all_measures()) {
+    table += fmt::format("| `{}` | {} | {} | {} | {} |\n", measure.name, measure.unit, measure.formula,
+                         measure.value_at ? "yes" : "", measure.source);
+  }
+  return table;
+}
+
+std::vector<MeasuredValue> measure_attempt(const Attempt& attempt) {
+  const Exercise& exercise = attempt.exercise->exercise;
+  std::vector<MeasuredValue> rows;
+  for (const Measure& measure : all_measures()) {
+    add_rows(rows, measure, "", measure.value(attempt), exercise);
+    if (!measure.value_at) continue;
+    for (std::size_t n = 0; n < attempt.exercise->structures.size(); ++n)
+      add_rows(rows, measure, attempt.exercise->structures[n].name, measure.value_at(attempt, n), exercise);
+  }
+  return rows;
+}
+
+void write_measured(const std::filesystem::path& path, const std::vector<MeasuredValue>& rows) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << "measure,value,unit,limit,met,source\n";
+    for (const MeasuredValue& row : rows) {
+      const std::string met = row.is_met ? *row.is_met ? "yes" : "no" : "";
+      out << fmt::format("{},{},{},{},{},{}\n", csv_field(row.measure),
+                         row.value ? fmt::format("{}", *row.value) : "", row.unit, row.limit, met,
+                         csv_field(row.source));
+    }
+  });
+}
+
+}  // namespace osteomill

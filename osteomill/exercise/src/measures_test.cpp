@@ -1,0 +1,256 @@
+#include "osteomill/exercise/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/exercise/region_voxels.h"
+#include "osteomill/exercise/src/exercise_samples.h"
+
+namespace osteomill {
+namespace {
+
+using namespace testing_support;
+
+double measured(const std::string& name, const Attempt& attempt) {
+  const Measure* measure = find_measure(name);
+  return measure == nullptr ? -1e9 : measure->value(attempt);
+}
+
+/// Takes the voxels out of the bone at once, without a session.
+Attempt attempt_removing(const PlacedExercise& placed, const Volume& scan, const Region& region) {
+  Volume after = scan;
+  region_voxels(region, scan, "task.toml").for_each([&](const VoxelIndex& v) { after.lower_density(v, 0); });
+  VoxelSet removed = removed_voxels(scan, after);
+  std::vector<std::vector<double>> left_mm = thickness_left_mm(placed, scan, after);
+  return {&placed, &scan, std::move(after), std::move(removed), {}, {}, std::move(left_mm)};
+}
+
+class MeasuresOfABox : public ::testing::Test {
+ protected:
+  MeasuresOfABox() {
+    exercise_.no_go.push_back({"nerve", region_of({BoxShape{{-7, -2, -7}, {7, 2, -6}}}), 3});
+    exercise_.keep = region_of({BoxShape{{3, -3, -2}, {5, 3, 0}}});
+    placed_ = place_exercise(exercise_, scan_);
+  }
+  Attempt removing(const BoxShape& box) const { return attempt_removing(placed_, scan_, region_of({box})); }
+  /// An attempt that removes nothing, with ticks of 1 ms.
+  Attempt with_ticks(const std::vector<AttemptTick>& ticks) const {
+    Attempt attempt = removing({{-1, -1, 5}, {1, 1, 6}});
+    attempt.ticks = ticks;
+    for (const AttemptTick& tick : ticks)
+      attempt.distances_mm.push_back(no_go_distance_mm(placed_, tick.burr_W, tick.burr_radius_mm));
+    return attempt;
+  }
+
+  Volume scan_ = bone_below_zero(0.25);
+  Exercise exercise_ = exercise_with_target(region_of({BoxShape{{-2, -2, -4}, {2, 2, 0}}}));
+  PlacedExercise placed_;
+};
+
+TEST_F(MeasuresOfABox, CountHowMuchOfTheTargetAndOfWhatIsOutsideWasRemoved) {
+  // The target is 4 x 4 x 4 mm; this takes its upper half, and half as much beside it.
+  const Attempt attempt = removing({{-2, -2, -2}, {4, 2, 0}});
+  EXPECT_DOUBLE_EQ(measured("target_removed_percent", attempt), 50);
+  EXPECT_DOUBLE_EQ(measured("removed_outside_mm3", attempt), 16);
+  EXPECT_DOUBLE_EQ(measured("removed_outside_percent", attempt), 25);
+  EXPECT_DOUBLE_EQ(measured("removed_mm3", attempt), 48);
+  EXPECT_DOUBLE_EQ(measured("dice_percent", attempt), 200.0 * 32 / (64 + 48));
+  EXPECT_DOUBLE_EQ(measured("keep_removed_mm3", attempt), 8);
+  EXPECT_DOUBLE_EQ(measured("no_go_removed_mm3", attempt), 0);
+}
+
+TEST_F(MeasuresOfABox, FindTheBoneLeftOverAStructure) {
+  // From z = -4.5 to the structure's top at -6.
+  const Attempt attempt = removing({{-2, -2, -4.5}, {2, 2, 0}});
+  EXPECT_NEAR(measured("thickness_left_min_mm", attempt), 1.5, 0.01);
+  EXPECT_GE(measured("thickness_left_median_mm", attempt), 1.5);
+  EXPECT_TRUE(std::isnan(measured("thickness_left_min_mm", removing({{-1, -1, 5}, {1, 1, 6}}))));
+}
+
+TEST_F(MeasuresOfABox, TimeContactsFromTheTickInWhichTheBurrReachesTheStructure) {
+  // Down at 1 mm/s from z = -3: a burr of 1 mm reaches z = -6 after 2 s; up again; and once more.
+  std::vector<AttemptTick> ticks;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int n = 0; n < 4000; ++n) {
+      const double down_mm = n < 2100 ? 1e-3 * n : 2.1 - 1e-3 * (n - 2100);
+      ticks.push_back({.time_s = 1e-3 * static_cast<double>(ticks.size()),
+                       .dt_s = 1e-3,
+                       .burr_W = {0, 0, -3 - down_mm},
+                       .burr_radius_mm = 1,
+                       .force_N = down_mm,
+                       .spindle_on = true});
+    }
+  }
+  const Attempt attempt = with_ticks(ticks);
+  EXPECT_DOUBLE_EQ(measured("no_go_contacts", attempt), 2);
+  EXPECT_NEAR(measured("no_go_first_contact_s", attempt), 2, 0.0011);
+  EXPECT_NEAR(measured("no_go_contact_s", attempt), 0.4, 0.005);
+  EXPECT_NEAR(measured("no_go_min_distance_mm", attempt), -0.1, 1e-9);
+  EXPECT_NEAR(measured("no_go_force_max_N", attempt), 2.1, 1e-9);
+  EXPECT_NEAR(measured("duration_s", attempt), 8, 1e-9);
+  EXPECT_DOUBLE_EQ(measured("cutting_s", attempt), 0);
+  EXPECT_TRUE(std::isnan(measured("force_median_N", attempt)));
+
+  for (AttemptTick& tick : ticks) tick.spindle_on = false;
+  EXPECT_DOUBLE_EQ(measured("no_go_contacts", with_ticks(ticks)), 0);
+  EXPECT_TRUE(std::isnan(measured("no_go_first_contact_s", with_ticks(ticks))));
+}
+
+TEST_F(MeasuresOfABox, TellForceAndSpeedApartByTheDistanceFromStructures) {
+  std::vector<AttemptTick> ticks;
+  const auto cut = [&](double z, double force_N, double removed_mm3, double radius_mm, int count) {
+    for (int n = 0; n < count; ++n)
+      ticks.push_back({.dt_s = 1e-3,
+                       .burr_W = {0, 0, z},
+                       .burr_radius_mm = radius_mm,
+                       .force_N = force_N,
+                       .removed_mm3 = removed_mm3,
+                       .spindle_on = true});
+  };
+  cut(4, 3, 2e-3, 1.5, 90);
+  cut(0.5, 2, 1e-3, 1, 6);
+  cut(-3.5, 1, 0.5e-3, 0.5, 4);
+  const Attempt attempt = with_ticks(ticks);
+  EXPECT_DOUBLE_EQ(measured("force_median_N", attempt), 3);
+  EXPECT_DOUBLE_EQ(measured("force_median_far_N", attempt), 3);
+  EXPECT_DOUBLE_EQ(measured("force_median_middle_N", attempt), 2);
+  EXPECT_DOUBLE_EQ(measured("force_median_near_N", attempt), 1);
+  EXPECT_NEAR(measured("removal_rate_far_mm3_s", attempt), 2, 1e-12);
+  EXPECT_NEAR(measured("removal_rate_near_mm3_s", attempt), 0.5, 1e-12);
+  EXPECT_DOUBLE_EQ(measured("burr_radius_median_near_mm", attempt), 0.5);
+  EXPECT_DOUBLE_EQ(measured("burr_radius_median_far_mm", attempt), 1.5);
+  EXPECT_NEAR(measured("cutting_s", attempt), 0.1, 1e-12);
+}
+
+TEST_F(MeasuresOfABox, AreEmptyIfTheyCannotBeMeasured) {
+  EXPECT_TRUE(std::isnan(measured("hidden_cutting_percent", with_ticks({}))));
+  Exercise without = exercise_;
+  without.no_go.clear();
+  without.keep.reset();
+  const PlacedExercise placed = place_exercise(without, scan_);
+  const Attempt attempt = attempt_removing(placed, scan_, region_of({BoxShape{{-1, -1, -1}, {1, 1, 0}}}));
+  for (const char* name : {"no_go_contacts", "no_go_min_distance_mm", "no_go_removed_mm3", "keep_removed_mm3",
+                           "thickness_left_min_mm"})
+    EXPECT_TRUE(std::isnan(measured(name, attempt))) << name;
+}
+
+TEST_F(MeasuresOfABox, BecomeARowForEachItemAndStructure) {
+  exercise_.items.push_back({"target_removed_percent", "", 40.0, std::nullopt, "a book, page 3", {}, 1});
+  exercise_.items.push_back({"target_removed_percent", "", std::nullopt, 45.0, "", {}, 2});
+  exercise_.items.push_back({"thickness_left_min_mm", "nerve", 1.0, std::nullopt, "", {}, 3});
+  placed_ = place_exercise(exercise_, scan_);
+  std::vector<std::string> limited;
+  std::size_t of_nerve = 0;
+  for (const MeasuredValue& row : measure_attempt(removing({{-2, -2, -2}, {2, 2, 0}}))) {
+    if (row.measure.ends_with(".nerve")) ++of_nerve;
+    if (row.limit.empty()) {
+      EXPECT_FALSE(row.is_met);
+      continue;
+    }
+    limited.push_back(row.measure + " " + row.limit +
+                      (row.is_met ? *row.is_met ? " met " : " missed " : " - ") + row.source);
+  }
+  EXPECT_EQ(limited, (std::vector<std::string>{"target_removed_percent at least 40 met a book, page 3",
+                                               "target_removed_percent at most 45 missed ",
+                                               "thickness_left_min_mm.nerve at least 1 met "}));
+  EXPECT_EQ(of_nerve, 8u);
+}
+
+TEST(Strokes, EndWhereTheirDirectionTurns) {
+  // Five strokes of 6 mm back and forth at 20 mm/s, with a shake of 0.05 mm.
+  std::vector<AttemptTick> ticks;
+  for (int stroke = 0; stroke < 5; ++stroke) {
+    for (int n = 0; n < 300; ++n) {
+      const double along_mm = stroke % 2 == 0 ? 0.02 * n : 6 - 0.02 * n;
+      ticks.push_back({.dt_s = 1e-3, .burr_W = {along_mm, n % 2 * 0.05, 0}, .removed_mm3 = 1e-3});
+    }
+  }
+  const std::vector<Stroke> strokes = strokes_of(ticks);
+  ASSERT_EQ(strokes.size(), 5u);
+  for (const Stroke& stroke : strokes) {
+    EXPECT_NEAR(stroke.length_mm, 6, 0.1);
+    EXPECT_NEAR(stroke.duration_s, 0.3, 0.03);
+  }
+}
+
+TEST(Strokes, EndAfterATimeWithoutCutting) {
+  std::vector<AttemptTick> ticks;
+  for (int n = 0; n < 900; ++n) {
+    const bool pauses = (n >= 200 && n < 250) || (n >= 500 && n < 700);
+    ticks.push_back({.dt_s = 1e-3, .burr_W = {0.02 * n, 0, 0}, .removed_mm3 = pauses ? 0 : 1e-3});
+  }
+  EXPECT_EQ(strokes_of(ticks).size(), 2u);
+}
+
+// Bone below z = 0 from which a shape is cut, with an edge as the mill leaves it.
+Attempt attempt_cutting(const PlacedExercise& placed, const Volume& scan,
+                        const std::function<double(const Vec3&)>& signed_distance_mm) {
+  Volume after = scan;
+  const GridGeometry& grid = scan.geometry();
+  for_each(grid.all_voxels(), [&](const VoxelIndex& v) {
+    const double voxels = signed_distance_mm(grid.world_from_voxel(v)) / grid.spacing_mm.x();
+    after.lower_density(v, static_cast<float>(std::clamp(500 + 500 * voxels, 0.0, 1000.0)));
+  });
+  VoxelSet removed = removed_voxels(scan, after);
+  return {&placed, &scan, std::move(after), std::move(removed), {}, {}, {}};
+}
+
+class CutVolume : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(AtSpacings, CutVolume, ::testing::Values(0.125, 0.25),
+                         [](const auto& of) { return of.param < 0.2 ? "EighthOfAMm" : "QuarterOfAMm"; });
+
+TEST_P(CutVolume, OfASphereIsWithinTwoPercent) {
+  const Volume bone = bone_below_zero(GetParam(), 8);
+  const SphereShape sphere{{0.03, 0.05, -1.9}, 1.5};
+  const PlacedExercise placed = place_exercise(exercise_with_target(region_of({sphere})), bone);
+  const double expected_mm3 = 4 * std::numbers::pi / 3 * std::pow(1.5, 3);
+  EXPECT_NEAR(placed.volume_mm3(placed.target.count()), expected_mm3, 0.02 * expected_mm3);
+  const Attempt attempt = attempt_cutting(placed, bone, ball(sphere.center_W, sphere.radius_mm));
+  EXPECT_NEAR(measured("removed_mm3", attempt), expected_mm3, 0.02 * expected_mm3);
+  EXPECT_GT(measured("dice_percent", attempt), 98);
+}
+
+TEST_P(CutVolume, OfASlotIsWithinTwoPercent) {
+  const Volume bone = bone_below_zero(GetParam(), 10);
+  const Vec3 from(-2, 0.05, -1.4), to(2, 0.05, -1.4);
+  const PlacedExercise placed =
+      place_exercise(exercise_with_target(region_of({BoxShape{{-3, -1, -2.4}, {3, 1, 0}}})), bone);
+  const Attempt attempt = attempt_cutting(placed, bone, [&](const Vec3& p) {
+    const double along = std::clamp((p - from).x(), 0.0, 4.0);
+    return (p - from - Vec3(along, 0, 0)).norm() - 1;
+  });
+  const double expected_mm3 = 4 * std::numbers::pi / 3 + 4 * std::numbers::pi;
+  EXPECT_NEAR(measured("removed_mm3", attempt), expected_mm3, 0.02 * expected_mm3);
+}
+
+TEST_P(CutVolume, OfASessionIsThatWhichItsMillCounted) {
+  const Volume bone = bone_below_zero(GetParam(), 8);
+  std::vector<Vec3> places = way({0.03, 0.05, 2.2}, {0.03, 0.05, 0.2}, 0.005);
+  places.resize(places.size() + 3000, places.back());
+  const Recording recording = record_poses(bone, places, 1.5);
+  const PlacedExercise placed =
+      place_exercise(exercise_with_target(region_of({SphereShape{{0.03, 0.05, 0.2}, 1.5}})), bone);
+  const Attempt attempt = make_attempt(placed, bone, recording);
+  const double counted_mm3 = recording.records.back().removed_mm3;
+  EXPECT_GT(counted_mm3, 4);
+  EXPECT_NEAR(measured("removed_mm3", attempt), counted_mm3, 0.02 * counted_mm3);
+  EXPECT_GT(measured("target_removed_percent", attempt), 90);
+  EXPECT_GT(measured("cutting_s", attempt), 0.1);
+}
+
+TEST(MakeAttempt, RefusesARecordingOfAnotherScan) {
+  const Volume bone = bone_below_zero(0.5, 8), other = bone_below_zero(0.5, 10);
+  const Recording recording = record_poses(other, way({0, 0, 3}, {0, 0, 2}, 0.1), 1);
+  const PlacedExercise placed =
+      place_exercise(exercise_with_target(region_of({BoxShape{{-1, -1, -1}, {1, 1, 0}}})), bone);
+  EXPECT_THROW(make_attempt(placed, bone, recording), InputError);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,139 @@
+#include "osteomill/exercise/placed_exercise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/exercise/measures.h"
+#include "osteomill/exercise/region_voxels.h"
+
+namespace osteomill {
+
+namespace {
+
+[[noreturn]] void refuse(const Exercise& exercise, int line, const std::string& reason) {
+  throw InputError(exercise.file.string(), fmt::format("line {}: {}", line, reason));
+}
+
+VoxelSet within_margin(const VoxelSet& target, const GridGeometry& scan, double margin_mm) {
+  const auto voxels = static_cast<int>(std::ceil(margin_mm / scan.spacing_mm.minCoeff()));
+  const NearestVoxels nearest(target, target.box().grown(voxels).intersected(scan.all_voxels()),
+                              scan.spacing_mm);
+  VoxelSet allowed(nearest.box());
+  for_each(nearest.box(), [&](const VoxelIndex& v) {
+    if (nearest.distance_mm(v) <= margin_mm) allowed.insert(v);
+  });
+  return allowed;
+}
+
+// One solid is measured exactly; all else, by its voxels.
+StructureDistance distance_of(const Region& region, const VoxelSet& voxels, const GridGeometry& scan) {
+  const bool is_solid = region.shapes.size() == 1 && region.shapes.front().index() <= 2;
+  return is_solid ? StructureDistance(region.shapes.front()) : StructureDistance(voxels, scan);
+}
+
+PlacedStructure place_structure(const NoGoStructure& structure, const PlacedExercise& placed,
+                                const Volume& scan) {
+  const Exercise& exercise = placed.exercise;
+  VoxelSet voxels = region_voxels(structure.region, scan, exercise.file);
+  if (voxels.empty())
+    refuse(exercise, structure.region.line, fmt::format("{} holds no voxel of the scan", structure.name));
+  StructureDistance distance = distance_of(structure.region, voxels, scan.geometry());
+  std::size_t shared = 0;
+  double least_mm = std::numeric_limits<double>::infinity();
+  placed.target.for_each([&](const VoxelIndex& v) {
+    if (voxels.contains(v)) ++shared;
+    least_mm = std::min(least_mm, distance.from(scan.geometry().world_from_voxel(v)));
+  });
+  if (shared > 0) {
+    refuse(exercise, exercise.target.line,
+           fmt::format("the target overlaps {}, which must not be touched, by {:.4g} mm³", structure.name,
+                       placed.volume_mm3(shared)));
+  }
+  return {structure.name, structure.warn_mm, std::move(voxels), std::move(distance), least_mm};
+}
+
+std::string limits_text(const ExerciseItem& item, const std::string& unit) {
+  std::string text;
+  if (item.at_least) text = fmt::format("at least {:g}", *item.at_least);
+  if (item.at_most) text += fmt::format("{}at most {:g}", item.at_least ? " and " : "", *item.at_most);
+  return unit.empty() ? text : text + " " + unit;
+}
+
+}  // namespace
+
+PlacedExercise place_exercise(const Exercise& exercise, const Volume& scan) {
+  PlacedExercise placed;
+  placed.exercise = exercise;
+  placed.scan = scan.geometry();
+  placed.target = bone_within(region_voxels(exercise.target, scan, exercise.file), scan);
+  if (placed.target.empty()) refuse(exercise, exercise.target.line, "the target holds no bone");
+  placed.allowed = within_margin(placed.target, scan.geometry(), exercise.margin_mm);
+  if (exercise.keep) {
+    placed.keep = bone_within(region_voxels(*exercise.keep, scan, exercise.file), scan);
+    if (placed.keep.empty()) refuse(exercise, exercise.keep->line, "keep holds no bone");
+    placed.target.for_each([&](const VoxelIndex& v) {
+      if (placed.keep.contains(v))
+        refuse(exercise, exercise.keep->line, "the target overlaps the bone to be kept");
+    });
+  }
+  for (const NoGoStructure& structure : exercise.no_go)
+    placed.structures.push_back(place_structure(structure, placed, scan));
+  for (const ExerciseStep& step : exercise.steps) {
+    placed.steps.push_back(bone_within(region_voxels(step.region, scan, exercise.file), scan));
+    if (placed.steps.back().empty()) refuse(exercise, step.region.line, "the step's region holds no bone");
+  }
+  return placed;
+}
+
+double no_go_distance_mm(const PlacedExercise& placed, const Vec3& burr_centre_W,
+                         double burr_radius_mm) noexcept {
+  double least_mm = std::numeric_limits<double>::quiet_NaN();
+  for (const PlacedStructure& structure : placed.structures)
+    least_mm = std::fmin(least_mm, structure.distance.from(burr_centre_W) - burr_radius_mm);
+  return least_mm;
+}
+
+std::vector<std::string> describe(const PlacedExercise& placed) {
+  const Exercise& exercise = placed.exercise;
+  const auto volume = [&](const VoxelSet& voxels) {
+    return fmt::format("{:.4g} mm³", placed.volume_mm3(voxels.count()));
+  };
+  std::vector<std::string> lines{exercise.title};
+  if (!exercise.task.empty()) lines.push_back("task: " + in_one_line(exercise.task));
+  lines.push_back("target: " + volume(placed.target) + " of bone");
+  if (exercise.margin_mm > 0)
+    lines.push_back(fmt::format("keep: bone more than {:g} mm outside the target", exercise.margin_mm));
+  if (exercise.keep) lines.push_back("keep: " + volume(placed.keep) + " of bone wherever it lies");
+  for (const PlacedStructure& structure : placed.structures) {
+    lines.push_back(fmt::format("no-go {}: {}, {:.2f} mm from the target, warning below {:g} mm",
+                                structure.name, volume(structure.voxels), structure.from_target_mm,
+                                structure.warn_mm));
+  }
+  if (exercise.entry_W_mm)
+    lines.push_back(fmt::format("entry: {:g}, {:g}, {:g} mm", exercise.entry_W_mm->x(),
+                                exercise.entry_W_mm->y(), exercise.entry_W_mm->z()));
+  if (!exercise.burr_radii_mm.empty())
+    lines.push_back(fmt::format("tools: burrs of {} mm radius", fmt::join(exercise.burr_radii_mm, ", ")));
+  if (exercise.time_s) lines.push_back(fmt::format("time: {:g} s", *exercise.time_s));
+  for (std::size_t n = 0; n < exercise.steps.size(); ++n) {
+    lines.push_back(fmt::format("step {}: {} ({} of bone, done at {:g} %)", n + 1,
+                                in_one_line(exercise.steps[n].text), volume(placed.steps[n]),
+                                exercise.steps[n].done_percent));
+  }
+  for (const ExerciseItem& item : exercise.items) {
+    const Measure* measure = find_measure(item.measure);
+    lines.push_back(fmt::format("item {}{}: {}{}", item.measure,
+                                item.structure.empty() ? "" : " of " + item.structure,
+                                limits_text(item, measure != nullptr ? measure->unit : ""),
+                                item.source.empty() ? "" : " (" + item.source + ")"));
+  }
+  return lines;
+}
+
+}  // namespace osteomill

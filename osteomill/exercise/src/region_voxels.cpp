@@ -1,0 +1,228 @@
+#include "osteomill/exercise/region_voxels.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/exercise/nearest_voxels.h"
+#include "osteomill/exercise/structure_distance.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/recording/replay_recording.h"
+#include "osteomill/volume/sampling.h"
+
+namespace osteomill {
+
+namespace {
+
+// Beyond any scan, and within the range of whole numbers.
+constexpr double kMaxNumber = 1e8;
+
+/// A shape as voxels see it: the box that holds it, and which voxels of that box lie in it.
+struct ShapeVoxels {
+  VoxelBox box;
+  std::function<bool(const VoxelIndex&)> contains;
+};
+
+std::string in_lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+VoxelBox box_about(const GridGeometry& grid, std::initializer_list<Vec3> points_W, double radius_mm = 0) {
+  Vec3 low = Vec3::Constant(kMaxNumber), high = Vec3::Constant(-kMaxNumber);
+  for (const Vec3& point_W : points_W) {
+    const Vec3 point = grid.voxel_from_world(point_W);
+    const Vec3 radius = Vec3::Constant(radius_mm).cwiseQuotient(grid.spacing_mm);
+    low = low.cwiseMin(point - radius);
+    high = high.cwiseMax(point + radius);
+  }
+  const auto whole = [](const Vec3& v) {
+    const Vec3 in_range = v.cwiseMax(-kMaxNumber).cwiseMin(kMaxNumber);
+    return VoxelIndex{static_cast<int>(in_range.x()), static_cast<int>(in_range.y()),
+                      static_cast<int>(in_range.z())};
+  };
+  return {whole(low.array().ceil()), whole(high.array().floor())};
+}
+
+class Finder {
+ public:
+  Finder(const Region& region, const Volume& scan, const std::filesystem::path& file)
+      : region_(region), scan_(scan), file_(file) {}
+
+  VoxelSet find() const {
+    std::vector<ShapeVoxels> shapes;
+    VoxelBox box = grid().all_voxels();
+    for (const Shape& shape : region_.shapes) {
+      if (std::holds_alternative<ShellShape>(shape)) continue;
+      shapes.push_back(std::visit([&](const auto& one) { return voxels_of(one); }, shape));
+      box = box.intersected(shapes.back().box);
+    }
+    if (box.empty()) return {};
+    // Shells last: they are searched only within the other shapes.
+    for (const Shape& shape : region_.shapes)
+      if (const auto* shell = std::get_if<ShellShape>(&shape)) shapes.push_back(layer(*shell, box));
+    VoxelSet found(box);
+    for_each(box, [&](const VoxelIndex& v) {
+      if (std::ranges::all_of(shapes, [&](const ShapeVoxels& shape) { return shape.contains(v); }))
+        found.insert(v);
+    });
+    return found;
+  }
+
+ private:
+  const GridGeometry& grid() const { return scan_.geometry(); }
+  [[noreturn]] void refuse(const std::string& reason) const {
+    throw InputError(file_.string(), fmt::format("line {}: {}", region_.line, reason));
+  }
+
+  template <typename Solid>
+  ShapeVoxels solid(const Solid& shape, const VoxelBox& about, const char* what) const {
+    const VoxelBox box = about.intersected(grid().all_voxels());
+    if (box.empty()) refuse(fmt::format("the {} lies outside the scan", what));
+    return {box, [this, shape](const VoxelIndex& v) {
+              return distance_mm(shape, grid().world_from_voxel(v)) <= 0;
+            }};
+  }
+  ShapeVoxels voxels_of(const BoxShape& box) const {
+    const Vec3 &a = box.min_W, &b = box.max_W;
+    const VoxelBox about = box_about(grid(), {a,
+                                              b,
+                                              {b.x(), a.y(), a.z()},
+                                              {a.x(), b.y(), a.z()},
+                                              {a.x(), a.y(), b.z()},
+                                              {a.x(), b.y(), b.z()},
+                                              {b.x(), a.y(), b.z()},
+                                              {b.x(), b.y(), a.z()}});
+    return solid(box, about, "box");
+  }
+  ShapeVoxels voxels_of(const SphereShape& sphere) const {
+    return solid(sphere, box_about(grid(), {sphere.center_W}, sphere.radius_mm), "sphere");
+  }
+  ShapeVoxels voxels_of(const CylinderShape& cylinder) const {
+    return solid(cylinder, box_about(grid(), {cylinder.from_W, cylinder.to_W}, cylinder.radius_mm),
+                 "cylinder");
+  }
+  ShapeVoxels voxels_of(const ShellShape&) const { return {}; }
+
+  ShapeVoxels voxels_of(const LabelShape& named) const {
+    const std::shared_ptr<const LabelMap> map = scan_.labels();
+    if (!map) refuse(fmt::format("there is no label map that has {}", named.label));
+    const std::string name = in_lower_case(named.label);
+    for (std::size_t n = 0; n < map->labels().size(); ++n) {
+      const Label& label = map->labels()[n];
+      if (in_lower_case(label.name) != name && std::to_string(label.value) != name) continue;
+      const auto place = static_cast<LabelMap::Place>(n + 1);
+      return {map->box(), [map, place](const VoxelIndex& v) { return map->at(v) == place; }};
+    }
+    std::string known;
+    constexpr std::size_t kShown = 8;
+    for (std::size_t n = 0; n < std::min(kShown, map->labels().size()); ++n)
+      known += (n > 0 ? ", " : "") + map->labels()[n].name;
+    if (map->labels().size() > kShown) known += ", ...";
+    refuse(fmt::format("{} is not in the label map, which has {}", named.label, known));
+  }
+
+  ShapeVoxels voxels_of(const RecordedShape& recorded) const {
+    std::vector<VoxelSet> removed;
+    VoxelBox box;
+    for (const std::filesystem::path& path : recorded.recordings) {
+      Volume milled = scan_;
+      repeat_milling(milled, read_recording_chain(file_.parent_path() / path));
+      removed.push_back(removed_voxels(scan_, milled));
+      const VoxelBox& one = removed.back().box();
+      if (one.empty()) continue;
+      box.include(one.first);
+      box.include(one.last);
+    }
+    const int at_least = recorded.at_least;
+    return {box, [removed = std::move(removed), at_least](const VoxelIndex& v) {
+              return std::ranges::count_if(removed, [&](const VoxelSet& one) { return one.contains(v); }) >=
+                     at_least;
+            }};
+  }
+
+  ShapeVoxels layer(const ShellShape& shell, const VoxelBox& box) const {
+    const Vec3& spacing_mm = grid().spacing_mm;
+    const auto voxels = static_cast<int>(std::ceil(shell.thickness_mm / spacing_mm.minCoeff())) + 1;
+    const NearestVoxels open(open_space(scan_), box.grown(voxels).intersected(grid().all_voxels()),
+                             spacing_mm);
+    VoxelSet near(box);
+    for_each(box, [&](const VoxelIndex& v) {
+      if (!scan_.is_bone(v) || open.distance_mm(v) > shell.thickness_mm + spacing_mm.maxCoeff()) return;
+      if (open.distance_mm(v) - above_surface_mm(open.nearest_to(v)) <= shell.thickness_mm) near.insert(v);
+    });
+    return {box, [near = std::move(near)](const VoxelIndex& v) { return near.contains(v); }};
+  }
+
+  // Returns how far the centre of a voxel lies out of the bone beside it, by the slope of the density there.
+  double above_surface_mm(const VoxelIndex& open) const {
+    const double half_mm = 0.5 * grid().spacing_mm.minCoeff();
+    const double slope = density_gradient(scan_.grid(), grid().world_from_voxel(open)).norm();
+    const double rise = scan_.isovalue() - static_cast<double>(scan_.grid()[open]);
+    return slope > 0 ? std::clamp(rise / slope, 0.0, 2 * half_mm) : half_mm;
+  }
+
+  const Region& region_;
+  const Volume& scan_;
+  const std::filesystem::path& file_;
+};
+
+}  // namespace
+
+VoxelSet region_voxels(const Region& region, const Volume& scan, const std::filesystem::path& file) {
+  return Finder(region, scan, file).find();
+}
+
+VoxelSet removed_voxels(const Volume& before, const Volume& after) {
+  const auto is_removed = [&](const VoxelIndex& v) { return before.is_bone(v) && !after.is_bone(v); };
+  VoxelBox box;
+  for_each_bone_voxel(before, [&](const VoxelIndex& v) {
+    if (!after.is_bone(v)) box.include(v);
+  });
+  VoxelSet removed(box);
+  for_each(box, [&](const VoxelIndex& v) {
+    if (is_removed(v)) removed.insert(v);
+  });
+  return removed;
+}
+
+VoxelSet open_space(const Volume& bone, const VoxelSet& walls) {
+  const VoxelBox all = bone.geometry().all_voxels();
+  VoxelSet open(all);
+  std::vector<VoxelIndex> pending;
+  const auto enter = [&](const VoxelIndex& v) {
+    if (!all.contains(v) || open.contains(v) || bone.is_bone(v) || walls.contains(v)) return;
+    open.insert(v);
+    pending.push_back(v);
+  };
+  for_each(all, [&](const VoxelIndex& v) {
+    if (v.i == 0 || v.j == 0 || v.k == 0 || v.i == all.last.i || v.j == all.last.j || v.k == all.last.k)
+      enter(v);
+  });
+  while (!pending.empty()) {
+    const VoxelIndex v = pending.back();
+    pending.pop_back();
+    for (const int step : {-1, 1}) {
+      enter({v.i + step, v.j, v.k});
+      enter({v.i, v.j + step, v.k});
+      enter({v.i, v.j, v.k + step});
+    }
+  }
+  return open;
+}
+
+VoxelSet bone_within(const VoxelSet& voxels, const Volume& bone) {
+  VoxelSet found(voxels.box());
+  voxels.for_each([&](const VoxelIndex& v) {
+    if (bone.is_bone(v)) found.insert(v);
+  });
+  return found;
+}
+
+}  // namespace osteomill
