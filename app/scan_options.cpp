@@ -142,9 +142,13 @@ namespace {
 
 constexpr std::string_view kBuiltinPrefix = "builtin:";
 
+}  // namespace
+
 bool is_builtin(const std::string& scan) {
-  return scan.starts_with(kBuiltinPrefix);
+  return scan.empty() || scan.starts_with(kBuiltinPrefix);
 }
+
+namespace {
 
 bool is_builtin_tooth(const std::string& scan) {
   return scan.empty() || scan == fmt::format("{}tooth", kBuiltinPrefix);
@@ -152,7 +156,7 @@ bool is_builtin_tooth(const std::string& scan) {
 
 // Returns the phantom of this name, null for another scan. Throws InputError for a name that none has.
 const BuiltinPhantom* phantom_of(const std::string& scan) {
-  if (!is_builtin(scan)) return nullptr;
+  if (scan.empty() || !is_builtin(scan)) return nullptr;
   const std::string name = scan.substr(kBuiltinPrefix.size());
   std::vector<std::string> names{"tooth"};
   for (const BuiltinPhantom& phantom : builtin_phantoms()) {
@@ -275,7 +279,7 @@ LoadedBone read_bone(const ScanOptions& options) {
   SuggestedIsovalue isovalue =
       options.isovalue ? SuggestedIsovalue{*options.isovalue, "given"} : suggested_isovalue(options, scan);
   std::vector<std::string> warnings = std::move(scan.warnings);
-  if (!options.isovalue && !options.scan.empty() && !is_builtin(options.scan)) {
+  if (!options.isovalue && !is_builtin(options.scan)) {
     warnings.push_back(
         fmt::format("isovalue {:g} suggested, {}; --iso sets another", isovalue.value, isovalue.how));
   }

@@ -60,6 +60,9 @@ namespace osteomill::app {
 /// The bone's name if no scan is named.
 inline constexpr const char* kBuiltinTooth = "built-in tooth";
 
+/// Returns whether this is a scan that the program makes: "builtin:" and a name, or empty for the tooth.
+bool is_builtin(const std::string& scan);
+
 /// Adds SCAN and what it takes to read it: --series, --as, --max-memory.
 void add_scan_source(CLI::App& command, ScanOptions& options);
 

@@ -48,7 +48,8 @@ std::string absolute_path(const fs::path& path) {
 
 // The files may be sought from another folder later.
 RunDescription describe(ScanOptions scan, const LiveMilling& milling) {
-  RunDescription run = milling.describe(scan.scan.empty() ? kBuiltinTooth : absolute_path(scan.scan), "");
+  const std::string name = is_builtin(scan.scan) ? scan.scan : absolute_path(scan.scan);
+  RunDescription run = milling.describe(name.empty() ? kBuiltinTooth : name, "");
   scan.labels.map = absolute_path(scan.labels.map);
   scan.labels.table = absolute_path(scan.labels.table);
   std::ranges::move(scan_settings(scan), std::back_inserter(run.settings));
