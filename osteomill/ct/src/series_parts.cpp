@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,17 +41,19 @@ bool share_a_place(const Group& a, const Group& b) {
   });
 }
 
-// A single slice may lie between others of its volume.
-bool overlap(const Group& a, const Group& b) {
-  return a.slices.size() > 1 && b.slices.size() > 1 && a.heights_mm.front() < b.heights_mm.back() &&
-         b.heights_mm.front() < a.heights_mm.back();
+// Whether the ranges of groups of `least_slices` and more overlap.
+bool overlap(const Group& a, const Group& b, std::size_t least_slices) {
+  return a.slices.size() >= least_slices && b.slices.size() >= least_slices &&
+         a.heights_mm.front() < b.heights_mm.back() && b.heights_mm.front() < a.heights_mm.back();
 }
 
+// By numbers, then by letters; derived images come behind originals.
 bool is_less(const std::string& a, const std::string& b) {
-  const auto number = [](const std::string& text) {
-    return parsed_number<double>(text).value_or(-std::numeric_limits<double>::infinity());
+  const auto place = [](const std::string& text) {
+    return std::pair(text.starts_with("DERIVED"),
+                     parsed_number<double>(text).value_or(-std::numeric_limits<double>::infinity()));
   };
-  return std::pair(number(a), a) < std::pair(number(b), b);
+  return std::pair(place(a), a) < std::pair(place(b), b);
 }
 
 // Parts one series.
@@ -70,7 +73,14 @@ class Parting {
   std::vector<Group> by_value(const Numbers& slices, std::size_t mark) const;
   // None if the mark does not tell parts apart.
   std::vector<Group> by_mark(const Numbers& slices, std::size_t mark) const;
-  bool is_volume(const Numbers& slices, bool by_number = false) const;
+  // Nothing if they are no volume.
+  std::optional<SliceStack> stacked(const Numbers& slices, bool by_number = false) const;
+  bool is_volume(const Numbers& slices, bool by_number = false) const {
+    return stacked(slices, by_number).has_value();
+  }
+  // The least size of groups whose ranges may not overlap. A single slice may lie between others of its
+  // volume if they are even with it.
+  std::size_t least_group(const Numbers& slices, std::span<const Group> values) const;
   bool are_volumes(std::span<const Group> groups) const {
     return std::all_of(groups.begin(), groups.end(), [&](const Group& group) {
       return group.slices.size() < 2 || is_volume(group.slices);
@@ -93,19 +103,27 @@ std::vector<Numbers> Parting::by_shape() const {
   return shapes;
 }
 
-bool Parting::is_volume(const Numbers& slices, bool by_number) const {
+std::optional<SliceStack> Parting::stacked(const Numbers& slices, bool by_number) const {
   std::vector<SlicePlane> planes;
   for (const std::size_t n : slices) {
     planes.push_back(slices_[n]);
     if (!by_number) planes.back().number.reset();
   }
   try {
-    stack_slices("", planes,
-                 [&](std::size_t a, std::size_t b) { return same_pixels_(slices[a], slices[b]); });
-    return true;
+    return stack_slices("", planes,
+                        [&](std::size_t a, std::size_t b) { return same_pixels_(slices[a], slices[b]); });
   } catch (const InputError&) {
-    return false;
+    return std::nullopt;
   }
+}
+
+std::size_t Parting::least_group(const Numbers& slices, std::span<const Group> values) const {
+  const auto is_single = [](const Group& group) { return group.slices.size() == 1; };
+  if (std::none_of(values.begin(), values.end(), is_single) ||
+      std::all_of(values.begin(), values.end(), is_single))
+    return 2;
+  const std::optional<SliceStack> stack = stacked(slices);
+  return stack && !stack->heights_mm.empty() ? 1 : 2;
 }
 
 std::vector<Group> Parting::by_value(const Numbers& slices, std::size_t mark) const {
@@ -157,10 +175,12 @@ std::vector<Group> Parting::by_mark(const Numbers& slices, std::size_t mark) con
   const std::vector<Group> values = by_value(slices, mark);
   if (values.size() < 2) return {};
   const bool at_one_place = any_collide(values, share_a_place);
+  const std::size_t least = kind.is_of_slices ? 2 : least_group(slices, values);
+  const auto intrude = [&](const Group& a, const Group& b) { return overlap(a, b, least); };
   const auto collide = [&](const Group& a, const Group& b) {
-    return share_a_place(a, b) || (!kind.is_of_slices && overlap(a, b));
+    return share_a_place(a, b) || (!kind.is_of_slices && intrude(a, b));
   };
-  if (!at_one_place && (kind.is_of_slices || !any_collide(values, overlap))) return {};
+  if (!at_one_place && (kind.is_of_slices || !any_collide(values, intrude))) return {};
   // Slices at one place are copies, or their positions are rounded.
   if (at_one_place && is_volume(slices, kind.is_of_slices)) return {};
   const std::vector<Group> groups = kind.is_ordered ? joined(values, collide) : values;

@@ -20,15 +20,29 @@ struct MarkKind {
 };
 
 /// The most telling first.
-inline constexpr std::array<MarkKind, 15> kMarkKinds{{{"series number", false, false},
+inline constexpr std::array<MarkKind, 29> kMarkKinds{{{"modality", false, false},
+                                                      {"study", false, false},
+                                                      {"series number", false, false},
                                                       {"image type", false, false},
                                                       {"stack", false, false},
                                                       {"temporal position", true, false},
+                                                      {"frame reference time", true, false},
                                                       {"cardiac phase", true, false},
                                                       {"acquisition", true, false},
+                                                      {"series time", false, false},
+                                                      {"frame of reference", false, false},
+                                                      {"patient position", false, false},
+                                                      {"description", false, false},
+                                                      {"protocol", false, false},
                                                       {"echo time", false, false},
+                                                      {"echo", false, false},
+                                                      {"inversion time", false, false},
+                                                      {"flip angle", false, false},
+                                                      {"contrast agent", false, false},
                                                       {"tube voltage", false, false},
+                                                      {"filter", false, false},
                                                       {"kernel", false, false},
+                                                      {"field of view", false, false},
                                                       {"b-value", false, false},
                                                       {"slice thickness", false, false},
                                                       {"acquisition time", true, true},
@@ -49,7 +63,8 @@ struct SeriesPart {
 /// Parts the slices of one series: those of another size, pixel spacing or orientation; then, if slices lie
 /// at one place or ranges along the normal overlap, those of different marks. Values in turn of an ordered
 /// mark that do not get in each other's way stay together, as the slices of a series that number every
-/// rotation or every slice as an acquisition. A part of a single slice fits nothing else. `marks` are those
+/// rotation or every slice as an acquisition. A part of a single slice fits nothing else; one that makes even
+/// slices uneven is such a part. `marks` are those
 /// of `slices`, which may be of several series' parts again; `same_pixels` as `stack_slices` takes it.
 std::vector<SeriesPart> part_series(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
                                     const SamePixels& same_pixels);

@@ -117,6 +117,30 @@ TEST(SeriesParts, TwoMarksTogetherGiveEveryPart) {
   EXPECT_EQ(series.parts()[0].told_by, "acquisition 0, kernel bone");
 }
 
+TEST(SeriesParts, OriginalsComeBeforeDerivedImagesAndMarksInTheOrderOfTheirNumbers) {
+  for (const auto& [mark, first, second] :
+       {std::array{"image type", "ORIGINAL\\PRIMARY", "DERIVED\\SECONDARY"}, {"acquisition", "9", "10"}}) {
+    Series series;
+    for (int k = 0; k < 12; ++k) {
+      series.add(0.5 * k, mark, second);
+      series.add(0.5 * k + 0.25, mark, first);
+    }
+    const std::vector<SeriesPart> parts = series.parts();
+    ASSERT_EQ(parts.size(), 2U) << mark;
+    EXPECT_EQ(parts[0].slices.front(), 1U) << mark << " " << first;
+  }
+}
+
+TEST(SeriesParts, ASingleSliceThatMakesOthersUnevenIsAPart) {
+  Series series;
+  for (int k = 0; k < 24; ++k) series.add(0.5 * k, "acquisition", "1");
+  series.add(2.25, "acquisition", "2");
+  EXPECT_EQ(series.sizes(), (Sizes{24, 1}));
+  Series even;
+  for (int k = 0; k < 24; ++k) even.add(0.5 * k, "acquisition", k == 7 ? "2" : "1");
+  EXPECT_EQ(even.sizes(), Sizes{24});
+}
+
 TEST(SeriesParts, SlicesOfOneVolumeStayTogetherWhateverTheirMarks) {
   Series series;
   for (int k = 0; k < 24; ++k) series.add(0.5 * k, "image type", k == 5 || k == 11 ? "DERIVED" : "ORIGINAL");
