@@ -6,6 +6,7 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <mutex>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -75,8 +76,6 @@ void set_up_dcmtk() {
     DJLSDecoderRegistration::registerCodecs();
     // Writers may say one of the plain syntaxes and use another.
     dcmAutoDetectDatasetXfer.set(OFTrue);
-    // It would take the zeros that may follow for elements.
-    dcmStopParsingAfterElement.set(DCM_PixelData);
     // Elements of an unknown kind (UN) that the dictionary knows.
     dcmEnableUnknownVRConversion.set(OFTrue);
     return true;
@@ -188,8 +187,43 @@ std::string undecodable(const std::string& uid) {
   return fmt::format("{} ({})", name, uid);
 }
 
+// Whether a file ends in zeros, as many as would take long to be parsed.
+bool ends_in_zeros(const fs::path& path) {
+  std::vector<char> end(1 << 16);
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+  return in.read(end.data(), static_cast<std::streamsize>(end.size())) && are_zeros(end);
+}
+
+// The element with which the pixels of a file begin.
+DcmTagKey pixel_element(const fs::path& path) {
+  DcmInputFileStream stream(path.c_str());
+  DcmFileFormat head;
+  head.transferInit();
+  head.readUntilTag(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes, DCM_FloatPixelData);
+  head.transferEnd();
+  // DCMTK stands somewhere in the head of that element, or behind it.
+  constexpr std::streamoff kHead = 32;
+  std::string head_bytes(kHead + 4, '\0');
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(std::max<std::streamoff>(0, static_cast<std::streamoff>(stream.tell()) - kHead));
+  in.read(head_bytes.data(), static_cast<std::streamsize>(head_bytes.size()));
+  for (const DcmTagKey& floats : {DCM_FloatPixelData, DCM_DoubleFloatPixelData}) {
+    const auto element = static_cast<char>(floats.getElement());
+    if (head_bytes.find({'\xE0', '\x7F', element, '\0'}) != std::string::npos ||
+        head_bytes.find({'\x7F', '\xE0', '\0', element}) != std::string::npos)
+      return floats;
+  }
+  return DCM_PixelData;
+}
+
 // Fills `file`; false if it is damaged.
 bool load(const fs::path& path, const MetaGroup& meta, DcmFileFormat& file) {
+  // DCMTK would take the zeros that may follow for elements. The element after which it stops is that of all
+  // threads.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  dcmStopParsingAfterElement.set(ends_in_zeros(path) ? pixel_element(path) : DCM_PixelData);
   if (!is_htj2k(meta.syntax))
     return file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
   DcmInputFileStream stream(path.c_str());

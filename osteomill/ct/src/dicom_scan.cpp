@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <iterator>
 #include <set>
@@ -379,6 +380,44 @@ void check_concatenation(const DicomPart& part, std::vector<std::string>& warnin
   }
 }
 
+// Numbers that do not run along the stack are a sign of several scans that nothing else tells apart, unless
+// all are the same.
+void check_numbers(const DicomPart& part, const SliceStack& stack, std::vector<std::string>& warnings) {
+  std::vector<const SlicePlane*> planes;
+  for (const std::size_t n : stack.order) {
+    planes.push_back(&(*part.series)[part.slices[n]].plane);
+    if (!planes.back()->number) return;
+  }
+  const auto has_first = [&](const SlicePlane* plane) { return plane->number == planes.front()->number; };
+  if (std::all_of(planes.begin(), planes.end(), has_first)) return;
+  const auto step = [&](std::size_t k) { return std::int64_t{*planes[k]->number} - *planes[k - 1]->number; };
+  for (std::size_t k = 2; k < planes.size(); ++k) {
+    if ((step(k) > 0) == (step(1) > 0) && step(k) != 0 && step(1) != 0) continue;
+    warnings.push_back(
+        fmt::format("slices do not lie in the order of their numbers, {}, {}, {} ({} to {}): they may be of "
+                    "several scans",
+                    *planes[k - 2]->number, *planes[k - 1]->number, *planes[k]->number, planes[k - 2]->name,
+                    planes[k]->name));
+    return;
+  }
+}
+
+// Densities that no CT has are a sign of a header that is wrong about the numbers' sign or order of bytes.
+// Fields of view are filled with -3024 and less; metal may have 30 000 in the widest of scales.
+void check_hounsfield_units(const std::vector<float>& densities, std::vector<std::string>& warnings) {
+  constexpr float kLeast = -10'000, kMost = 32'767;
+  float least = 0, most = 0;
+  for (const float density : densities) {
+    least = std::min(least, density);
+    most = std::max(most, density);
+  }
+  if (least >= kLeast && most <= kMost) return;
+  warnings.push_back(
+      fmt::format("holds densities from {:.6g} to {:.6g}, and no CT has such Hounsfield units: its header "
+                  "may be wrong about the sign of its pixels, or about its rescaling",
+                  least, most));
+}
+
 Scan build_scan(const std::string& subject, const DicomPart& part, std::vector<DicomHeader>& headers,
                 std::vector<std::string> warnings, const ReadOptions& options) {
   SliceStack stack = stack_slices(subject, part.planes(), part.same_pixels());
@@ -396,6 +435,8 @@ Scan build_scan(const std::string& subject, const DicomPart& part, std::vector<D
   }
   const WorkProgress::Part checking(1);
   check_densities(subject, densities);
+  if (in_hounsfield_units) check_hounsfield_units(densities, warnings);
+  check_numbers(part, stack, warnings);
   even_out_slices(stack, densities);
   correct_gantry_tilt(subject, stack, densities);
   warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());

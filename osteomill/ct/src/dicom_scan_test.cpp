@@ -574,6 +574,62 @@ TEST_F(DicomSeries, WhatFollowsThePixelsIsNotRead) {
   // Sparse: only reading all of it would take its time.
   fs::resize_file(folder_ / "f7", 1'000'000'000);
   expect_series(read_scan(folder_));
+  for (const auto syntax : {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_BigEndianExplicit}) {
+    for (const bool is_double : {false, true}) {
+      const std::vector<int> values = stored_values(2);
+      const std::vector<Float64> doubles(values.begin(), values.end());
+      const std::vector<Float32> floats(values.begin(), values.end());
+      const auto slice = made_up_slice({.k = 2});
+      DcmDataset& data = *slice->getDataset();
+      data.findAndDeleteElement(DCM_PixelData);
+      data.putAndInsertUint16(DCM_BitsAllocated, is_double ? 64 : 32);
+      if (is_double)
+        data.putAndInsertFloat64Array(DCM_DoubleFloatPixelData, doubles.data(), doubles.size());
+      else
+        data.putAndInsertFloat32Array(DCM_FloatPixelData, floats.data(), floats.size());
+      ASSERT_TRUE(slice->saveFile((folder_ / "f7").c_str(), syntax).good());
+      fs::resize_file(folder_ / "f7", 1'000'000'000);
+      expect_series(read_scan(folder_));
+    }
+  }
+}
+
+TEST_F(DicomSeries, DensitiesThatNoCtHasAreWarnedOf) {
+  const auto warnings = [&](int value, int is_signed, const std::string& modality) {
+    for (int k = 0; k < 4; ++k) {
+      const auto slice = made_up_slice({.k = k, .slope = "1", .modality = modality, .bits = 16});
+      std::vector<int> values = stored_values(k);
+      values.front() = value;
+      put_pixels(*slice->getDataset(), values, 16);
+      slice->getDataset()->putAndInsertUint16(DCM_PixelRepresentation, static_cast<Uint16>(is_signed));
+      EXPECT_TRUE(save(*slice, folder_ / ("f" + std::to_string(k)), EXS_LittleEndianExplicit));
+    }
+    return read_scan(folder_).warnings;
+  };
+  EXPECT_TRUE(contains(warnings(64'536, 0, "CT").at(0), "holds densities from -100 to 64436, and no CT has"));
+  EXPECT_TRUE(contains(warnings(40'000, 1, "CT").at(0), "from -25636 to"));
+  EXPECT_TRUE(warnings(30'810, 0, "CT").empty());
+  EXPECT_TRUE(warnings(65'536 - 3024, 1, "CT").empty());
+  EXPECT_EQ(warnings(64'536, 0, "MR").size(), 1U);
+}
+
+TEST_F(DicomSeries, SlicesOutOfTheOrderOfTheirNumbersAreWarnedOf) {
+  const auto warnings = [&](const std::array<const char*, 4>& numbers) {
+    for (int k = 0; k < 4; ++k) {
+      const auto slice = made_up_slice({.k = k});
+      slice->getDataset()->putAndInsertString(DCM_InstanceNumber, numbers[static_cast<std::size_t>(k)]);
+      EXPECT_TRUE(save(*slice, folder_ / ("f" + std::to_string(k)), EXS_LittleEndianExplicit));
+    }
+    const Scan scan = read_scan(folder_);
+    expect_series(scan);
+    return scan.warnings;
+  };
+  EXPECT_TRUE(warnings({"1", "2", "4", "9"}).empty());
+  EXPECT_TRUE(warnings({"4", "3", "2", "1"}).empty());
+  EXPECT_TRUE(warnings({"1", "3", "2", ""}).empty());
+  EXPECT_TRUE(warnings({"7", "7", "7", "7"}).empty());
+  EXPECT_TRUE(contains(warnings({"1", "3", "2", "4"}).at(0), "order of their numbers, 1, 3, 2 (f0 to f2)"));
+  EXPECT_TRUE(contains(warnings({"1", "1", "2", "2"}).at(0), "order of their numbers, 1, 1, 2"));
 }
 
 TEST_F(DicomSeries, DescriptionsAreShownInUtf8) {
@@ -599,7 +655,12 @@ TEST_F(DicomSeries, DescriptionsAreShownInUtf8) {
          "a\x1B[31mb\x9B"
          "c\x7F",
          "a?[31mb?c?"},
-        {"no such set", "\xE4\x1B", "\xC3\xA4?"}}) {
+        {"no such set", "\xE4\x1B", "\xC3\xA4?"},
+        {"\\ISO 2022 IR 87", "\x1B$B9|\x1B(B CT", "\xE9\xAA\xA8 CT"},
+        {"ISO 2022 IR 13\\ISO 2022 IR 87", "\xC1\xAD\xB3 \x1B$B9|\x1B(J CT",
+         "\xEF\xBE\x81\xEF\xBD\xAD\xEF\xBD\xB3 \xE9\xAA\xA8 CT"},
+        {"ISO 2022 IR 149", "\x1B$)C\xB5\xCE \x1B[1m", "\xEB\x91\x90 1m"},
+        {"ISO 2022 IR 87", "a\x1B$B9", "a?$B9"}}) {
     for (int k = 0; k < 4; ++k) {
       const auto slice = made_up_slice({.k = k, .series = "1.2." + std::to_string(k / 2)});
       slice->getDataset()->putAndInsertString(DCM_SpecificCharacterSet, set);
