@@ -1,61 +1,119 @@
 #include "dicom_text.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcspchrs.h>
 #include <dcmtk/dcmdata/dctk.h>
+#include <iconv.h>
 
 #include "header_text.h"
+#include "utf8_text.h"
 
 namespace osteomill {
 
 namespace {
 
-// The bytes of the character with which `text` begins, as UTF-8 has it; 0 if it does not.
-std::size_t length_of_utf8(std::string_view text) {
-  const auto byte = [&](std::size_t n) {
-    return n < text.size() ? static_cast<unsigned>(static_cast<unsigned char>(text[n])) : 0;
-  };
-  const auto follows = [&](std::size_t n) { return (byte(n) & 0xC0) == 0x80; };
-  if (byte(0) < 0x80) return 1;
-  if (byte(0) >= 0xC2 && byte(0) < 0xE0 && follows(1)) return 2;
-  // Neither too long a form, nor half of a pair.
-  const unsigned two = byte(0) << 8 | byte(1);
-  if (two >= 0xE0A0 && two < 0xF000 && follows(1) && follows(2) && !(two >= 0xEDA0 && two < 0xEE00)) return 3;
-  if (two >= 0xF090 && two < 0xF490 && follows(1) && follows(2) && follows(3)) return 4;
-  return 0;
-}
-
-bool is_utf8(std::string_view text) {
-  while (!text.empty()) {
-    const std::size_t length = length_of_utf8(text);
-    if (length == 0) return false;
-    text.remove_prefix(length);
-  }
-  return true;
-}
-
-// Leaves out C0, DEL and C1 of UTF-8.
-std::string without_controls(std::string_view text) {
-  std::string shown;
-  while (!text.empty()) {
-    const std::string_view character = text.substr(0, length_of_utf8(text));
-    const auto first = static_cast<unsigned char>(character[0]);
-    const bool is_control = character.size() == 1
-                                ? first < ' ' || first == 127
-                                : first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
-    shown += is_control ? "?" : character;
-    text.remove_prefix(character.size());
-  }
-  return shown;
-}
+// The set of bytes from 0x80 on that a term of SpecificCharacterSet, or an escape sequence, names (Part 3,
+// C.12.1.1.2).
+struct HighBytes {
+  std::string_view term;
+  std::string_view escape;
+  const char* charset;
+};
+constexpr std::array<HighBytes, 14> kHighBytes{{{"ISO 2022 IR 13", ")I", "SHIFT_JIS"},
+                                                {"ISO 2022 IR 58", "$)A", "GB2312"},
+                                                {"ISO 2022 IR 149", "$)C", "EUC-KR"},
+                                                {"ISO 2022 IR 100", "-A", "ISO-8859-1"},
+                                                {"ISO 2022 IR 101", "-B", "ISO-8859-2"},
+                                                {"ISO 2022 IR 109", "-C", "ISO-8859-3"},
+                                                {"ISO 2022 IR 110", "-D", "ISO-8859-4"},
+                                                {"ISO 2022 IR 126", "-F", "ISO-8859-7"},
+                                                {"ISO 2022 IR 127", "-G", "ISO-8859-6"},
+                                                {"ISO 2022 IR 138", "-H", "ISO-8859-8"},
+                                                {"ISO 2022 IR 144", "-L", "ISO-8859-5"},
+                                                {"ISO 2022 IR 148", "-M", "ISO-8859-9"},
+                                                {"ISO 2022 IR 166", "-T", "TIS-620"},
+                                                {"ISO 2022 IR 203", "-b", "ISO-8859-15"}}};
 
 bool convert(const OFString& from, const OFString& text, OFString& converted) {
   DcmSpecificCharacterSet sets;
   return sets.selectCharacterSet(from, "ISO_IR 192").good() && sets.convertString(text, converted).good() &&
          is_utf8(converted.c_str());
+}
+
+std::optional<std::string> convert(const char* charset, std::string text) {
+  iconv_t const to_utf8 = ::iconv_open("UTF-8", charset);
+  if (to_utf8 == iconv_t(-1)) return std::nullopt;
+  std::string utf8(4 * text.size() + 4, '\0');
+  char* from = text.data();
+  char* to = utf8.data();
+  std::size_t left = text.size(), room = utf8.size();
+  const bool failed = ::iconv(to_utf8, &from, &left, &to, &room) == static_cast<std::size_t>(-1);
+  ::iconv_close(to_utf8);
+  if (failed) return std::nullopt;
+  utf8.resize(utf8.size() - room);
+  return utf8;
+}
+
+// Text between two escape sequences, of which the first begins it without its ESC.
+struct Piece {
+  std::string_view escape;
+  std::string_view text;
+};
+Piece piece_of(std::string_view text, bool has_escape) {
+  // ISO 2022: intermediate bytes, then a final one.
+  std::size_t length = 0;
+  while (has_escape && length < text.size() && text[length] >= ' ' && text[length] < '0') ++length;
+  if (has_escape && length < text.size()) ++length;
+  return {text.substr(0, length), text.substr(length)};
+}
+
+// Decodes texts that change their sets by escape sequences. DCMTK leaves some of them if the library that it
+// is built with lacks a set, as Debian's lacks those of Japanese.
+std::optional<std::string> from_iso2022(std::string_view first_set, std::string_view text) {
+  std::string_view two_bytes;
+  const char* high = "ASCII";
+  // "IR 100" of both "ISO_IR 100" and "ISO 2022 IR 100".
+  constexpr std::size_t kNumber = 9;
+  for (const HighBytes& set : kHighBytes) {
+    if (first_set.starts_with("ISO") && first_set.ends_with(set.term.substr(kNumber))) high = set.charset;
+  }
+  std::string utf8;
+  bool has_escape = false;
+  while (true) {
+    const std::size_t end = std::min(text.find('\x1B'), text.size());
+    const Piece piece = piece_of(text.substr(0, end), has_escape);
+    if (piece.escape == "(B" || piece.escape == "(J") two_bytes = {};
+    if (piece.escape == "$B" || piece.escape == "$@" || piece.escape == "$(D") two_bytes = piece.escape;
+    for (const HighBytes& set : kHighBytes) {
+      if (!piece.escape.empty() && piece.escape == set.escape) high = set.charset;
+    }
+    const auto converted =
+        two_bytes.empty()
+            ? convert(high, std::string(piece.text))
+            : convert("ISO-2022-JP-2", '\x1B' + std::string(two_bytes) + std::string(piece.text));
+    if (!converted) return std::nullopt;
+    utf8 += *converted;
+    if (end == text.size()) return utf8;
+    text.remove_prefix(end + 1);
+    has_escape = true;
+  }
+}
+
+// Returns UTF-8.
+std::string decoded(const std::string& text, const std::string& sets) {
+  OFString converted;
+  if (!sets.empty() && convert(sets.c_str(), text.c_str(), converted)) return converted.c_str();
+  if (sets.find("2022") != std::string::npos) {
+    if (auto by_escapes = from_iso2022(trimmed(sets.substr(0, sets.find('\\'))), text)) return *by_escapes;
+  }
+  return is_utf8(text) ? text : utf8_of_latin1(text);
 }
 
 }  // namespace
@@ -64,13 +122,7 @@ std::string shown_text(DcmItem& data, const DcmTagKey& tag) {
   OFString text, sets;
   if (data.findAndGetOFStringArray(tag, text).bad()) return {};
   data.findAndGetOFStringArray(DCM_SpecificCharacterSet, sets);
-  OFString converted = text;
-  if (!(sets.empty() ? is_utf8(text.c_str()) : convert(sets, text, converted)) && !is_utf8(text.c_str()) &&
-      !convert("ISO_IR 100", text, converted)) {
-    converted.clear();
-    for (const char c : text) converted += static_cast<unsigned char>(c) < 0x80 ? c : '?';
-  }
-  return trimmed(without_controls(converted.c_str()));
+  return trimmed(without_controls(decoded(text.c_str(), sets.c_str()), '?'));
 }
 
 }  // namespace osteomill

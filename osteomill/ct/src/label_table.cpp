@@ -15,6 +15,7 @@
 
 #include "byte_source.h"
 #include "header_text.h"
+#include "utf8_text.h"
 
 namespace osteomill {
 
@@ -32,12 +33,14 @@ std::optional<int> whole_number(const std::string& text) {
 
 namespace {
 
-// Longer names than this are no names; and control characters are none.
+// Longer names than this are no names; and control characters are none. Older programs write Latin 1.
 constexpr std::size_t kMaxName = 100;
-std::string usable_name(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
-  return trimmed(name.substr(0, kMaxName));
+std::string usable_name(const std::string& name) {
+  std::string shown = without_controls(is_utf8(name) ? name : utf8_of_latin1(name), ' ');
+  if (shown.size() > kMaxName) shown.resize(kMaxName);
+  // Not in the middle of a character.
+  while (!is_utf8(shown)) shown.pop_back();
+  return trimmed(shown);
 }
 
 std::optional<Colour> colour_of(const std::vector<double>& channels, double white) {
@@ -87,14 +90,14 @@ bool add_line(const std::string& line, LabelTable& table) {
 }
 
 // Reads the key/value pairs of a segmentation of 3D Slicer's (.seg.nrrd): Segment0_Name, _Color (three
-// numbers from 0 to 1) and _LabelValue, and so on from 0. Throws InputError naming `subject`.
+// numbers from 0 to 1) and _LabelValue, and so on. Throws InputError naming `subject`.
 LabelTable segments_in(const std::string& subject, const std::map<std::string, std::string>& key_values) {
   LabelTable table;
-  for (int n = 0;; ++n) {
+  for (const int n : segment_numbers(key_values)) {
     const auto find = [&](const char* what) { return key_values.find(fmt::format("Segment{}_{}", n, what)); };
     const auto name = find("Name"), value = find("LabelValue"), colour = find("Color");
     const auto end = key_values.end();
-    if (name == end && value == end) return table;
+    if (name == end && value == end) continue;
     // Segmentations from before there were label values have them in order, from 1.
     const auto label = value == end ? n + 1 : whole_number(value->second);
     if (!label) {
@@ -107,6 +110,7 @@ LabelTable segments_in(const std::string& subject, const std::map<std::string, s
     }
     table[*label] = style;
   }
+  return table;
 }
 
 using Json = nlohmann::json;
@@ -189,8 +193,10 @@ std::string plain_text(std::string text) {
 
 // <Label Key="26" Red="0.9" Green="0.9" Blue="0.6" Alpha="1">mandible</Label>.
 void add_labels_of_xml(std::string_view xml, LabelTable& table) {
-  constexpr std::string_view kOpen = "<Label ", kClose = "</Label>";
+  constexpr std::string_view kOpen = "<Label", kClose = "</Label>";
   for (std::size_t at = xml.find(kOpen); at != std::string_view::npos; at = xml.find(kOpen, at + 1)) {
+    // <LabelTable> is another element.
+    if (xml.substr(at + kOpen.size()).find_first_of(" \t\r\n") != 0) continue;
     const std::size_t end = xml.find('>', at), close = xml.find(kClose, at);
     if (end == std::string_view::npos || close == std::string_view::npos || close < end) return;
     const std::string_view tag = xml.substr(at, end - at);
@@ -232,6 +238,9 @@ LabelTable read_label_table(const fs::path& path) {
   if (fs::file_size(path) > kMaxBytes) throw InputError(subject, "is too long for a table of labels");
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
+    // Some editors begin a text with a mark of its encoding.
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    if (number == 1 && line.starts_with(kMark)) line.erase(0, kMark.size());
     line = trimmed(line);
     if (line.empty() || line.starts_with('#')) continue;
     if (!add_line(line, table)) {

@@ -32,7 +32,7 @@ std::optional<int> whole_number(const std::string& text);
 LabelTable read_label_table(const std::filesystem::path& path);
 
 /// Returns what a volume file says of its labels: in the key/value pairs of a segmentation of 3D Slicer's
-/// (Segment0_Name, _Color, three numbers from 0 to 1, and _LabelValue, and so on from 0), or in an extension
+/// (Segment0_Name, _Color, three numbers from 0 to 1, and _LabelValue, and so on), or in an extension
 /// of NIfTI, as XML (Caret's LabelTable, which TotalSegmentator writes) or JSON. Throws InputError naming
 /// `subject`.
 LabelTable label_table_of(const std::string& subject, const VolumeHeader& header);

@@ -246,8 +246,8 @@ VoxelLayers layers_of(const Header& header, const Axes& axes) {
     const bool of_grid = std::find(axes.of_grid.begin(), axes.of_grid.end(), axis) != axes.of_grid.end();
     if (of_grid || axes.sizes[axis] == 1) continue;
     const bool run_fastest = axis < axes.of_grid.front();
-    const bool are_segments =
-        header.key_values.contains("Segment0_ID") || header.fields.subject.find(".seg.") != std::string::npos;
+    const bool are_segments = !segment_numbers(header.key_values).empty() ||
+                              header.fields.subject.find(".seg.") != std::string::npos;
     const double count = axes.sizes[axis];
     if (!are_segments || layers.count > 1 || !(count >= 1 && count <= 1e6) || count != std::floor(count) ||
         !(run_fastest || axis > axes.of_grid.back())) {
@@ -349,7 +349,7 @@ VolumeHeader read_nrrd_header(const fs::path& path) {
           voxels_of(path, header, std::move(in), geometry.voxel_count() * layers.count),
           std::move(warnings),
           header.key_values,
-          header.key_values.contains("Segment0_ID"),
+          !segment_numbers(header.key_values).empty(),
           layers};
 }
 

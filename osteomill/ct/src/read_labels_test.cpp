@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "tests/support/folder_test.h"
 
 namespace osteomill {
@@ -121,6 +123,35 @@ TEST_F(ReadLabels, TakesNamesAndColoursOfItkSnapsLabelFiles) {
     EXPECT_TRUE(contains(refusal_of({file, write("bad.txt", line), {}}), "line 1 is neither")) << line;
 }
 
+TEST_F(ReadLabels, NamesOfSegmentsMayHaveAnyNumbers) {
+  for (const auto& [first, second] : {std::pair{"0", "1"}, {"1", "2"}, {"0", "12"}}) {
+    const auto file = write("a.seg.nrrd", map_of("0 4 4 7 0 0 0 7", fmt::format("Segment{0}_Name:=Jaw\n"
+                                                                                "Segment{0}_LabelValue:=4\n"
+                                                                                "Segment{1}_Name:=Nerve\n"
+                                                                                "Segment{1}_LabelValue:=7\n",
+                                                                                first, second)));
+    const LabelsRead read = read_labels({file, {}, {}}, scan());
+    EXPECT_EQ(read.map->labels().at(0).name, "Jaw") << first;
+    EXPECT_EQ(read.map->labels().at(1).name, "Nerve") << second;
+  }
+}
+
+TEST_F(ReadLabels, NamesAreUtf8WhateverTheTableIsWrittenIn) {
+  const auto file = write("a.nrrd", map_of("0 26 26 26 0 0 0 0"));
+  const std::string a = "\xC3\xA4";
+  const auto name_of = [&](const std::string& said) {
+    const auto table = write("a.txt", "\xEF\xBB\xBF# names\n26 1 2 3 1 1 1 \"" + said + "\"\n");
+    return read_labels({file, table, {}}, scan()).map->labels().at(0).name;
+  };
+  EXPECT_EQ(name_of("Z\xE4hne"), "Z" + a + "hne");
+  EXPECT_EQ(name_of("Z" + a + "hne"), "Z" + a + "hne");
+  EXPECT_EQ(name_of("a\x1B[1mb\xC2\x9B"
+                    "c"),
+            "a [1mb c");
+  const std::string letters(99, 'x');
+  EXPECT_EQ(name_of(letters + a), letters);
+}
+
 // A NIfTI-1 file of 2 x 2 x 2 labels with an extension of such a text.
 std::string nifti_with(std::string text) {
   std::string bytes(352, '\0');
@@ -148,6 +179,11 @@ TEST_F(ReadLabels, TakesNamesOfAnExtensionOfNifti) {
        {head +
             "<Label Key=\"26\" Red=\"1\" Green=\"0.5\" Blue=\"0\" Alpha=\"1\"><![CDATA[S1 & L5]]></Label>"
             "<Label Alpha='1' Key='93'>rib</Label>" +
+            tail,
+        head +
+            "<Label\n Key=\"26\" Red=\"1\" Green=\"0.5\" Blue=\"0\">S1 &amp; "
+            "L5</Label>\n<Label\tKey=\"93\">rib"
+            "</Label>" +
             tail,
         head +
             "<Label Blue=\"0\" Green=\"0.5\" Red=\"1\" Key=\"26\">S1 &amp; L5</Label><Label "

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,17 +30,18 @@ struct Segment {
 
 std::vector<Segment> segments_of(const std::map<std::string, std::string>& key_values) {
   std::vector<Segment> segments;
-  for (int n = 0;; ++n) {
+  for (const int n : segment_numbers(key_values)) {
     const auto number = [&](const char* what) -> std::optional<int> {
       const auto found = key_values.find(fmt::format("Segment{}_{}", n, what));
       return found == key_values.end() ? std::nullopt : parsed_number<int>(found->second);
     };
     const auto value = number("LabelValue");
-    if (!value) return segments;
+    if (!value) continue;
     segments.push_back(
         {{static_cast<std::uint64_t>(std::max(0, number("Layer").value_or(0))), static_cast<float>(*value)},
          fmt::format("Segment{}_LabelValue", n)});
   }
+  return segments;
 }
 
 bool a_value_has_two_layers(const std::set<Place>& places) {
@@ -81,6 +83,18 @@ class Layers {
 };
 
 }  // namespace
+
+std::set<int> segment_numbers(const std::map<std::string, std::string>& key_values) {
+  constexpr std::string_view kHead = "Segment";
+  std::set<int> numbers;
+  for (auto pair = key_values.lower_bound(std::string(kHead));
+       pair != key_values.end() && pair->first.starts_with(kHead); ++pair) {
+    const std::string_view key = std::string_view(pair->first).substr(kHead.size());
+    const auto number = parsed_number<int>(key.substr(0, key.find('_')));
+    if (number && *number >= 0) numbers.insert(*number);
+  }
+  return numbers;
+}
 
 std::vector<float> merge_layers(const std::string& subject, std::vector<float> values, VolumeHeader& header) {
   const Layers layers(subject, values, header.layers);

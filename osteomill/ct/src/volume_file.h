@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -108,6 +109,9 @@ std::vector<float> read_volume(const std::string& subject, VolumeHeader& header,
 /// for different segments in two layers, segments are numbered from 1 instead, in the values and in the
 /// header's pairs SegmentN_LabelValue. Throws InputError naming `subject` if segments overlap.
 std::vector<float> merge_layers(const std::string& subject, std::vector<float> values, VolumeHeader& header);
+
+/// Returns the numbers N of the segments that pairs SegmentN_... describe; as a rule from 0 up.
+std::set<int> segment_numbers(const std::map<std::string, std::string>& key_values);
 
 /// Returns the header of a file of voxels by its name, as a.hdr of a.img; nothing for any other file.
 std::optional<std::filesystem::path> header_of_voxels(const std::filesystem::path& path);
