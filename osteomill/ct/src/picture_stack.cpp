@@ -52,6 +52,76 @@ bool comes_before(std::string_view a, std::string_view b) {
   return a.size() < b.size();
 }
 
+// A name's texts and the numbers between them.
+struct NameParts {
+  std::vector<std::string> texts;
+  std::vector<double> numbers;
+};
+
+NameParts parts_of(const fs::path& path) {
+  const std::string name = lower(path.stem().string());
+  NameParts parts{{""}, {}};
+  for (auto letter = name.begin(); letter != name.end();) {
+    const auto end = std::find_if_not(letter, name.end(), is_digit);
+    if (end == letter) {
+      parts.texts.back() += *letter++;
+      continue;
+    }
+    parts.numbers.push_back(parsed_number<double>(std::string(letter, end)).value_or(0));
+    parts.texts.emplace_back();
+    letter = end;
+  }
+  return parts;
+}
+
+// The number of each picture: the only one in the names that differs; empty if several do, or none.
+std::vector<double> slice_numbers(const std::vector<NameParts>& names) {
+  std::vector<double> numbers;
+  for (std::size_t n = 0; n < names.front().numbers.size(); ++n) {
+    const auto is_usual = [&](const NameParts& name) { return name.numbers[n] == names.front().numbers[n]; };
+    if (std::all_of(names.begin(), names.end(), is_usual)) continue;
+    if (!numbers.empty()) return {};
+    for (const NameParts& name : names) numbers.push_back(name.numbers[n]);
+  }
+  return numbers;
+}
+
+// Names are all that says whether pictures are of one stack, and all of it. `files` are in its order.
+void check_names(const std::string& subject, const std::vector<fs::path>& files,
+                 std::vector<std::string>& warnings) {
+  std::vector<NameParts> names;
+  for (const fs::path& file : files) {
+    names.push_back(parts_of(file));
+    if (names.back().texts != names.front().texts) {
+      throw InputError(
+          subject, fmt::format("holds pictures whose names differ in more than numbers, as those of several "
+                               "stacks: {} and {}",
+                               files.front().filename().string(), file.filename().string()));
+    }
+  }
+  const std::vector<double> numbers = slice_numbers(names);
+  std::vector<double> steps;
+  for (std::size_t n = 1; n < numbers.size(); ++n) steps.push_back(numbers[n] - numbers[n - 1]);
+  if (steps.empty()) return;
+  std::vector<double> sorted = steps;
+  std::sort(sorted.begin(), sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  const auto odd = std::find_if(steps.begin(), steps.end(), [&](double step) { return step != usual; });
+  if (odd == steps.end()) return;
+  const auto n = static_cast<std::size_t>(odd - steps.begin());
+  const std::string here =
+      fmt::format("{} follows {}", files[n + 1].filename().string(), files[n].filename().string());
+  if (sorted.front() < usual) {
+    warnings.push_back(
+        fmt::format("is made of pictures whose numbers grow unevenly ({}): they were taken to lie "
+                    "evenly",
+                    here));
+    return;
+  }
+  throw InputError(subject,
+                   fmt::format("a slice is missing: {}, and numbers grow by {} otherwise", here, usual));
+}
+
 bool is_png(const fs::path& path) {
   return lower(path.extension().string()) == ".png";
 }
@@ -140,6 +210,8 @@ Scan read_pictures(const fs::path& path, std::vector<fs::path> files, const Read
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return comes_before(a.filename().string(), b.filename().string());
   });
+  std::vector<std::string> warnings;
+  check_names(subject, files, warnings);
   Slices slices(options.max_memory_bytes);
   {
     const WorkProgress::Part reading(0.85);
@@ -159,10 +231,10 @@ Scan read_pictures(const fs::path& path, std::vector<fs::path> files, const Read
   check_plausible(subject, geometry);
   std::vector<float> densities = slices.take(subject);
   check_densities(subject, densities);
-  Scan scan{DensityGrid(geometry, std::move(densities)), subject, is_png(files.front()) ? "PNG" : "TIFF", {}};
-  scan.warnings = {
-      "does not say how it lies in the patient; its columns, rows and slices were taken for L, P "
-      "and S"};
+  warnings.push_back(
+      "does not say how it lies in the patient; its columns, rows and slices were taken for L, P and S");
+  Scan scan{DensityGrid(geometry, std::move(densities)), subject, is_png(files.front()) ? "PNG" : "TIFF",
+            std::move(warnings)};
   if (slices.are_coloured()) {
     scan.is_labels = true;
     scan.warnings.push_back("is in colour; each colour was taken for a label");

@@ -123,6 +123,50 @@ TEST_F(PictureStack, PngsAreSlicesInTheOrderOfTheirNumbers) {
   EXPECT_TRUE(contains(refusal_of(folder_), "slice12.png: is a picture of 6 x 4 pixels"));
 }
 
+TEST_F(PictureStack, NamesSayWhetherASliceIsMissingOrOfAnotherStack) {
+  write_grey_pngs();
+  const auto path = [&](const std::string& name) { return folder_ / name; };
+  std::filesystem::rename(path("slice7.png"), path("slice27.png"));
+  EXPECT_TRUE(contains(refusal_of(folder_),
+                       "a slice is missing: slice8.png follows slice6.png, and numbers grow "
+                       "by 1 otherwise"));
+  std::filesystem::rename(path("slice27.png"), path("mask7.png"));
+  EXPECT_TRUE(contains(refusal_of(folder_), "as those of several stacks: mask7.png and slice0.png"));
+  std::filesystem::rename(path("mask7.png"), path("slice7.png"));
+  for (std::uint32_t k = 0; k < kSlices; ++k)
+    std::filesystem::rename(path("slice" + std::to_string(k) + ".png"),
+                            path("z2_" + std::to_string(95 + 5 * k) + "_.png"));
+  expect_values(read(folder_));
+  // Times of day, or places in other units.
+  std::filesystem::rename(path("z2_110_.png"), path("z2_112_.png"));
+  EXPECT_TRUE(contains(read(folder_).warnings.at(0), "grow unevenly (z2_112_.png follows z2_105_.png)"));
+}
+
+TEST_F(PictureStack, PagesOfOneBitAreMasks) {
+  for (const int photometric : {PHOTOMETRIC_MINISBLACK, PHOTOMETRIC_MINISWHITE}) {
+    TIFF* const file = TIFFOpen((folder_ / "a.tif").c_str(), "w");
+    for (int page = 0; page < 2; ++page) {
+      TIFFSetField(file, TIFFTAG_IMAGEWIDTH, 11);
+      TIFFSetField(file, TIFFTAG_IMAGELENGTH, 2);
+      TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, 1);
+      TIFFSetField(file, TIFFTAG_PHOTOMETRIC, photometric);
+      TIFFSetField(file, TIFFTAG_COMPRESSION, COMPRESSION_CCITTFAX4);
+      for (std::uint32_t row = 0; row < 2; ++row) {
+        std::array<std::uint8_t, 2> bits{static_cast<std::uint8_t>(row == 0 ? 0x81 : 0), 0x20};
+        TIFFWriteScanline(file, bits.data(), row);
+      }
+      TIFFWriteDirectory(file);
+    }
+    TIFFClose(file);
+    const Scan scan = read(folder_ / "a.tif");
+    for (int i = 0; i < 11; ++i) {
+      const bool set = i == 0 || i == 7 || i == 10;
+      const VoxelIndex v{i, 0, 1};
+      EXPECT_EQ(scan.grid[v], set == (photometric == PHOTOMETRIC_MINISBLACK) ? 1 : 0) << i;
+    }
+  }
+}
+
 TEST_F(PictureStack, PagesOfATiffAreSlices) {
   for (const bool tiled : {false, true}) {
     for (const int photometric : {PHOTOMETRIC_MINISBLACK, PHOTOMETRIC_MINISWHITE}) {

@@ -60,10 +60,18 @@ void append(const std::uint8_t* bytes, std::size_t count, bool is_inverted, std:
   }
 }
 
+// Eight values a byte, the first in the highest bit; a row begins with a byte.
+void append_bits(const std::uint8_t* bytes, std::size_t count, bool is_inverted, std::vector<float>& values) {
+  for (std::size_t n = 0; n < count; ++n)
+    values.push_back(static_cast<float>((bytes[n / 8] >> (7 - n % 8) & 1) ^ static_cast<int>(is_inverted)));
+}
+
 using Append = void (*)(const std::uint8_t*, std::size_t, bool, std::vector<float>&);
 
 Append append_of(const Layout& layout) {
   switch (layout.format * 100 + layout.bits) {
+    case SAMPLEFORMAT_UINT * 100 + 1:
+      return layout.channels == 1 ? append_bits : nullptr;
     case SAMPLEFORMAT_UINT * 100 + 8:
       return append<std::uint8_t>;
     case SAMPLEFORMAT_UINT * 100 + 16:
@@ -149,7 +157,7 @@ class TiffReader {
     const std::uint64_t values = std::uint64_t{layout.rows} * layout.columns * layout.channels;
     check_memory(subject_, values, max_bytes_);
     const std::size_t row_values = picture.columns * picture.channels,
-                      row_bytes = row_values * layout.bits / 8;
+                      row_bytes = (row_values * layout.bits + 7) / 8;
     const bool is_inverted = layout.photometric == PHOTOMETRIC_MINISWHITE;
     const auto append_row = [&](const std::uint8_t* row) {
       append(row, row_values, is_inverted, picture.values);
@@ -186,8 +194,10 @@ class TiffReader {
     TIFFGetField(file_.get(), TIFFTAG_TILEWIDTH, &width);
     TIFFGetField(file_.get(), TIFFTAG_TILELENGTH, &height);
     const tmsize_t size = TIFFTileSize(file_.get());
-    const std::uint64_t tile_row_bytes = std::uint64_t{width} * layout.channels * layout.bits / 8;
-    if (width == 0 || height == 0 || size <= 0 ||
+    // Tiles have to be a multiple of 16 wide.
+    const std::uint64_t tile_row_bits = std::uint64_t{width} * layout.channels * layout.bits;
+    const std::uint64_t tile_row_bytes = tile_row_bits / 8;
+    if (width == 0 || tile_row_bits % 8 != 0 || height == 0 || size <= 0 ||
         static_cast<std::uint64_t>(size) < tile_row_bytes * height ||
         static_cast<std::uint64_t>(size) > max_bytes_ || row_bytes * std::uint64_t{height} > max_bytes_)
       refuse();
