@@ -238,6 +238,8 @@ Placement placement_of(const Header& header, std::vector<std::string>& warnings)
     }
     if ((qform->steps - sform.steps).cwiseAbs().maxCoeff() > 0.01 * header.spacing.minCoeff())
       warnings.push_back("its sform and its qform turn it differently; the sform was taken");
+    else if ((qform->origin - sform.origin).cwiseAbs().maxCoeff() > 0.5 * header.spacing.minCoeff())
+      warnings.push_back("its sform and its qform place it differently; the sform was taken");
     return sform;
   }
   if (header.qform_code > 0) {

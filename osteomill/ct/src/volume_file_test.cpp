@@ -458,6 +458,20 @@ TEST_F(VolumeFile, AQformStandsInForAnSformThatCannotBeUsed) {
     expect_qform(with_qform().set<float>(280, shear), "its sform is sheared; its qform");
   expect_qform(with_qform().set<float>(280, 0.3F), "its sform gives other voxel sizes");
   expect_qform(with_qform().set<float>(292, std::numeric_limits<float>::quiet_NaN()), "is no number");
+  // Both are sound.
+  Nifti elsewhere = with_qform();
+  for (const auto& [offset, value] : {std::pair{280, 0.5F},
+                                      {284, 0.0F},
+                                      {288, 0.0F},
+                                      {296, 0.0F},
+                                      {300, 0.25F},
+                                      {304, 0.0F},
+                                      {312, 0.0F},
+                                      {316, 0.0F},
+                                      {320, 2.0F}})
+    elsewhere.set<float>(offset, value);
+  const Scan other = read_scan(write("c.nii", elsewhere.with(voxels<std::int16_t>())));
+  EXPECT_EQ(other.warnings.at(0), "its sform and its qform place it differently; the sform was taken");
   // A qform that is none does not spoil a good sform.
   const Scan scan = read_scan(write("b.nii", with_qform().set<float>(256, 3).with(voxels<std::int16_t>())));
   EXPECT_TRUE(scan.warnings.empty());
