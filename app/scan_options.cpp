@@ -286,7 +286,8 @@ LoadedBone read_bone(const ScanOptions& options) {
   const std::vector<std::string> of_isovalue = isovalue_warnings(scan.grid, isovalue.value);
   if (!is_within(scan.grid, isovalue.value)) throw InputError(scan.name, of_isovalue.front());
   // A phantom is cut off on purpose.
-  if (!is_builtin(options.scan)) warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
+  if (phantom_of(options.scan) == nullptr)
+    warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
   for (std::string& warning : warnings) warning = scan.name + ": " + warning;
   LabelsRead labels = labels_of(options, scan);
   warnings.insert(warnings.end(), labels.warnings.begin(), labels.warnings.end());
