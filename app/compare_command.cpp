@@ -259,6 +259,7 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
+    settle_law(*command, options->trial.milling.setup);
     if (options->seeds > 1) refuse_a_hand(*command);
     if (options->match_stiffness) refuse_a_stiffness(*command);
     run_compare(*options, command_line);

@@ -231,6 +231,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
 
 void add_live_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<LiveOptions>();
+  options->trial.milling.setup.law = CuttingLaw::chips;
   CLI::App* command = program.add_subcommand(
       "live",
       "Run one algorithm in real time with a device or the simulated hand, and print how well it keeps time");
@@ -251,6 +252,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
+    settle_law(*command, options->trial.milling.setup);
     run_live(*options, command_line);
   });
 }

@@ -175,6 +175,15 @@ void take_given_options(const CLI::App& command, const MillingSetup& given, Mill
   }
 }
 
+void settle_law(const CLI::App& command, MillingSetup& setup) {
+  for (const char* option : {"--removal-rate", "--cutting-energy"}) {
+    if (command.count(option) == 0 || setup.law == CuttingLaw::constant_energy) continue;
+    if (command.count("--law") > 0)
+      throw CLI::ValidationError(option, "is of --law constant-energy, not of chips");
+    setup.law = CuttingLaw::constant_energy;
+  }
+}
+
 void add_algorithm_option(CLI::App& command, AlgorithmDescription& algorithm) {
   add_choice(command, "algorithm", algorithm_names(), algorithm.id.name, "NAME",
              fmt::format("{}", fmt::join(algorithm_names(), ", ")),

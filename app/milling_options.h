@@ -33,6 +33,10 @@ std::vector<std::string> shared_options();
 /// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);
 
+/// Takes the law of constant energy if only its options were given. Throws CLI::ValidationError if one of
+/// them was given with --law chips. Call it when all options are read.
+void settle_law(const CLI::App& command, MillingSetup& setup);
+
 /// Adds --algorithm for a command that works with one.
 void add_algorithm_option(CLI::App& command, AlgorithmDescription& algorithm);
 /// Adds --algorithm, which may repeat; none given means all of `algorithms`.

@@ -16,6 +16,9 @@ namespace {
 std::vector<std::string> words_for(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (option.get_expected_max() == 0) return {name};
+  // The last of a choice's names.
+  if (const std::string type = option.get_type_name(); type.find('|') != type.npos)
+    return {name, type.substr(type.rfind('|') + 1)};
   if (name == "--direction") return {name, "0.1,0,-1"};
   if (option.get_type_name() == "X,Y,Z") return {name, "0.5,0,20"};
   if (option.get_type_name() == "SETTING") return {name, "point-shell.damping-time=0.002"};
@@ -61,6 +64,23 @@ TEST(MillingOptions, WhateverIsSaidOfATrialStandsInItsRecordings) {
     ++walked;
   }
   EXPECT_GT(walked, 25u);
+}
+
+TEST(MillingOptions, OptionsOfConstantEnergyChooseItUnlessTheLawIsNamed) {
+  const auto law_after = [](const std::vector<std::string>& words) {
+    CLI::App command;
+    MillingOptions options;
+    options.setup.law = CuttingLaw::chips;
+    add_milling_options(command, options);
+    parse(command, words);
+    settle_law(command, options.setup);
+    return options.setup.law;
+  };
+  EXPECT_EQ(law_after({}), CuttingLaw::chips);
+  EXPECT_EQ(law_after({"--removal-rate", "3"}), CuttingLaw::constant_energy);
+  EXPECT_EQ(law_after({"--cutting-energy", "700", "--law", "constant-energy"}), CuttingLaw::constant_energy);
+  EXPECT_THROW(law_after({"--law", "chips", "--removal-rate", "3"}), CLI::ValidationError);
+  EXPECT_THROW(law_after({"--law", "chip"}), CLI::ValidationError);
 }
 
 TEST(MillingOptions, WhatIsSaidToAReplayIsTakenOverAndNothingElse) {

@@ -180,6 +180,21 @@ std::string number_fault(const std::string& text, const NumberRange& range, doub
   return fmt::format("{} is not {}", text, is_positive ? "a positive number" : range_text(range));
 }
 
+double value_of(const FieldDescription& field, const std::string& text) {
+  if (!field.choices.empty()) {
+    require_word(field.option, text, field.choices);
+    return static_cast<double>(std::ranges::find(field.choices, text) - field.choices.begin());
+  }
+  double value = 0;
+  if (const std::string fault = number_fault(text, field.range, value); !fault.empty())
+    throw std::invalid_argument(field.option + ": " + fault);
+  return value;
+}
+
+std::string value_text(const FieldDescription& field, double value) {
+  return field.choices.empty() ? number_text(value) : field.choices.at(static_cast<std::size_t>(value));
+}
+
 CLI::Validator number_of(const NumberRange& range) {
   return CLI::Validator(
       [range](std::string& text) {
@@ -206,6 +221,15 @@ std::string help_unit(std::string unit) {
 void add_number(CLI::App& command, const FieldDescription& field, const std::string& shown_default,
                 const std::function<void(double)>& take) {
   const std::string name = "--" + field.option;
+  if (!field.choices.empty()) {
+    command
+        .add_option_function<std::string>(
+            name, [field, take](const std::string& text) { take(value_of(field, text)); }, field.doc)
+        ->check(one_of(field.option, field.choices))
+        ->type_name(fmt::format("{}", fmt::join(field.choices, "|")))
+        ->default_str(shown_default);
+    return;
+  }
   if (field.range == NumberRange::on_or_off()) {
     command.add_flag_function(
         name + ",!--no-" + field.option, [take](std::int64_t times) { take(times > 0 ? 1 : 0); }, field.doc);

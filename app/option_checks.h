@@ -40,6 +40,11 @@ void require_known_words(const CLI::App& program, int argc, const char* const* a
 /// Returns what is wrong with a text as a number of this range, "-1 is not a positive number"; empty for
 /// nothing, and `value` is then the number.
 std::string number_fault(const std::string& text, const NumberRange& range, double& value);
+/// Returns the value of a number or a choice from its text. Throws std::invalid_argument, one line, if it is
+/// none.
+double value_of(const FieldDescription& field, const std::string& text);
+/// Returns the value as an option shows it: a choice by its name.
+std::string value_text(const FieldDescription& field, double value);
 /// Makes a check that refuses a text that is not a number of this range.
 CLI::Validator number_of(const NumberRange& range);
 inline CLI::Validator positive_number() {
@@ -55,7 +60,7 @@ template <typename Struct>
 void add_fields(CLI::App& command, Struct& s, unsigned flags = 0, unsigned without_default = 0) {
   for (const Field<Struct>& field : fields_of<Struct>()) {
     if (field.option.empty() || (flags != 0 && !field.has(flags))) continue;
-    add_number(command, field, field.has(without_default) ? "" : number_text(field.get(s)),
+    add_number(command, field, field.has(without_default) ? "" : value_text(field, field.get(s)),
                [&s, &field](double value) { field.set(s, value); });
   }
 }

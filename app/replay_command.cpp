@@ -270,6 +270,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
+    settle_law(*command, options->milling.setup);
     if (is_hdf5(options->input)) refuse_what_is_recorded(*options);
     run_replay(*options, command_line);
   });

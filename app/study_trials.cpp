@@ -87,24 +87,17 @@ std::vector<Field<TrialSpec>> trial_numbers() {
   return all;
 }
 
-double checked_number(const std::string& key, const std::string& text, const NumberRange& range) {
-  double value = 0;
-  if (const std::string fault = number_fault(text, range, value); !fault.empty())
-    throw std::invalid_argument(key + ": " + fault);
-  return value;
-}
-
 void set_one(TrialSpec& asked, const std::string& key, const std::string& text) {
   HapticSettings& haptics = asked.trial.milling.setup.haptics;
   if (text.empty()) throw std::invalid_argument(key + " is empty");
   if (is_own_setting(key)) {
     set_own(haptics, key, text);
   } else if (const Field<TrialSpec>* number = field_of_option(numbers_of_a_trial(), key)) {
-    number->set(asked, checked_number(key, text, number->range));
+    number->set(asked, value_of(*number, text));
   } else if (const Text* known = field_of_option(texts_of_a_trial(), key)) {
     known->set(asked, text);
   } else {
-    set_shared(haptics, key, checked_number(key, text, NumberRange::finite()));
+    set_shared(haptics, key, value_of({"", "", NumberRange::finite(), "", 0, key}, text));
   }
 }
 

@@ -22,6 +22,12 @@ TEST(StudyTrials, AnAxisSetsEveryField) {
   std::set<std::string> options;
   for (const Field<TrialSpec>& field : numbers_of_a_trial()) {
     EXPECT_TRUE(options.insert(field.option).second) << field.option << " is there twice";
+    if (!field.choices.empty()) {
+      const std::string& last = field.choices.back();
+      EXPECT_EQ(field.get(asked_trial({{field.option, last}})),
+                static_cast<double>(field.choices.size() - 1));
+      continue;
+    }
     const bool is_switch = field.range == NumberRange::on_or_off();
     const double usual = std::max(0.75, 1.5 * field.range.min) + (field.range.whole ? 2.25 : 0);
     const double value = is_switch ? 1 : usual;

@@ -572,6 +572,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   options->driver = driver;
   options->command_line = command_line;
   options->milling.setup.cutting_reaction = true;
+  options->milling.setup.law = CuttingLaw::chips;
   CLI::App* command =
       program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");
   command->group("In a window");
@@ -594,6 +595,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
                     "Begin without the page that explains the controls (default: shown on the first start)");
   command->callback([=] {
     apply_config_file(*command);
+    settle_law(*command, options->milling.setup);
     Simulator(*options).run();
   });
 }

@@ -8,7 +8,9 @@
 
 #include "osteomill/base/positive.h"
 #include "osteomill/haptics/burr_presses.h"
+#include "osteomill/haptics/sample_points.h"
 #include "osteomill/milling/cut_voxels.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 
@@ -33,6 +35,14 @@ constexpr double kMaxUneven_voxels = 0.6;
 // And never more, even in the first ticks, before it is known how many there are.
 constexpr std::size_t kRoomForPieces = 2 * kMaxPiecesOfTick;
 constexpr unsigned kMaxShares = 64;
+// Time over which the cut bone is measured; shorter, and a rate follows single voxels.
+constexpr double kMeasured_s = 0.005;
+// Directions in which the bone's density is looked at, half of them ahead.
+constexpr int kDirections = 48;
+// Smallest contact, as a share of the burr's cross-section, with which a chip is not endlessly thick.
+constexpr double kMinContact = 0.01;
+// Smallest density, relative to the reference, that counts as bone.
+constexpr double kMinDensity = 0.05;
 
 // The least float that is not below `density`.
 float float_not_below(double density) {
@@ -86,15 +96,30 @@ BurrMill::BurrMill(Volume& volume, double burr_radius_mm, const BoneDensities& d
       radius_mm_(burr_radius_mm),
       densities_(densities),
       mm3_per_density_(volume.geometry().voxel_volume_mm3() / (densities.reference - densities.surroundings)),
-      removal_rate_mm3_per_Ns_(settings.removal_rate_mm3_per_Ns),
+      settings_(settings),
       min_ahead_mm_(min_ahead(volume.geometry(), burr_radius_mm)),
       max_ahead_mm_(max_ahead(volume.geometry())),
       reach_(make_reach(volume, burr_radius_mm, densities, settings)),
-      voxels_(volume.geometry(), reach_.max_voxels(), reach_.max_pieces()) {}
+      voxels_(volume.geometry(), reach_.max_voxels(), reach_.max_pieces()) {
+  if (settings_.chips) directions_ = spiral_directions(kDirections);
+}
 
-MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N, double dt_s) noexcept {
-  const double rate_mm3_s = removal_rate_mm3_per_Ns_ * burr_force_W_N.norm();
-  const double pressed_mm3 = rate_mm3_s * dt_s;
+double BurrMill::rate_mm3_s(double force_N, double speed_share) const {
+  if (!settings_.chips) return settings_.removal_rate_mm3_per_Ns * force_N * speed_share;
+  const double min_area_mm2 = kMinContact * std::numbers::pi * radius_mm_ * radius_mm_;
+  return cut_bone_.density *
+         cut_chips(*settings_.chips, {force_N, radius_mm_, settings_.spindle_speed_rpm * speed_share,
+                                      std::max(cut_bone_.area_mm2, min_area_mm2), cut_bone_.density})
+             .rate_mm3_s;
+}
+
+MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N, double dt_s,
+                           double speed_share) noexcept {
+  const double force_N = burr_force_W_N.norm();
+  if (settings_.chips && force_N > 0 && std::isfinite(force_N) && burr_centre_W.allFinite())
+    look_ahead(burr_centre_W, burr_force_W_N / force_N, dt_s);
+  const double paid_mm3_s = rate_mm3_s(force_N, speed_share);
+  const double pressed_mm3 = paid_mm3_s * dt_s;
   if (!(pressed_mm3 > 0) || !std::isfinite(pressed_mm3) || !burr_centre_W.allFinite()) {
     lift(dt_s);
     return {};
@@ -103,14 +128,48 @@ MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N
   const double budget_mm3 = carry_mm3_ + pressed_mm3;
   const CuttingBall ball = ball_in_grid(burr_centre_W, burr_force_W_N);
   const double max_ahead_mm = std::min(std::max(ahead_mm_, 0.0) + kMaxAhead_mm_s * dt_s, max_ahead_mm_);
+  const double lines = share_.count;
   find(ball, max_ahead_mm, pressed_mm3);
   const BurrAdvance advance =
       advance_within(budget_mm3 / mm3_per_density_, voxels_, ahead_mm_, min_ahead_mm_, max_ahead_mm);
   ahead_mm_ = advance.ahead_mm;
-  const MillingStep done = lower_found(voxels_.find_lowered(ahead_mm_, advance.shares));
+  MillingStep done = lower_found(voxels_.find_lowered(ahead_mm_, advance.shares));
+  done.rate_mm3_s = paid_mm3_s;
+  if (settings_.chips) measure_contact(lines * advance.slope_per_mm, dt_s);
   // Below zero by a rounding error if floats were rounded in the burr's favour; the next step pays for it.
-  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kPressingKept_s * rate_mm3_s);
+  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kPressingKept_s * paid_mm3_s);
   return done;
+}
+
+// Looks at the bone just beyond what the profile lowers, which is as it was scanned.
+void BurrMill::look_ahead(const Vec3& centre_W, const Vec3& ahead_W, double dt_s) {
+  const double reach_mm = radius_mm_ + CutProfile::kReach_voxels * geometry().spacing_mm.maxCoeff();
+  const Vec3 from_W = centre_W + std::max(ahead_mm_, 0.0) * ahead_W;
+  const double range = densities_.reference - densities_.surroundings;
+  double weights = 0, sum = 0, squares = 0;
+  for (const Vec3& direction_W : directions_) {
+    const double weight = direction_W.dot(ahead_W);
+    if (weight <= 0) continue;
+    const double density =
+        (density_at(volume_->grid(), from_W + reach_mm * direction_W) - densities_.surroundings) / range;
+    if (!(density > kMinDensity)) continue;
+    weights += weight;
+    sum += weight * density;
+    squares += weight * density * density;
+  }
+  if (!(weights > 0)) return;
+  const double mean = sum / weights;
+  const double share = cut_bone_.area_mm2 == 0 ? 1 : dt_s / (kMeasured_s + dt_s);
+  cut_bone_.density += share * (mean - cut_bone_.density);
+  cut_bone_.grain +=
+      share * (std::sqrt(std::max(0.0, squares / weights - mean * mean)) / mean - cut_bone_.grain);
+}
+
+void BurrMill::measure_contact(double slope_per_mm, double dt_s) {
+  if (!(slope_per_mm > 0)) return;
+  const double area_mm2 = slope_per_mm * mm3_per_density_ / cut_bone_.density;
+  const double share = cut_bone_.area_mm2 == 0 ? 1 : dt_s / (kMeasured_s + dt_s);
+  cut_bone_.area_mm2 += share * (area_mm2 - cut_bone_.area_mm2);
 }
 
 void BurrMill::lift(double dt_s) {
@@ -118,6 +177,7 @@ void BurrMill::lift(double dt_s) {
   if (force_free_s_ < kForgetAfter_s) return;
   carry_mm3_ = 0;
   ahead_mm_ = 0;
+  cut_bone_ = {};
 }
 
 CuttingBall BurrMill::ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const {

@@ -140,7 +140,7 @@ double CutVoxels::find_lowered(double ahead_mm, const Shares& shares) noexcept {
 
 BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_ahead_mm, double min_ahead_mm,
                            double max_ahead_mm) noexcept {
-  BurrAdvance advance{std::clamp(start_ahead_mm, min_ahead_mm, max_ahead_mm), {}};
+  BurrAdvance advance{std::clamp(start_ahead_mm, min_ahead_mm, max_ahead_mm), {}, 0};
   CutVoxels::Cost cost = voxels.cost(advance.ahead_mm);
   const double trailing = cost.trailing * part(kMaxTrailing * budget, cost.trailing);
   const double leading = budget - trailing;
@@ -156,6 +156,7 @@ BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_
         next_ahead(advance.ahead_mm, over, cost.slope_per_mm, low, high, low_tried, high_tried);
     cost = voxels.cost(advance.ahead_mm);
   }
+  advance.slope_per_mm = cost.slope_per_mm;
   advance.shares.leading = part(leading, cost.leading);
   advance.shares.trailing = part(budget - advance.shares.leading * cost.leading, cost.trailing);
   return advance;

@@ -35,20 +35,28 @@ Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const V
                       bool spindle_on) noexcept {
   if (!spindle_on) return Vec3::Zero();
   const double force_N = burr_force_W_N.norm();
-  if (!(settings.reaction_share > 0) || !(force_N > 0)) return burr_force_W_N;
+  if (!(settings.reaction_share > 0 || settings.chips) || !(force_N > 0)) return burr_force_W_N;
   return rim_share(burr_force_W_N / force_N, shaft_direction(X_WT)) * burr_force_W_N;
 }
 
 void CuttingReaction::follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3,
                              double dt_s) noexcept {
   if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
+  const double force_N = burr_force_W_N.norm();
+  const bool cuts = removed_mm3 > 0 && force_N > 0 && std::isfinite(force_N);
+  const double share = cuts ? rim_share(burr_force_W_N / force_N, shaft_direction(X_WT)) : 1;
+  follow_paid(X_WT, burr_force_W_N,
+              cuts ? removed_mm3 / (settings_.removal_rate_mm3_per_Ns * share * dt_s) : 0, dt_s);
+}
+
+void CuttingReaction::follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N,
+                                  double dt_s) noexcept {
+  if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
   Wrench now;
   const double force_N = burr_force_W_N.norm();
-  if (removed_mm3 > 0 && force_N > 0 && std::isfinite(force_N)) {
-    const Vec3 ahead_W = burr_force_W_N / force_N, shaft_W = shaft_direction(X_WT);
-    const double paid_N =
-        removed_mm3 / (settings_.removal_rate_mm3_per_Ns * rim_share(ahead_W, shaft_W) * dt_s);
-    now = reaction(ahead_W, shaft_W, radius_mm_, settings_.reaction_share * paid_N);
+  if (paid_N > 0 && force_N > 0 && std::isfinite(force_N)) {
+    now = reaction(burr_force_W_N / force_N, shaft_direction(X_WT), radius_mm_,
+                   settings_.reaction_share * paid_N);
   }
   const double share = dt_s / (kSmooth_s + dt_s);
   wrench_.force_N += share * (now.force_N - wrench_.force_N);

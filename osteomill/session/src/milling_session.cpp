@@ -212,10 +212,16 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
 }
 
 void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept {
-  const MillingStep cut = mill_.step(
-      step.X_WT.position_mm, paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N, spindle_on), dt_s);
+  const Vec3& force_W_N = step.burr_force_W_N;
+  const MillingStep cut =
+      mill_.step(step.X_WT.position_mm, paying_force_W_N(milling_, step.X_WT, force_W_N, spindle_on), dt_s);
   if (spindle_on) no_go_.tally_contacts(step.X_WT.position_mm, mill_.by_label());
-  reaction_.follow(step.X_WT, step.burr_force_W_N, cut.removed_mm3, dt_s);
+  if (milling_.chips) {
+    const double paid_share = cut.removed_mm3 > 0 ? cut.removed_mm3 / (cut.rate_mm3_s * dt_s) : 0;
+    reaction_.follow_paid(step.X_WT, force_W_N, paid_share * force_W_N.norm(), dt_s);
+  } else {
+    reaction_.follow(step.X_WT, force_W_N, cut.removed_mm3, dt_s);
+  }
   last_change_ = cut.change;
   // Nothing is written while nothing is milled: then another thread may read it (HapticThread::freeze_bone).
   if (cut.removed_mm3 > 0) removed_mm3_ += cut.removed_mm3;

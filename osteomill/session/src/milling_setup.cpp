@@ -61,7 +61,10 @@ MillingSettings milling_settings(const MillingSetup& setup) {
   milling.removal_rate_mm3_per_Ns = setup.removal_rate_mm3_per_Ns
                                         ? *setup.removal_rate_mm3_per_Ns
                                         : removal_rate_mm3_per_Ns(setup.cutting, setup.tool.burr_radius_mm);
-  if (setup.cutting_reaction) milling.reaction_share = setup.cutting.tangential_share;
+  milling.spindle_speed_rpm = setup.cutting.spindle_speed_rpm;
+  if (setup.law == CuttingLaw::chips) milling.chips = chip_law(setup.burr, setup.wear_cuts);
+  if (setup.cutting_reaction)
+    milling.reaction_share = milling.chips ? milling.chips->friction : setup.cutting.tangential_share;
   return milling;
 }
 
@@ -82,8 +85,43 @@ std::vector<Field<CuttingSettings>> cutting_fields() {
       field<C>({"vibration.spindle_speed", "rpm", kSpeed, "Speed of the burr", kOwn, "spindle-speed"},
                &C::spindle_speed_rpm),
       field<C>({"milling.cutting_energy", "N mm/mm^3", kEnergy,
-                "Work to remove bone of the reference density", kOwn | kMayBeAbsent, "cutting-energy"},
+                "Work to remove bone of the reference density (--law constant-energy)", kOwn | kMayBeAbsent,
+                "cutting-energy"},
                &C::specific_energy_Nmm_per_mm3),
+  };
+}
+
+FieldDescription choice(const char* name, const char* doc, const char* option,
+                        std::vector<std::string> choices) {
+  const int last = static_cast<int>(choices.size()) - 1;
+  return {name,
+          "",
+          NumberRange::count(0, last),
+          doc,
+          kOfTheCutting | kOfTheRecording | kMayBeAbsent,
+          option,
+          std::move(choices)};
+}
+
+std::vector<std::string> burr_names() {
+  std::vector<std::string> names;
+  for (const BurrType& type : burr_types()) names.emplace_back(type.name);
+  return names;
+}
+
+std::vector<Field<S>> law_fields() {
+  return {
+      field<S>(choice("milling.law", "Energy of the removed bone: constant, or more for thinner chips", "law",
+                      {"constant-energy", "chips"}),
+               &S::law),
+      field<S>(choice("milling.burr", "Kind of burr, for --law chips", "burr", burr_names()), &S::burr),
+      field<S>({"milling.wear",
+                "",
+                {0, 1000},
+                "Cuts that the burr has made before; 20 take 20 % of its rate (--law chips)",
+                kOfTheCutting | kOfTheRecording | kMayBeAbsent,
+                "wear"},
+               &S::wear_cuts),
   };
 }
 
@@ -152,7 +190,7 @@ template <>
 const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>() {
   static const std::vector<Field<S>> all =
       joined<S>({fields_within<S>(&S::tool, tool_fields()), fields_within<S>(&S::cutting, cutting_fields()),
-                 removal_fields(), fields_within<S>(&S::guard, guard_fields()),
+                 law_fields(), removal_fields(), fields_within<S>(&S::guard, guard_fields()),
                  fields_within<S>(&S::vibration, vibration_fields())});
   return all;
 }

@@ -55,6 +55,16 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
          "from each. What differs in force between them is partly this (compare --match-stiffness).";
 }
 
+std::string about_cutting(const Recording& recording) {
+  const double* law = find_setting<double>(recording.description, "milling.law");
+  if (law != nullptr && *law == static_cast<double>(CuttingLaw::chips)) {
+    return "Bone was cut by the law of chips: a mm³ costs more energy the thinner the chips are (--law "
+           "chips). The paper's experiment has a constant energy.";
+  }
+  return "Bone cost a constant energy for each mm³, whatever the chips, as in the paper's experiment; the "
+         "window and live cut by the law of chips (--law).";
+}
+
 std::map<std::string, Probe> probes_in(const std::vector<Recording>& recordings) {
   std::map<std::string, Probe> probes;
   for (const Recording& recording : recordings) {
@@ -85,7 +95,8 @@ Section opening(const Study& study, const std::vector<Recording>& recordings) {
   if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};
   for (const std::string& text :
        {which_to_take(study), what_was_compared(study, recordings.front().description.scan_name),
-        about_stiffness(recordings), about_line_proxy(study, recordings.front().description.tool)})
+        about_stiffness(recordings), about_cutting(recordings.front()),
+        about_line_proxy(study, recordings.front().description.tool)})
     if (!text.empty()) section.paragraphs.push_back(text);
   return section;
 }

@@ -61,6 +61,8 @@ struct FieldDescription {
   /// The name of the option on the command line, which is also its key in files for --config and in studies;
   /// empty if there is none.
   std::string option = {};
+  /// The names of the values 0, 1, ... of a choice, by which options and studies give it.
+  std::vector<std::string> choices = {};
 
   bool has(unsigned flag) const { return (flags & flag) != 0; }
 };

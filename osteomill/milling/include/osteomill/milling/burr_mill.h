@@ -1,9 +1,13 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "osteomill/base/nonblocking.h"
 #include "osteomill/base/pose.h"
 #include "osteomill/haptics/milling_tool.h"
 #include "osteomill/milling/burr_reach.h"
+#include "osteomill/milling/chip_law.h"
 #include "osteomill/milling/cut_voxels.h"
 #include "osteomill/milling/label_tally.h"
 #include "osteomill/volume/bone_densities.h"
@@ -33,6 +37,19 @@ struct MillingSettings {
   /// The cutting force along the burr's speed as a share of its force, if the hand is to feel it
   /// (CuttingReaction); 0 if not, and all of the burr then cuts as its rim does.
   double reaction_share = 0;
+  /// The law by which chips are cut, instead of kappa. Its power always counts the place where the burr cuts.
+  std::optional<ChipLaw> chips = {};
+  /// The speed that the spindle is set to.
+  double spindle_speed_rpm = CuttingSettings{}.spindle_speed_rpm;
+};
+
+/// The bone that the burr is cutting, measured while it cuts.
+struct CutBone {
+  /// The contact's area across the push; 0 if not known yet.
+  double area_mm2 = 0;
+  /// The mean density before the burr, relative to the reference, and its coefficient of variation there.
+  double density = 1;
+  double grain = 0;
 };
 
 /// The result of one step of milling.
@@ -41,6 +58,8 @@ struct MillingStep {
   /// The bone taken, in mm^3 of reference density, each voxel charged by its density above the surroundings.
   /// Summed from the densities as they were written, so that it is exact for the volume as it now stands.
   double removed_mm3 = 0;
+  /// The rate that was paid for, in mm^3 of reference density a second.
+  double rate_mm3_s = 0;
 };
 
 /// Removes the bone that the burr sweeps, by energy: each step may take kappa * force * dt. The burr's ball
@@ -67,10 +86,13 @@ class BurrMill {
            const MillingSettings& settings);
 
   /// Lowers the volume's densities, never below the surroundings. `burr_centre_W` is the simulated burr's
-  /// centre, `burr_force_W_N` its force on the bone; takes nothing if one of them is not finite. Safe in the
-  /// haptic tick; time grows with the voxels overlapped.
-  MillingStep step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
-                   double dt_s) noexcept OSTEOMILL_NONBLOCKING;
+  /// centre, `burr_force_W_N` the part of its force on the bone that pays (`paying_force_W_N`), `speed_share`
+  /// the spindle's true speed as a share of the set one; takes nothing if one of them is not finite. Safe in
+  /// the haptic tick; time grows with the voxels overlapped.
+  MillingStep step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N, double dt_s,
+                   double speed_share = 1) noexcept OSTEOMILL_NONBLOCKING;
+  /// Returns the bone that is cut with the law of chips, as of the last tick that cut any.
+  const CutBone& cut_bone() const { return cut_bone_; }
   /// Returns what the steps took of each label and no caller has taken out of the tally yet. Empty if the
   /// volume has no labels.
   LabelTally& by_label() { return by_label_; }
@@ -78,7 +100,10 @@ class BurrMill {
   double carry_mm3() const { return carry_mm3_; }
 
  private:
+  double rate_mm3_s(double force_N, double speed_share) const;
   void lift(double dt_s);
+  void look_ahead(const Vec3& centre_W, const Vec3& ahead_W, double dt_s);
+  void measure_contact(double slope_per_mm, double dt_s);
   void share_after(std::size_t found, double advance_voxels);
   CuttingBall ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const;
   void find(const CuttingBall& ball, double max_ahead_mm, double pressed_mm3);
@@ -91,7 +116,9 @@ class BurrMill {
   double radius_mm_;
   BoneDensities densities_;
   double mm3_per_density_;
-  double removal_rate_mm3_per_Ns_;
+  MillingSettings settings_;
+  CutBone cut_bone_;
+  std::vector<Vec3> directions_;  // in which look_ahead looks; none without the law of chips
   double min_ahead_mm_;
   double max_ahead_mm_;
   BurrReach reach_;

@@ -111,6 +111,8 @@ class CutVoxels {
 struct BurrAdvance {
   double ahead_mm = 0;
   CutVoxels::Shares shares;
+  /// `CutVoxels::Cost::slope_per_mm` there.
+  double slope_per_mm = 0;
 };
 
 /// Returns the ball's place between `min_ahead_mm` and `max_ahead_mm` where cutting to its surface takes just

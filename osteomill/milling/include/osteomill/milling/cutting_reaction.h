@@ -14,7 +14,8 @@ double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) noexcept;
 
 /// Returns the force that pays for what is cut: none if the burr does not turn, so that the mill forgets what
 /// it had pressed for as if it were lifted; else the burr's force, less if its pole presses, and all of it if
-/// there is no reaction (`MillingSettings::reaction_share`). Safe in the haptic tick.
+/// energy is constant (no `MillingSettings::chips`) and there is no reaction
+/// (`MillingSettings::reaction_share`). Safe in the haptic tick.
 Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N,
                       bool spindle_on) noexcept;
 
@@ -34,6 +35,8 @@ class CuttingReaction {
   /// Takes in, after each tick, what was removed with this force on the bone in `dt_s`. Safe in the haptic
   /// tick.
   void follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) noexcept;
+  /// Does so with the part of the force that paid for what was removed, in a tick that cut.
+  void follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s) noexcept;
   /// Forgets the reaction, as before the first tick.
   void reset() noexcept { wrench_ = {}; }
 

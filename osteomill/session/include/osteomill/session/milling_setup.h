@@ -27,7 +27,11 @@ struct MillingSetup {
   AlgorithmDescription algorithm = default_algorithm();
   HapticSettings haptics;
   CuttingSettings cutting;
-  /// The rate, if given; else it follows from `cutting` and the burr.
+  CuttingLaw law = CuttingLaw::constant_energy;
+  /// For the law of chips: the kind of burr, and the cuts that it has made before.
+  BurrKind burr = BurrKind::cutting;
+  double wear_cuts = 0;
+  /// The rate with constant energy, if given; else it follows from `cutting` and the burr.
   std::optional<double> removal_rate_mm3_per_Ns;
   /// The hand feels how cutting holds the burr back along its speed (CuttingReaction).
   bool cutting_reaction = false;
