@@ -41,7 +41,7 @@ static void pass(PipeEnd& pipe, RunDescription& run) {
 }
 static auto members_of(SessionStart& start) {
   return std::tie(start.run, start.handover.X_WT, start.handover.sent, start.handover.held_back,
-                  start.removed_mm3, start.bricks, start.continues_from);
+                  start.handover.spindle_rpm, start.removed_mm3, start.bricks, start.continues_from);
 }
 static auto members_of(RecordedSession& session) {
   return std::tie(session.first, session.start);
@@ -191,6 +191,7 @@ SessionStart read_session_start(const Hdf5File& recording, hid_t group, const st
   read.get("removed_mm3", start.removed_mm3);
   start.handover.sent = {read.get<Vec3>("force_N"), read.get<Vec3>("torque_Nmm")};
   start.handover.held_back = read.has("held_back") && read.get<std::uint64_t>("held_back") != 0;
+  if (read.has("spindle_rpm")) start.handover.spindle_rpm = read.get<double>("spindle_rpm");
   if (read.has("tool_mm")) {
     std::array<double, 4> q{};
     read.get_reals("tool_wxyz", q);

@@ -101,6 +101,11 @@ Fields record_fields() {
       all, "cutting_torque", "N mm", [](auto& r) -> auto& { return r.cutting_torque_W_Nmm; },
       "of the torque sent, what the cutting adds (--cutting-reaction), frame W");
   add_switch(all, "driven", &R::driven, "1 if what was sent reached a hand", kMayBeAbsent);
+  add_real(all, "spindle_rpm", "rpm", &R::spindle_rpm, "true speed of the spindle", kInLog | kMayBeAbsent);
+  add_real(all, "cutting_power_W", "W", &R::cutting_power_W, "power that went into what was removed",
+           kInLog | kMayBeAbsent);
+  add_real(all, "cut_density", "", &R::cut_density,
+           "density before the burr relative to the reference; 0 without contact", kMayBeAbsent);
   return all;
 }
 

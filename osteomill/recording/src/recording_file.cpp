@@ -236,6 +236,7 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   write.put("force_N", start.handover.sent.force_N);
   write.put("torque_Nmm", start.handover.sent.torque_Nmm);
   write.put("held_back", std::uint64_t{start.handover.held_back});
+  write.put("spindle_rpm", start.handover.spindle_rpm);
   if (const auto& X_WT = start.handover.X_WT) {
     const Quat& q = X_WT->orientation;
     write.put("tool_mm", X_WT->position_mm);

@@ -26,7 +26,7 @@ constexpr const char* kHeader =
     "time_s,device_x_mm,device_y_mm,device_z_mm,device_qw,device_qx,device_qy,device_qz,"
     "tool_x_mm,tool_y_mm,tool_z_mm,tool_qw,tool_qx,tool_qy,tool_qz,"
     "force_x_N,force_y_N,force_z_N,torque_x_Nmm,torque_y_Nmm,torque_z_Nmm,contacts,removed_mm3,compute_us,"
-    "energy_given_Nmm";
+    "energy_given_Nmm,spindle_rpm,cutting_power_W";
 
 TEST(WriteCsv, HasTheColumnsOfTheLogInTheirOrder) {
   const TestFolder folder;
@@ -39,11 +39,13 @@ TEST(WriteCsv, HasTheColumnsOfTheLogInTheirOrder) {
   record.removed_mm3 = 23;
   record.compute_us = 24;
   record.energy_given_Nmm = 25;
+  record.spindle_rpm = 26;
+  record.cutting_power_W = 27;
   write_csv(folder / "log.csv", std::vector{record});
   const auto lines = lines_of(folder / "log.csv");
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0], kHeader);
-  EXPECT_EQ(lines[1], "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18.5,19,20,-21,22,23,24,25");
+  EXPECT_EQ(lines[1], "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18.5,19,20,-21,22,23,24,25,26,27");
 }
 
 TEST(WriteCsv, EveryNumberReadsBackToTheSameBits) {

@@ -55,20 +55,23 @@ double tick_length_s(const std::vector<TrajectoryPoint>& trajectory, std::size_t
   return trajectory[end].time_s - trajectory[end - 1].time_s;
 }
 
-constexpr double kMax_hz = 250;
-
 }  // namespace
 
 double vibration_hz(double spindle_speed_rpm) {
+  // The fastest spindle that a setting allows is felt at kMax_hz.
+  constexpr double kTrue_hz = 100, kMax_hz = 250, kFastest_hz = 1e6 / 60;
   const double turns_per_s = spindle_speed_rpm / 60;
-  return turns_per_s / std::max(1.0, std::ceil(turns_per_s / kMax_hz));
+  if (turns_per_s <= kTrue_hz) return turns_per_s;
+  return kTrue_hz +
+         (kMax_hz - kTrue_hz) * std::log(turns_per_s / kTrue_hz) / std::log(kFastest_hz / kTrue_hz);
 }
 
-Vec3 Vibration::force_N(const Pose& X_WT, double burr_force_N, double dt_s) noexcept {
-  if (!settings_.on || !(burr_force_N > 0) || !std::isfinite(burr_force_N)) return Vec3::Zero();
-  turns_ += hz_ * dt_s;
+Vec3 Vibration::force_N(const Pose& X_WT, double cutting_N, double spindle_rpm, double dt_s) noexcept {
+  if (!settings_.on || !(cutting_N > 0) || !std::isfinite(cutting_N) || !(spindle_rpm > 0))
+    return Vec3::Zero();
+  turns_ += vibration_hz(spindle_rpm) * dt_s;
   turns_ -= std::floor(turns_);
-  const double amplitude_N = std::min(settings_.force_share * burr_force_N, settings_.max_N);
+  const double amplitude_N = std::min(settings_.force_share * cutting_N, settings_.max_N);
   const double angle = 2 * std::numbers::pi * turns_;
   return X_WT.orientation * Vec3(amplitude_N * std::cos(angle), amplitude_N * std::sin(angle), 0);
 }
@@ -83,7 +86,8 @@ MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities
       mill_(*volume_, setup.tool.burr_radius_mm, densities, milling_),
       reaction_(milling_, setup.tool.burr_radius_mm),
       no_go_(volume_->labels(), setup.tool.burr_radius_mm),
-      vibration_(setup.vibration, setup.cutting.spindle_speed_rpm),
+      spindle_(setup.handpiece, setup.cutting.spindle_speed_rpm),
+      vibration_(setup.vibration),
       guard_(setup.guard),
       points_inside_T_(points_inside(setup.tool, pressing_reach_mm(volume_->geometry()))) {
   algorithm_->prepare({volume_.get(), setup.tool, setup.tick_s});
@@ -104,6 +108,9 @@ TickRecord MillingSession::begin_record(Device& device, const TickInput& input) 
   record.driven = device.is_driven() && !std::exchange(hold_back_requested_, false);
   if (!record.driven) guard_.hold_back();
   record.spindle_on = !input.paused && input.spindle_on.value_or(device.is_spindle_requested());
+  spindle_.step(record.spindle_on, load_Nmm_, record.dt_s);
+  record.spindle_rpm = spindle_.speed_rpm();
+  record.cutting_power_W = record.cut_density = load_Nmm_ = 0;
   if (place_requested_ && is_finite(record.X_WD)) {
     place_requested_ = false;
     record.placed = true;
@@ -137,7 +144,7 @@ void MillingSession::work(Device& device, TickRecord& record) {
   device.write_wrench(safe.wrench);
 
   const Clock::time_point milling_start = Clock::now();
-  mill(step, record.spindle_on, record.dt_s);
+  mill(step, record);
   record.label_cuts = mill_.by_label().take();
   record.milling_us = microseconds_since(milling_start);
 
@@ -160,6 +167,7 @@ void MillingSession::pause(Device& device, TickRecord& record) {
 }
 
 void MillingSession::resume_from(const SessionHandover& before) noexcept {
+  spindle_.begin_from(before.spindle_rpm);
   guard_.begin_from(before.sent, before.held_back);
   if (before.X_WT && is_finite(*before.X_WT)) begin_at(*before.X_WT);
 }
@@ -194,7 +202,9 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
     return {nothing, {guard_.filter_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite}};
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
-  if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
+  if (spindle_on)
+    step.wrench.force_N +=
+        vibration_.force_N(step.X_WT, vibrating_N(step.burr_force_W_N), spindle_.speed_rpm(), dt_s);
   if (milling_.reaction_share > 0) step.wrench = step.wrench + reaction_.wrench();
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
   const bool may_be_let = is_driven && (!guard_.is_held_back() || is_free(X_WD));
@@ -211,14 +221,34 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
           sent_fraction(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm};
 }
 
-void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept {
+// Returns the force that vibrates: all that presses with constant energy; else by the power of the chips,
+// more in bone of uneven density.
+double MillingSession::vibrating_N(const Vec3& burr_force_W_N) const noexcept {
+  if (!milling_.chips) return burr_force_W_N.norm();
+  const double speed_share = spindle_.speed_rpm() / spindle_.set_rpm();
+  return burr_force_W_N.norm() * cutting_share_ * speed_share * (1 + mill_.cut_bone().grain);
+}
+
+void MillingSession::mill(const HapticStep& step, TickRecord& record) noexcept {
+  constexpr double kCutting_s = 0.01;
   const Vec3& force_W_N = step.burr_force_W_N;
+  const double force_N = force_W_N.norm(), dt_s = record.dt_s, radius_mm = setup_.tool.burr_radius_mm;
+  const Vec3 paying_W_N = paying_force_W_N(milling_, step.X_WT, force_W_N, record.spindle_on);
   const MillingStep cut =
-      mill_.step(step.X_WT.position_mm, paying_force_W_N(milling_, step.X_WT, force_W_N, spindle_on), dt_s);
-  if (spindle_on) no_go_.tally_contacts(step.X_WT.position_mm, mill_.by_label());
+      mill_.step(step.X_WT.position_mm, paying_W_N, dt_s, record.spindle_rpm / milling_.spindle_speed_rpm);
+  if (record.spindle_on) no_go_.tally_contacts(step.X_WT.position_mm, mill_.by_label());
+  const double paid_share = cut.removed_mm3 > 0 ? cut.removed_mm3 / (cut.rate_mm3_s * dt_s) : 0;
+  cutting_share_ += dt_s / (kCutting_s + dt_s) * (std::min(paid_share, 1.0) - cutting_share_);
+  if (record.spindle_on && force_N > 0 && std::isfinite(force_N)) {
+    const double rim_N =
+        milling_.tangential_share * force_N * rim_share(force_W_N / force_N, shaft_direction(step.X_WT));
+    const double rim_mm_s = 2 * std::numbers::pi * radius_mm * record.spindle_rpm / 60;
+    load_Nmm_ = rim_N * radius_mm;
+    record.cutting_power_W = paid_share * rim_N * rim_mm_s * 1e-3;
+    record.cut_density = mill_.cut_bone().density;
+  }
   if (milling_.chips) {
-    const double paid_share = cut.removed_mm3 > 0 ? cut.removed_mm3 / (cut.rate_mm3_s * dt_s) : 0;
-    reaction_.follow_paid(step.X_WT, force_W_N, paid_share * force_W_N.norm(), dt_s);
+    reaction_.follow_paid(step.X_WT, force_W_N, paid_share * force_N, dt_s);
   } else {
     reaction_.follow(step.X_WT, force_W_N, cut.removed_mm3, dt_s);
   }

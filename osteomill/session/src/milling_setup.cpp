@@ -63,8 +63,8 @@ MillingSettings milling_settings(const MillingSetup& setup) {
                                         : removal_rate_mm3_per_Ns(setup.cutting, setup.tool.burr_radius_mm);
   milling.spindle_speed_rpm = setup.cutting.spindle_speed_rpm;
   if (setup.law == CuttingLaw::chips) milling.chips = chip_law(setup.burr, setup.wear_cuts);
-  if (setup.cutting_reaction)
-    milling.reaction_share = milling.chips ? milling.chips->friction : setup.cutting.tangential_share;
+  milling.tangential_share = milling.chips ? milling.chips->friction : setup.cutting.tangential_share;
+  if (setup.cutting_reaction) milling.reaction_share = milling.tangential_share;
   return milling;
 }
 
@@ -103,18 +103,40 @@ FieldDescription choice(const char* name, const char* doc, const char* option,
           std::move(choices)};
 }
 
-std::vector<std::string> burr_names() {
+template <typename Types>
+std::vector<std::string> names_of(const Types& types) {
   std::vector<std::string> names;
-  for (const BurrType& type : burr_types()) names.emplace_back(type.name);
+  for (const auto& type : types) names.emplace_back(type.name);
   return names;
+}
+
+double usual_rpm(Handpiece handpiece) {
+  return handpiece_types()[static_cast<std::size_t>(handpiece)].speed_rpm.value;
+}
+
+// Comes before the spindle's speed, which wins if it is set as well. A speed that is not the usual one stays.
+Field<S> handpiece_field() {
+  return {choice("spindle.handpiece",
+                 "Drive that slows down under load, at its own speed unless --spindle-speed is given; none "
+                 "keeps its speed",
+                 "handpiece", names_of(handpiece_types())),
+          [](const S& s) { return static_cast<double>(s.handpiece); },
+          [](S& s, double value) {
+            const auto handpiece = static_cast<Handpiece>(value);
+            double& speed_rpm = s.cutting.spindle_speed_rpm;
+            if (speed_rpm == usual_rpm(s.handpiece)) speed_rpm = usual_rpm(handpiece);
+            s.handpiece = handpiece;
+          }};
 }
 
 std::vector<Field<S>> law_fields() {
   return {
+      handpiece_field(),
       field<S>(choice("milling.law", "Energy of the removed bone: constant, or more for thinner chips", "law",
                       {"constant-energy", "chips"}),
                &S::law),
-      field<S>(choice("milling.burr", "Kind of burr, for --law chips", "burr", burr_names()), &S::burr),
+      field<S>(choice("milling.burr", "Kind of burr, for --law chips", "burr", names_of(burr_types())),
+               &S::burr),
       field<S>({"milling.wear",
                 "",
                 {0, 1000},
@@ -188,10 +210,10 @@ std::vector<Field<VibrationSettings>> vibration_fields() {
 
 template <>
 const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>() {
-  static const std::vector<Field<S>> all =
-      joined<S>({fields_within<S>(&S::tool, tool_fields()), fields_within<S>(&S::cutting, cutting_fields()),
-                 law_fields(), removal_fields(), fields_within<S>(&S::guard, guard_fields()),
-                 fields_within<S>(&S::vibration, vibration_fields())});
+  static const std::vector<Field<S>> all = joined<S>(
+      {fields_within<S>(&S::tool, tool_fields()), law_fields(),
+       fields_within<S>(&S::cutting, cutting_fields()), removal_fields(),
+       fields_within<S>(&S::guard, guard_fields()), fields_within<S>(&S::vibration, vibration_fields())});
   return all;
 }
 

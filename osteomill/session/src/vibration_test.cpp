@@ -6,26 +6,36 @@ namespace osteomill {
 namespace {
 
 TEST(Vibration, IsOffUnlessAskedFor) {
-  Vibration none({}, 40000);
-  EXPECT_EQ(none.force_N({}, 5, 1e-3), Vec3::Zero());
+  Vibration none({});
+  EXPECT_EQ(none.force_N({}, 5, 40000, 1e-3), Vec3::Zero());
 }
 
 TEST(Vibration, ItsFrequencyFollowsTheSpindleAndCanBeRendered) {
+  EXPECT_DOUBLE_EQ(vibration_hz(3000), 50);
   EXPECT_DOUBLE_EQ(vibration_hz(6000), 100);
-  EXPECT_NEAR(vibration_hz(40000), 40000.0 / 60 / 3, 1e-9);
-  for (double rpm = 1000; rpm < 200000; rpm += 777) EXPECT_LE(vibration_hz(rpm), 250);
+  EXPECT_NEAR(vibration_hz(1e6), 250, 1e-9);
+}
+
+TEST(Vibration, ItsFrequencyRisesWithTheSpindleAndJumpsNowhere) {
+  double before_hz = vibration_hz(999);
+  for (double rpm = 1000; rpm <= 1e6; ++rpm) {
+    const double hz = vibration_hz(rpm);
+    ASSERT_GT(hz, before_hz) << rpm;
+    ASSERT_LT(hz - before_hz, 0.02) << rpm;
+    before_hz = hz;
+  }
 }
 
 TEST(Vibration, GoesRoundTheShaftAsStrongAsTheBurrPressesUpToItsLimit) {
   const Pose X_WT{{1, 2, 3}, quaternion_from_rotation_vector({0.5, -0.2, 0.1})};
   const VibrationSettings settings{.on = true};
-  Vibration vibration(settings, 6000);
+  Vibration vibration(settings);
   Vec3 sum = Vec3::Zero();
   constexpr int kTicks = 1000;
   int crossings = 0;
   double before = 0;
   for (int n = 0; n < kTicks; ++n) {
-    const Vec3 force_N = vibration.force_N(X_WT, 2, 1e-3);
+    const Vec3 force_N = vibration.force_N(X_WT, 2, 6000, 1e-3);
     EXPECT_NEAR(force_N.norm(), 0.16, 1e-12);
     EXPECT_NEAR(force_N.dot(shaft_direction(X_WT)), 0, 1e-12);
     const double across = force_N.dot(X_WT.orientation * Vec3(0.8, 0.6, 0));
@@ -35,8 +45,9 @@ TEST(Vibration, GoesRoundTheShaftAsStrongAsTheBurrPressesUpToItsLimit) {
   }
   EXPECT_NEAR(crossings, 100, 1);
   EXPECT_LT(sum.norm() / kTicks, 1e-3);
-  EXPECT_NEAR(vibration.force_N(X_WT, 100, 1e-3).norm(), settings.max_N, 1e-12);
-  EXPECT_EQ(vibration.force_N(X_WT, 0, 1e-3), Vec3::Zero());
+  EXPECT_NEAR(vibration.force_N(X_WT, 100, 6000, 1e-3).norm(), settings.max_N, 1e-12);
+  EXPECT_EQ(vibration.force_N(X_WT, 0, 6000, 1e-3), Vec3::Zero());
+  EXPECT_EQ(vibration.force_N(X_WT, 2, 0, 1e-3), Vec3::Zero());
 }
 
 }  // namespace

@@ -39,6 +39,8 @@ struct MillingSettings {
   double reaction_share = 0;
   /// The law by which chips are cut, instead of kappa. Its power always counts the place where the burr cuts.
   std::optional<ChipLaw> chips = {};
+  /// The force along the rim's speed as a share of the force that presses.
+  double tangential_share = CuttingSettings{}.tangential_share;
   /// The speed that the spindle is set to.
   double spindle_speed_rpm = CuttingSettings{}.spindle_speed_rpm;
 };

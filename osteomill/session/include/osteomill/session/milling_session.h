@@ -16,22 +16,22 @@
 
 namespace osteomill {
 
-/// Returns how often a second the force goes round: the spindle's turns, divided by the least whole number
-/// that brings them to at most 250 Hz, which hands feel best and a device at 1 kHz can still render.
+/// Returns how often a second the force goes round: the spindle's turns up to 100 a second, and from there as
+/// many octaves higher as fit below 250 Hz, which hands feel best and a device at 1 kHz can still render. It
+/// rises with the speed, everywhere.
 double vibration_hz(double spindle_speed_rpm);
 
 /// A force that goes round the shaft, as long as the burr cuts. Safe in the haptic tick.
 class Vibration {
  public:
-  Vibration(const VibrationSettings& settings, double spindle_speed_rpm)
-      : settings_(settings), hz_(vibration_hz(spindle_speed_rpm)) {}
+  explicit Vibration(const VibrationSettings& settings) : settings_(settings) {}
 
-  /// Returns the force in W, `dt_s` after the last one.
-  Vec3 force_N(const Pose& X_WT, double burr_force_N, double dt_s) noexcept;
+  /// Returns the force in W, `dt_s` after the last one, for a burr that cuts with `cutting_N` at the
+  /// spindle's true speed.
+  Vec3 force_N(const Pose& X_WT, double cutting_N, double spindle_rpm, double dt_s) noexcept;
 
  private:
   VibrationSettings settings_;
-  double hz_;
   double turns_ = 0;
 };
 
@@ -42,6 +42,7 @@ struct SessionHandover {
   std::optional<Pose> X_WT;
   Wrench sent;
   bool held_back = true;
+  double spindle_rpm = 0;
 };
 
 /// The time of a tick, and what is asked of it.
@@ -75,11 +76,11 @@ class MillingSession {
   /// Returns the guard between the algorithm and the hand. As safe as `tick`.
   WrenchGuard& guard() { return guard_; }
 
-  /// Resumes where another session ended, whose wrench the hand feels. Call before the first tick; as safe
-  /// as `tick`.
+  /// FirstSession where another session is left, whose wrench the hand feels. Before the first tick; as safe as
+  /// `tick`.
   void resume_from(const SessionHandover& before) noexcept;
-  /// Returns the state from which another session resumes, after the last tick.
-  SessionHandover handover() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back()}; }
+  /// Returns what another session takes over, after the last tick.
+  SessionHandover handover() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back(), spindle_.speed_rpm()}; }
   /// Lets the next tick count as one that reaches no hand (Device::is_driven), as after a time without ticks.
   /// The call is as safe as `tick`.
   void hold_back() noexcept { hold_back_requested_ = true; }
@@ -122,7 +123,8 @@ class MillingSession {
   };
   SafeStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on, bool is_driven) noexcept;
   bool is_free(const Pose& X_WD) const noexcept;
-  void mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept;
+  void mill(const HapticStep& step, TickRecord& record) noexcept;
+  double vibrating_N(const Vec3& burr_force_W_N) const noexcept;
 
   // Behind a pointer since the algorithm keeps its address.
   std::shared_ptr<Volume> volume_;
@@ -133,6 +135,10 @@ class MillingSession {
   BurrMill mill_;
   CuttingReaction reaction_;
   NoGoWatch no_go_;
+  Spindle spindle_;
+  // By which the tick before held the spindle back, and how much of the paid rate was removed lately.
+  double load_Nmm_ = 0;
+  double cutting_share_ = 0;
   Vibration vibration_;
   WrenchGuard guard_;
   std::vector<Vec3> points_inside_T_;

@@ -8,6 +8,7 @@
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/haptics/milling_tool.h"
 #include "osteomill/milling/burr_mill.h"
+#include "osteomill/milling/spindle.h"
 #include "osteomill/session/wrench_guard.h"
 
 namespace osteomill {
@@ -31,6 +32,8 @@ struct MillingSetup {
   /// For the law of chips: the kind of burr, and the cuts that it has made before.
   BurrKind burr = BurrKind::cutting;
   double wear_cuts = 0;
+  /// The drive, whose free speed is `cutting.spindle_speed_rpm`.
+  Handpiece handpiece = Handpiece::none;
   /// The rate with constant energy, if given; else it follows from `cutting` and the burr.
   std::optional<double> removal_rate_mm3_per_Ns;
   /// The hand feels how cutting holds the burr back along its speed (CuttingReaction).

@@ -10,6 +10,9 @@ namespace osteomill {
 
 /// All that is known of one tick: what recordings hold and reports are made from.
 struct TickRecord {
+  /// The value of a number that recordings of earlier programs do not have.
+  static constexpr double kNotRecorded = -1;
+
   double time_s = 0;
   /// The length that the tick was taken to have, and whether the spindle turned. With the tool's pose and the
   /// burr's force that is all that milling depends on.
@@ -41,6 +44,11 @@ struct TickRecord {
   int pending_bricks = 0;
   /// The force with which the burr pressed on the bone, in W.
   Vec3 burr_force_W_N = Vec3::Zero();
+  /// The spindle's true speed, the power that went into what was removed, and the density of the bone before
+  /// the burr relative to the reference (0 without contact, 1 with constant energy).
+  double spindle_rpm = kNotRecorded;
+  double cutting_power_W = kNotRecorded;
+  double cut_density = kNotRecorded;
   /// The bone removed since the start, in mm^3 of reference density.
   double removed_mm3 = 0;
   /// The hash of the bone after the tick (Volume::change_hash).
