@@ -470,12 +470,11 @@ class Simulator {
   double pictures_per_s() { return pictures_.per_s(seconds_since({})); }
 
   void set_sound() {
-    // The force of a firm hand while cutting.
-    constexpr double kFullLoad_N = 2;
-    const LiveState& state = simulation_->milling.state();
-    const bool heard = view_.sound && state.spindle_on;
-    heard_ = {heard ? simulation_->milling.setup().cutting.spindle_speed_rpm : 0,
-              state.record.burr_force_W_N.norm() / kFullLoad_N};
+    const TickRecord& record = simulation_->milling.state().record;
+    const MillingSetup& setup = simulation_->milling.setup();
+    const bool is_abrasive = setup.law == CuttingLaw::chips && setup.burr == BurrKind::diamond;
+    heard_ = {view_.sound ? std::max(record.spindle_rpm, 0.0) : 0, sound_load(record.cutting_power_W),
+              std::max(record.cut_density, 0.0), is_abrasive};
     sound_.set(heard_);
   }
 

@@ -1,6 +1,8 @@
 #define AL_ALEXT_PROTOTYPES
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include <AL/al.h>
@@ -62,11 +64,61 @@ TEST(SpindleSound, ItsPitchIsTheSpindlesSpeed) {
   }
 }
 
-TEST(SpindleSound, UnderLoadItIsLowerAndLouder) {
+TEST(SpindleSound, UnderLoadItIsLouderAndASaggingSpindleSoundsLower) {
   const auto idle = computed({40000, 0});
-  const auto loaded = computed({40000, 1});
-  EXPECT_LT(strongest_hz(loaded), strongest_hz(idle) - 30);
+  const auto loaded = computed({38000, 1});
+  EXPECT_NEAR(strongest_hz(idle) - strongest_hz(loaded), 2000.0 / 60, 6);
   EXPECT_GT(rms(loaded), 2 * rms(idle));
+  EXPECT_EQ(sound_load(0), 0);
+  EXPECT_LT(sound_load(2), sound_load(20));
+}
+
+// The power in a band about 4 kHz against that of the tone, in the last quarter of a second.
+double brightness(const std::vector<float>& sound, double tone_hz) {
+  double band = 0;
+  for (double frequency_hz = 3600; frequency_hz <= 4400; frequency_hz += 16)
+    band += std::pow(strength(sound, frequency_hz), 2);
+  double tone = 0;
+  for (double off_hz = -8; off_hz <= 8; off_hz += 4) tone += std::pow(strength(sound, tone_hz + off_hz), 2);
+  return std::log(band / tone);
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// Returns the share of runs that a threshold between two kinds of sounds, learnt from other runs, tells.
+double told_apart(const SpindleState& a, const SpindleState& b) {
+  constexpr int kRuns = 16;
+  std::array<std::vector<double>, 2> learnt, tried;
+  const auto varied = [](int run, int factor) { return (run * factor) % kRuns / static_cast<double>(kRuns); };
+  for (int run = 0; run < kRuns; ++run) {
+    for (const std::size_t kind : {0u, 1u}) {
+      SpindleState state = kind == 0 ? a : b;
+      state.speed_rpm *= 0.8 + 0.4 * varied(run, 7);
+      state.load *= 0.7 + 0.6 * varied(run, 5);
+      state.density *= 0.9 + 0.2 * varied(run, 11);
+      const std::vector<float> sound = computed(state, static_cast<std::size_t>(100 + 37 * run));
+      (run % 2 == 0 ? learnt : tried)[kind].push_back(brightness(sound, SpindleSound::pitch_hz(state)));
+    }
+  }
+  const double low = mean_of(learnt[0]), high = mean_of(learnt[1]), middle = 0.5 * (low + high);
+  double told = 0;
+  for (const double value : tried[0]) told += (value < middle) == (low < high) ? 1 : 0;
+  for (const double value : tried[1]) told += (value > middle) == (low < high) ? 1 : 0;
+  return told / kRuns;
+}
+
+TEST(SpindleSound, TellsEnamelFromDentineAndThroughFromNotYet) {
+  EXPECT_GE(told_apart({40000, 0.5, 1.0}, {40000, 0.5, 1.9}), 0.9);
+  EXPECT_GE(told_apart({40000, 0.5, 1.0}, {40000, 0.02, 0.2}), 0.9);
+  // Sounds of one kind are not told apart.
+  EXPECT_LE(told_apart({40000, 0.5, 1.0}, {40000, 0.5, 1.0}), 0.7);
+}
+
+TEST(SpindleSound, ADiamondHissesMoreThanACuttingBurr) {
+  const double cutting = brightness(computed({40000, 0.5, 1, false}), 40000.0 / 60);
+  EXPECT_GT(brightness(computed({40000, 0.5, 1, true}), 40000.0 / 60), cutting + 0.3);
 }
 
 TEST(SpindleSound, OffIsSilentAndNothingClips) {

@@ -21,13 +21,17 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kSecondsPerMinute = 60;
-// A motor under full load gives way by this share.
-constexpr double kLoadSlowdown = 0.08;
 constexpr double kSpeedFollows_per_s = 9;
 constexpr double kLoadFollows_per_s = 25;
 constexpr double kIdleLoudness = 0.10;
 constexpr double kLoadLoudness = 0.28;
-constexpr double kNoiseLoudness = 0.22;
+constexpr double kNoiseLoudness = 0.15;
+constexpr double kBandLoudness = 0.14;
+// Densities beyond this sound alike.
+constexpr double kMaxDensity = 3;
+// A diamond's share of the overtones, and times the noise of a cutting burr.
+constexpr double kAbrasiveTones = 0.4;
+constexpr double kAbrasiveNoise = 1.5;
 // Shares of the tone and its overtones, and of half the tone, because bearings are never quite round.
 constexpr double kOvertones[] = {1.0, 0.45, 0.22, 0.10};
 constexpr double kHalfTone = 0.12;
@@ -61,14 +65,32 @@ class QuietStderr {
 
 }  // namespace
 
+double sound_load(double cutting_power_W) {
+  constexpr double kHalf_W = 4;
+  return cutting_power_W > 0 ? cutting_power_W / (cutting_power_W + kHalf_W) : 0;
+}
+
 double SpindleSound::pitch_hz(const SpindleState& state) {
-  return state.speed_rpm / kSecondsPerMinute * (1 - kLoadSlowdown * std::clamp(state.load, 0.0, 1.0));
+  return state.speed_rpm / kSecondsPerMinute;
+}
+
+// A band-pass of constant peak gain (the Audio EQ Cookbook).
+double SpindleSound::band(double white) {
+  constexpr double kCentre_hz = 4000, kQuality = 2;
+  const double angle = 2 * std::numbers::pi * kCentre_hz / sample_rate_hz_;
+  const double alpha = std::sin(angle) / (2 * kQuality);
+  const double out =
+      (alpha * (white - band_in_[1]) + 2 * std::cos(angle) * band_out_[0] - (1 - alpha) * band_out_[1]) /
+      (1 + alpha);
+  band_in_ = {white, band_in_[0]};
+  band_out_ = {out, band_out_[0]};
+  return out;
 }
 
 float SpindleSound::noise() {
   noise_ = 1664525u * noise_ + 1013904223u;
-  const float white = static_cast<float>(noise_ >> 8) / 8388608.0f - 1.0f;
-  smooth_noise_ += 0.35f * (white - smooth_noise_);
+  white_noise_ = static_cast<float>(noise_ >> 8) / 8388608.0f - 1.0f;
+  smooth_noise_ += 0.35f * (white_noise_ - smooth_noise_);
   return smooth_noise_;
 }
 
@@ -77,21 +99,28 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
   const double speed_share = 1 - std::exp(-kSpeedFollows_per_s / sample_rate_hz_);
   const double load_share = 1 - std::exp(-kLoadFollows_per_s / sample_rate_hz_);
   const double wanted_load = on ? std::clamp(state.load, 0.0, 1.0) : 0;
+  const double wanted_density = std::clamp(state.density, 0.0, kMaxDensity);
+  const double tones = state.is_abrasive ? kAbrasiveTones : 1;
+  const double noises = state.is_abrasive ? kAbrasiveNoise : 1;
   for (float& sample : samples) {
     pitch_hz_ += speed_share * (pitch_hz(state) - pitch_hz_);
     loudness_ += speed_share * ((on ? 1.0 : 0.0) - loudness_);
     load_ += load_share * (wanted_load - load_);
+    density_ += load_share * (wanted_density - density_);
     turns_ += pitch_hz_ / sample_rate_hz_;
     turns_ -= 2 * std::floor(0.5 * turns_);
     double tone = kHalfTone * sine(0.5 * turns_);
     double overtone = 1;
     for (const double share : kOvertones) {
       // An overtone above half the sample rate would come back as another tone.
-      if (overtone * pitch_hz_ < 0.45 * sample_rate_hz_) tone += share * sine(overtone * turns_);
+      if (overtone * pitch_hz_ < 0.45 * sample_rate_hz_)
+        tone += (overtone > 1 ? tones : 1) * share * sine(overtone * turns_);
       overtone += 1;
     }
-    const double hiss = kNoiseLoudness * load_ * static_cast<double>(noise());
-    sample = static_cast<float>(loudness_ * ((kIdleLoudness + kLoadLoudness * load_) * tone + hiss));
+    const double hiss = kNoiseLoudness * static_cast<double>(noise());
+    const double ring = kBandLoudness * density_ * band(static_cast<double>(white_noise_));
+    sample = static_cast<float>(
+        loudness_ * ((kIdleLoudness + kLoadLoudness * load_) * tone + noises * load_ * (hiss + ring)));
   }
 }
 
@@ -132,6 +161,8 @@ void SoundStream::feed(const SpindleState& state) {
 struct SoundPlayer::Impl {
   std::atomic<double> speed_rpm{0};
   std::atomic<double> load{0};
+  std::atomic<double> density{1};
+  std::atomic<bool> is_abrasive{false};
   ALCdevice* device = nullptr;
   ALCcontext* context = nullptr;
   std::jthread thread;
@@ -139,7 +170,9 @@ struct SoundPlayer::Impl {
   void play(const std::stop_token& stop) {
     SoundStream stream;
     while (!stop.stop_requested()) {
-      stream.feed({speed_rpm.load(std::memory_order_relaxed), load.load(std::memory_order_relaxed)});
+      constexpr auto kRelaxed = std::memory_order_relaxed;
+      stream.feed({speed_rpm.load(kRelaxed), load.load(kRelaxed), density.load(kRelaxed),
+                   is_abrasive.load(kRelaxed)});
       std::this_thread::sleep_for(8ms);
     }
   }
@@ -166,6 +199,8 @@ SoundPlayer::~SoundPlayer() {
 void SoundPlayer::set(const SpindleState& state) {
   impl_->speed_rpm.store(state.speed_rpm, std::memory_order_relaxed);
   impl_->load.store(state.load, std::memory_order_relaxed);
+  impl_->density.store(state.density, std::memory_order_relaxed);
+  impl_->is_abrasive.store(state.is_abrasive, std::memory_order_relaxed);
 }
 
 }  // namespace osteomill

@@ -76,10 +76,10 @@ class MillingSession {
   /// Returns the guard between the algorithm and the hand. As safe as `tick`.
   WrenchGuard& guard() { return guard_; }
 
-  /// FirstSession where another session is left, whose wrench the hand feels. Before the first tick; as safe as
-  /// `tick`.
+  /// Resumes where another session ended, whose wrench the hand feels. Call before the first tick; as safe
+  /// as `tick`.
   void resume_from(const SessionHandover& before) noexcept;
-  /// Returns what another session takes over, after the last tick.
+  /// Returns the state from which another session resumes, after the last tick.
   SessionHandover handover() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back(), spindle_.speed_rpm()}; }
   /// Lets the next tick count as one that reaches no hand (Device::is_driven), as after a time without ticks.
   /// The call is as safe as `tick`.

@@ -10,14 +10,22 @@ namespace osteomill {
 
 /// The state of a spindle, from which its sound follows.
 struct SpindleState {
-  /// The speed that it is set to; 0 is off.
+  /// The true speed; 0 is silent.
   double speed_rpm = 0;
-  /// The load of cutting, 0 to 1.
+  /// The power of cutting as a share of what makes the loudest sound, 0 to 1 (`sound_load`).
   double load = 0;
+  /// The density of what is cut, relative to the scan's reference.
+  double density = 1;
+  /// A diamond hisses, a cutting burr sings.
+  bool is_abrasive = false;
 };
 
-/// Computes the sound of a spindle: the tone of its turning with its overtones, a little lower and a good
-/// deal louder under load, and the noise of cutting. The same states give the same samples. For one thread.
+/// Returns the load of a power of cutting: half of the loudest at 4 W.
+double sound_load(double cutting_power_W);
+
+/// Computes the sound of a spindle: the tone of its turning with its overtones, louder under load, and the
+/// noise of cutting, of which a band at 4 kHz grows with the bone's density. The same states give the same
+/// samples. For one thread.
 class SpindleSound {
  public:
   explicit SpindleSound(double sample_rate_hz) : sample_rate_hz_(sample_rate_hz) {}
@@ -26,19 +34,24 @@ class SpindleSound {
   /// a second or so, as a motor does, without a click.
   void render(const SpindleState& state, std::span<float> samples);
 
-  /// Returns the tone's frequency for a speed and a load when it has settled.
+  /// Returns the tone's frequency for a speed when it has settled.
   static double pitch_hz(const SpindleState& state);
 
  private:
   float noise();
+  double band(double white);
 
   double sample_rate_hz_;
   double pitch_hz_ = 0;
   double loudness_ = 0;
   double load_ = 0;
+  double density_ = 1;
   double turns_ = 0;
   std::uint32_t noise_ = 1;
+  float white_noise_ = 0;
   float smooth_noise_ = 0;
+  // The last two samples that went into the band's filter, and came out.
+  std::array<double, 2> band_in_{}, band_out_{};
 };
 
 /// Queues a spindle's sound to the OpenAL context that is current, some 70 ms ahead. For one thread.
