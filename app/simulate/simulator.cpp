@@ -570,7 +570,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   auto options = std::make_shared<SimulatorOptions>();
   options->driver = driver;
   options->command_line = command_line;
-  options->milling.setup.cutting_reaction = true;
+  options->milling.setup.cutting_reaction = options->milling.setup.drag = true;
   options->milling.setup.law = CuttingLaw::chips;
   CLI::App* command =
       program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");

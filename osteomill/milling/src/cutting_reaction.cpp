@@ -1,5 +1,6 @@
 #include "osteomill/milling/cutting_reaction.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace osteomill {
@@ -39,6 +40,22 @@ Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const V
   return rim_share(burr_force_W_N / force_N, shaft_direction(X_WT)) * burr_force_W_N;
 }
 
+ShaftDrag shaft_drag(const MillingTool& tool, const Pose& X_WT, const Wrench& contact) noexcept {
+  constexpr double kLeast_N = 0.01;
+  const Vec3 shaft_W = shaft_direction(X_WT);
+  const Vec3 across_W_N = contact.force_N - contact.force_N.dot(shaft_W) * shaft_W;
+  const double force_N = across_W_N.norm();
+  if (!(force_N > kLeast_N) || !std::isfinite(force_N)) return {};
+  const Vec3 to_bone_W = -across_W_N / force_N;
+  // The force has its torque by a lever along the shaft.
+  const double lever_mm = std::clamp(contact.torque_Nmm.dot(shaft_W.cross(across_W_N)) / (force_N * force_N),
+                                     0.0, tool.shaft_length_mm);
+  const Vec3 speed_W = -shaft_W.cross(to_bone_W);
+  const Vec3 drag_W_N = -kShaftFriction * force_N * speed_W;
+  const Vec3 place_W_mm = lever_mm * shaft_W + tool.shaft_radius_mm * to_bone_W;
+  return {{drag_W_N, place_W_mm.cross(drag_W_N)}, kShaftFriction * force_N * tool.shaft_radius_mm};
+}
+
 void CuttingReaction::follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3,
                              double dt_s) noexcept {
   if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
@@ -49,14 +66,14 @@ void CuttingReaction::follow(const Pose& X_WT, const Vec3& burr_force_W_N, doubl
               cuts ? removed_mm3 / (settings_.removal_rate_mm3_per_Ns * share * dt_s) : 0, dt_s);
 }
 
-void CuttingReaction::follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N,
-                                  double dt_s) noexcept {
+void CuttingReaction::follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s,
+                                  const Wrench& shaft_drag) noexcept {
   if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
-  Wrench now;
+  Wrench now = shaft_drag;
   const double force_N = burr_force_W_N.norm();
   if (paid_N > 0 && force_N > 0 && std::isfinite(force_N)) {
-    now = reaction(burr_force_W_N / force_N, shaft_direction(X_WT), radius_mm_,
-                   settings_.reaction_share * paid_N);
+    now = now + reaction(burr_force_W_N / force_N, shaft_direction(X_WT), radius_mm_,
+                         settings_.reaction_share * paid_N);
   }
   const double share = dt_s / (kSmooth_s + dt_s);
   wrench_.force_N += share * (now.force_N - wrench_.force_N);

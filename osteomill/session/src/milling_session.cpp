@@ -136,7 +136,7 @@ TickRecord MillingSession::tick(Device& device, const TickInput& input) {
 
 void MillingSession::work(Device& device, TickRecord& record) {
   const Clock::time_point start = Clock::now();
-  auto [step, safe, cutting_torque_W_Nmm] =
+  auto [step, safe, cutting_torque_W_Nmm, shaft_drag] =
       step_safely(record.X_WD, record.dt_s, record.spindle_on, record.driven);
   // The bone that goes is paid with what the hand gives.
   step.burr_force_W_N *= record.delivered_fraction;
@@ -144,7 +144,7 @@ void MillingSession::work(Device& device, TickRecord& record) {
   device.write_wrench(safe.wrench);
 
   const Clock::time_point milling_start = Clock::now();
-  mill(step, record);
+  mill(step, shaft_drag, record);
   record.label_cuts = mill_.by_label().take();
   record.milling_us = microseconds_since(milling_start);
 
@@ -202,6 +202,11 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
     return {nothing, {guard_.filter_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite}};
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
+  ShaftDrag drag;
+  if (setup_.drag && spindle_on && spindle_.speed_rpm() > 0) {
+    const Wrench contact{step.wrench.force_N + step.burr_force_W_N, step.wrench.torque_Nmm};
+    drag = shaft_drag(setup_.tool, step.X_WT, contact);
+  }
   if (spindle_on)
     step.wrench.force_N +=
         vibration_.force_N(step.X_WT, vibrating_N(step.burr_force_W_N), spindle_.speed_rpm(), dt_s);
@@ -218,7 +223,7 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
   step.burr_force_W_N *= sent_fraction(step.wrench.force_N, safe.wrench.force_N);
   last_X_WT_ = step.X_WT;
   return {step, safe,
-          sent_fraction(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm};
+          sent_fraction(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm, drag};
 }
 
 // Returns the force that vibrates: all that presses with constant energy; else by the power of the chips,
@@ -229,7 +234,7 @@ double MillingSession::vibrating_N(const Vec3& burr_force_W_N) const noexcept {
   return burr_force_W_N.norm() * cutting_share_ * speed_share * (1 + mill_.cut_bone().grain);
 }
 
-void MillingSession::mill(const HapticStep& step, TickRecord& record) noexcept {
+void MillingSession::mill(const HapticStep& step, const ShaftDrag& shaft_drag, TickRecord& record) noexcept {
   constexpr double kCutting_s = 0.01;
   const Vec3& force_W_N = step.burr_force_W_N;
   const double force_N = force_W_N.norm(), dt_s = record.dt_s, radius_mm = setup_.tool.burr_radius_mm;
@@ -239,16 +244,20 @@ void MillingSession::mill(const HapticStep& step, TickRecord& record) noexcept {
   if (record.spindle_on) no_go_.tally_contacts(step.X_WT.position_mm, mill_.by_label());
   const double paid_share = cut.removed_mm3 > 0 ? cut.removed_mm3 / (cut.rate_mm3_s * dt_s) : 0;
   cutting_share_ += dt_s / (kCutting_s + dt_s) * (std::min(paid_share, 1.0) - cutting_share_);
+  double holding_share = paid_share;
   if (record.spindle_on && force_N > 0 && std::isfinite(force_N)) {
     const double rim_N =
         milling_.tangential_share * force_N * rim_share(force_W_N / force_N, shaft_direction(step.X_WT));
     const double rim_mm_s = 2 * std::numbers::pi * radius_mm * record.spindle_rpm / 60;
     load_Nmm_ = rim_N * radius_mm;
+    // All that presses drags, whether it cuts or not; a burr that stands still, by what the drive has.
+    if (setup_.drag) holding_share = std::min(1.0, spindle_.stall_Nmm() / load_Nmm_);
     record.cutting_power_W = paid_share * rim_N * rim_mm_s * 1e-3;
     record.cut_density = mill_.cut_bone().density;
   }
-  if (milling_.chips) {
-    reaction_.follow_paid(step.X_WT, force_W_N, paid_share * force_N, dt_s);
+  load_Nmm_ += shaft_drag.torque_Nmm;
+  if (milling_.chips || setup_.drag) {
+    reaction_.follow_paid(step.X_WT, force_W_N, holding_share * force_N, dt_s, shaft_drag.wrench);
   } else {
     reaction_.follow(step.X_WT, force_W_N, cut.removed_mm3, dt_s);
   }

@@ -64,7 +64,7 @@ MillingSettings milling_settings(const MillingSetup& setup) {
   milling.spindle_speed_rpm = setup.cutting.spindle_speed_rpm;
   if (setup.law == CuttingLaw::chips) milling.chips = chip_law(setup.burr, setup.wear_cuts);
   milling.tangential_share = milling.chips ? milling.chips->friction : setup.cutting.tangential_share;
-  if (setup.cutting_reaction) milling.reaction_share = milling.tangential_share;
+  if (setup.cutting_reaction || setup.drag) milling.reaction_share = milling.tangential_share;
   return milling;
 }
 
@@ -158,6 +158,10 @@ std::vector<Field<S>> removal_fields() {
           {"", "", kSwitch, "Let the hand feel the burr pull along its rim; the burr's pole then cuts less",
            kOfTheCutting, "cutting-reaction"},
           &S::cutting_reaction),
+      field<S>({"milling.drag", "", kSwitch,
+                "Let the hand feel the spinning burr and shaft drag on bone that they do not cut",
+                kOfTheCutting | kMayBeAbsent, "drag"},
+               &S::drag),
       {{"milling.reaction_share", "", kNotNegative,
         "Share of the burr's force with which the burr pulls; 0: not felt"},
        [](const S& s) { return milling_settings(s).reaction_share; },

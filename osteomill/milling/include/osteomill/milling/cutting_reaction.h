@@ -19,6 +19,21 @@ double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) noexcept;
 Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N,
                       bool spindle_on) noexcept;
 
+/// The friction of a spinning shaft on bone. Assumed: no measurement was found.
+inline constexpr double kShaftFriction = 0.2;
+
+/// The drag of bone on the spinning shaft.
+struct ShaftDrag {
+  /// On the hand, about the burr's centre, in W.
+  Wrench wrench;
+  /// The torque by which it holds the spindle back.
+  double torque_Nmm = 0;
+};
+
+/// Returns the drag, kShaftFriction times the force across the shaft and against its turning, if `contact` is
+/// what bone does to the shaft, about the burr's centre, in W; nothing under 0.01 N. Safe in the haptic tick.
+ShaftDrag shaft_drag(const MillingTool& tool, const Pose& X_WT, const Wrench& contact) noexcept;
+
 /// Computes what the hand feels of cutting: the burr, which turns clockwise as the hand sees it, is held back
 /// along its speed, so that it pulls sideways along its rim and turns the handle. The power of its torque
 /// about the spindle is what the bone cost. Smoothed over 10 ms, so that no grain of the cutting is a step in
@@ -35,8 +50,10 @@ class CuttingReaction {
   /// Takes in, after each tick, what was removed with this force on the bone in `dt_s`. Safe in the haptic
   /// tick.
   void follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) noexcept;
-  /// Does so with the part of the force that paid for what was removed, in a tick that cut.
-  void follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s) noexcept;
+  /// Does so with the part of the force that holds the burr back along its rim by `reaction_share`, and with
+  /// the drag on the shaft.
+  void follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s,
+                   const Wrench& shaft_drag = {}) noexcept;
   /// Forgets the reaction, as before the first tick.
   void reset() noexcept { wrench_ = {}; }
 

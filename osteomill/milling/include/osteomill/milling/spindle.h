@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "osteomill/milling/chip_law.h"
@@ -31,6 +32,8 @@ class Spindle {
 
   double speed_rpm() const { return speed_rpm_; }
   double set_rpm() const { return set_rpm_; }
+  /// The most torque that the drive has; infinite without a handpiece.
+  double stall_Nmm() const { return handpiece_types()[static_cast<std::size_t>(type_)].stall_Nmm.value; }
   void begin_from(double speed_rpm) { speed_rpm_ = speed_rpm; }
 
   /// Goes on by a tick in which the drive is on or off and the load holds it back by `torque_Nmm`, not

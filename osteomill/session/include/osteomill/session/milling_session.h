@@ -120,10 +120,11 @@ class MillingSession {
     SafeWrench sent;
     // The cutting's part of the torque sent.
     Vec3 cutting_torque_W_Nmm = Vec3::Zero();
+    ShaftDrag shaft_drag = {};
   };
   SafeStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on, bool is_driven) noexcept;
   bool is_free(const Pose& X_WD) const noexcept;
-  void mill(const HapticStep& step, TickRecord& record) noexcept;
+  void mill(const HapticStep& step, const ShaftDrag& shaft_drag, TickRecord& record) noexcept;
   double vibrating_N(const Vec3& burr_force_W_N) const noexcept;
 
   // Behind a pointer since the algorithm keeps its address.

@@ -38,6 +38,8 @@ struct MillingSetup {
   std::optional<double> removal_rate_mm3_per_Ns;
   /// The hand feels how cutting holds the burr back along its speed (CuttingReaction).
   bool cutting_reaction = false;
+  /// The hand also feels the burr and the shaft drag on bone if they cut nothing.
+  bool drag = false;
   /// The hand feels the burr cut.
   VibrationSettings vibration;
   /// Protects a hand unless told otherwise (GuardSettings::for_simulation).
