@@ -57,6 +57,7 @@ const std::vector<Named>& all_sections() {
       {"swept", [](const Bones&, const Effort& effort) { return swept_holes(effort); }},
       {"fine", [](const Bones&, const Effort& effort) { return fine_scans(effort); }},
       {"ticks", [](const Bones&, const Effort& effort) { return time_of_a_tick(effort); }},
+      {"feed", [](const Bones&, const Effort&) { return force_against_feed(); }},
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
       {"reaction", milling_with_cutting_reaction},

@@ -33,6 +33,8 @@ struct Effort {
 };
 
 Section force_on_planes();
+/// Compares the law of chips and the spindles with published measurements.
+Section force_against_feed();
 Section shaft_levers();
 Section slide_round_a_ball();
 Section turned_scans();

@@ -44,6 +44,7 @@ const std::vector<Question>& questions() {
       {"Does it keep 1000 Hz, also in fine scans?", {"fine", "ticks", "rates"}},
       {"Is it calm while a hand mills?", {"tooth", "reaction", "second", "energy", "rig"}},
       {"Does what the paper found come out?", {"paper", "choices"}},
+      {"Does cutting resist as published?", {"feed"}},
       {"Does a long session stay sound?", {"soak"}},
   };
   return all;
