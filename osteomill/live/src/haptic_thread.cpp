@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "osteomill/base/real_time.h"
@@ -12,9 +13,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kTick_s = 1e-3;
-// However late a tick comes, no more time than 20 ms is simulated in it.
-constexpr double kMaxLate_s = 0.02 - kTick_s;
+// However late a tick comes, no more time than this is simulated in it.
+constexpr double kMaxTick_s = 0.02;
 
 }  // namespace
 
@@ -123,17 +123,19 @@ void HapticThread::run(const std::stop_token& stop) noexcept {
 }
 
 void HapticThread::tick_until(const std::stop_token& stop) {
-  constexpr Nanoseconds kTick_ns = 1'000'000;
-  NextDeadline next{clock_.now_ns() + kTick_ns, 1};
+  // Sessions that follow each other have one rate.
+  const double tick_s = session_->setup().tick_s;
+  const Nanoseconds tick_ns = std::llround(tick_s * 1e9);
+  NextDeadline next{clock_.now_ns() + tick_ns, 1};
   while (!stop.stop_requested() && !driven_.is_stop_requested()) {
     TickTimes times{next.deadline_ns, 0, 0, next.periods};
     times.woke_ns = clock_.wait_until(next.deadline_ns);
     run_pending_command();
-    const TickRecord record = tick(std::min((next.periods - 1) * kTick_s, kMaxLate_s));
+    const TickRecord record = tick(std::min((next.periods - 1) * tick_s, kMaxTick_s - tick_s));
     times.done_ns = clock_.now_ns();
     timing_.add(times, record);
-    next = next_deadline(next.deadline_ns, times.done_ns, kTick_ns);
-    time_s_ += next.periods * kTick_s;
+    next = next_deadline(next.deadline_ns, times.done_ns, tick_ns);
+    time_s_ += next.periods * tick_s;
   }
 }
 
@@ -155,7 +157,7 @@ TickRecord HapticThread::tick(double late_s) {
   place_if_at_rest();
   const bool spindle_on = !paused_ && !fading_out_ && (spindle_ || device_.is_spindle_requested());
   TickRecord record = session_->tick(device_, {.time_s = time_s_,
-                                               .dt_s = kTick_s,
+                                               .dt_s = session_->setup().tick_s,
                                                .late_s = late_s,
                                                .spindle_on = spindle_on && !bone_frozen_,
                                                .paused = paused_});
