@@ -24,8 +24,7 @@ TEST(StudyTrials, AnAxisSetsEveryField) {
     EXPECT_TRUE(options.insert(field.option).second) << field.option << " is there twice";
     if (!field.choices.empty()) {
       const std::string& last = field.choices.back();
-      EXPECT_EQ(field.get(asked_trial({{field.option, last}})),
-                static_cast<double>(field.choices.size() - 1));
+      EXPECT_EQ(field.get(trial_spec({{field.option, last}})), static_cast<double>(field.choices.size() - 1));
       continue;
     }
     const bool is_switch = field.range == NumberRange::on_or_off();

@@ -41,11 +41,11 @@ Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const V
 }
 
 ShaftDrag shaft_drag(const MillingTool& tool, const Pose& X_WT, const Wrench& contact) noexcept {
-  constexpr double kLeast_N = 0.01;
+  constexpr double kMinForce_N = 0.01;
   const Vec3 shaft_W = shaft_direction(X_WT);
   const Vec3 across_W_N = contact.force_N - contact.force_N.dot(shaft_W) * shaft_W;
   const double force_N = across_W_N.norm();
-  if (!(force_N > kLeast_N) || !std::isfinite(force_N)) return {};
+  if (!(force_N > kMinForce_N) || !std::isfinite(force_N)) return {};
   const Vec3 to_bone_W = -across_W_N / force_N;
   // The force has its torque by a lever along the shaft.
   const double lever_mm = std::clamp(contact.torque_Nmm.dot(shaft_W.cross(across_W_N)) / (force_N * force_N),

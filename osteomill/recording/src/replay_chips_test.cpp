@@ -49,20 +49,20 @@ TEST(ReplayChips, SpindleDragAndVibrationComeOutToTheBit) {
     }
   };
   press(0, 700, 0);
-  const TakenOver before = session->left();
+  const SessionHandover before = session->handover();
   EXPECT_GT(before.spindle_rpm, 1000);
   const double removed_mm3 = session->removed_mm3();
   EXPECT_GT(removed_mm3, 0.05);
   bone = std::make_shared<Volume>(*bone);
   session = std::make_unique<MillingSession>(bone, kSettings.densities, kSettings.setup);
   session->count_removed_from(removed_mm3);
-  session->take_over(before);
+  session->resume_from(before);
   recorder.begin_session(1, {run, before, removed_mm3, differing_blocks(bone->grid(), scan.grid()), ""});
   press(700, 1000, 1);
   recorder.close();
 
   const Recording recording = read_recording(folder / "run.h5");
-  EXPECT_EQ(recording.sessions[1].start.taken_over.spindle_rpm, before.spindle_rpm);
+  EXPECT_EQ(recording.sessions[1].start.handover.spindle_rpm, before.spindle_rpm);
   const Verification verified = verify_recording(scan, recording);
   EXPECT_FALSE(verified.difference) << verified.difference->record << ": " << verified.difference->what;
   EXPECT_EQ(verified.ticks, 1000u);
