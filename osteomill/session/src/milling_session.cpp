@@ -223,7 +223,8 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
   step.burr_force_W_N *= sent_fraction(step.wrench.force_N, safe.wrench.force_N);
   last_X_WT_ = step.X_WT;
   return {step, safe,
-          sent_fraction(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm, drag};
+          sent_fraction(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm,
+          drag};
 }
 
 // Returns the force that vibrates: all that presses with constant energy; else by the power of the chips,
