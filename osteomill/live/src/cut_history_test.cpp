@@ -27,7 +27,7 @@ class CutHistoryTest : public ::testing::Test {
     put(history_.state_before_all_cuts());
     history_.drop_all();
   }
-  double put(const CutHistory::Before& before) {
+  double put(const CutHistory::PriorState& before) {
     for (auto [place, brick] : before.bricks) EditableVolume(bone_).swap(brick);
     return before.removed_mm3;
   }

@@ -59,7 +59,7 @@ Pressed press(const MillingSetup& setup, const Placement& placement, bool spindl
   const double touching_mm = placement.height_mm(setup.tool);
   double time_s = 0;
   const auto tick_at = [&](double depth_mm) {
-    device.placement({{0.06, 0.03, touching_mm - depth_mm}, placement.orientation});
+    device.put({{0.06, 0.03, touching_mm - depth_mm}, placement.orientation});
     const TickRecord tick =
         session.tick(device, {.time_s = time_s += kTick_s, .dt_s = kTick_s, .spindle_on = spindle_on});
     pressed.finite = pressed.finite && is_finite(tick.X_WT) && tick.fault != WrenchFault::not_finite;
