@@ -9,7 +9,7 @@
 
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "osteomill/base/atomic_file.h"
 #include "osteomill/base/file_lock.h"
@@ -20,6 +20,7 @@
 #include "osteomill/study/match_stiffness.h"
 #include "osteomill/study/measure_passivity.h"
 #include "osteomill/study/paper.h"
+#include "osteomill/study/probe_bones.h"
 #include "osteomill/study/run_trials.h"
 #include "osteomill/volume/density_grid.h"
 
@@ -69,25 +70,39 @@ std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone
   return trials;
 }
 
+// Those that carry no 0.5 N do not count.
 double softest_felt_N_per_mm(const std::vector<TrialPlan>& trials, const Volume& wall) {
   double softest = std::numeric_limits<double>::infinity();
   for (const TrialPlan& trial : trials) {
     const double felt = felt_stiffness_N_per_mm(trial.settings, wall);
-    if (!(felt > 0))
-      throw std::invalid_argument(trial.settings.algorithm.id.name + " carries no 0.5 N on a flat wall");
-    softest = std::min(softest, felt);
+    if (felt > 0) softest = std::min(softest, felt);
   }
+  if (std::isinf(softest)) throw std::invalid_argument("no algorithm carries 0.5 N on a flat wall");
   return softest;
 }
 
+// Leaves out the algorithms that cannot be matched: beside those that are, they would be compared by their
+// stiffness. Throws std::invalid_argument if none is left, or one of several.
 void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& trials) {
   const Volume wall = flat_wall(trials.front().settings.tool);
   const double felt_N_per_mm =
       options.matched_N_per_mm > 0 ? options.matched_N_per_mm : softest_felt_N_per_mm(trials, wall);
+  std::vector<TrialPlan> matched;
+  std::vector<std::string> left_out;
   for (TrialPlan& trial : trials) {
-    trial.settings.haptics.named.push_back(setting_felt_as(felt_N_per_mm, trial.settings, wall));
-    trial.matched_N_per_mm = felt_N_per_mm;
+    try {
+      trial.settings.haptics.named.push_back(setting_felt_as(felt_N_per_mm, trial.settings, wall));
+      trial.matched_N_per_mm = felt_N_per_mm;
+      matched.push_back(trial);
+    } catch (const std::invalid_argument& error) {
+      left_out.emplace_back(error.what());
+    }
   }
+  const std::string reasons = fmt::format("{}", fmt::join(left_out, "; "));
+  if (matched.size() < std::min<std::size_t>(2, trials.size())) throw std::invalid_argument(reasons);
+  if (!left_out.empty()) warn("left out: " + reasons);
+  for (TrialPlan& trial : matched) trial.not_matched = reasons;
+  trials = std::move(matched);
 }
 
 // Adds trials of other grips: with the paper's algorithm 2 every hand tries them too.
@@ -99,7 +114,10 @@ void add_other_grips(std::vector<TrialPlan>& others, const TrialPlan& trial) {
 // The trials beside those that are recorded.
 std::vector<TrialPlan> other_hands(const CompareOptions& options, const std::vector<TrialPlan>& trials) {
   std::vector<TrialPlan> others;
-  for (const TrialPlan& trial : trials) add_other_grips(others, trial);
+  for (const TrialPlan& trial : trials) {
+    add_other_grips(others, trial);
+    for (const TrialPlan& tremor : trials_with_other_tremors(trial)) others.push_back(tremor);
+  }
   for (int n = 1; n < options.seeds; ++n) {
     for (const TrialPlan& trial : trials) {
       const TrialPlan other = with_seed(trial, options.trial.milling.seed + static_cast<std::uint64_t>(n));
@@ -144,12 +162,15 @@ void probe_algorithms(std::vector<TrialPlan>& trials) {
   for (TrialPlan& trial : trials) trial.probed = probe(trial.settings, wall, edge);
 }
 
-std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings,
+std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const std::vector<TrialPlan>& trials,
                                          const RunEvents& events) {
+  const TrialSettings& settings = trials.front().settings;
   const Volume wall = flat_wall(settings.tool);
+  std::vector<AlgorithmDescription> algorithms;
+  for (const TrialPlan& trial : trials) algorithms.push_back(trial.settings.algorithm);
   std::vector<PassivityRow> rows = run_trials(
-      passivity_cases(options.algorithms, settings), "stability", static_cast<std::size_t>(options.threads),
-      events, [&](const TrialSettings& device) { return measure_passivity(device, wall); });
+      passivity_cases(algorithms, settings), "stability", static_cast<std::size_t>(options.threads), events,
+      [&](const TrialSettings& device) { return measure_passivity(device, wall); });
   end_progress();
   return rows;
 }
@@ -186,8 +207,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
         if (trials.size() > 1)
           extras.in_one_hole = hold_in_one_hole(options, trials, events_of_a_part(until_holes, until_walls));
         if (!options.no_stability) {
-          extras.passivity =
-              press_on_walls(options, trials.front().settings, events_of_a_part(until_walls, 1));
+          extras.passivity = press_on_walls(options, trials, events_of_a_part(until_walls, 1));
         }
       },
       is_of_a_comparison);
@@ -227,7 +247,8 @@ void add_match_stiffness(CLI::App& command, CompareOptions& options) {
   command
       .add_option_function<std::string>("--match-stiffness", take,
                                         "Match each algorithm's stiffness so that a flat wall feels as stiff "
-                                        "as this, or as with the softest (docs/algorithms.md)")
+                                        "as this, or as with the softest; one that cannot be matched is left "
+                                        "out (docs/algorithms.md)")
       ->expected(0, 1)
       ->check(check)
       ->type_name("N/mm|softest");

@@ -7,6 +7,7 @@
 
 #include "osteomill/base/input_error.h"
 #include "osteomill/study/match_stiffness.h"
+#include "osteomill/study/probe_bones.h"
 #include "osteomill/study/study_slices.h"
 
 #include "app/option_checks.h"

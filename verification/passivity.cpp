@@ -5,6 +5,7 @@
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/study/measure_passivity.h"
+#include "osteomill/study/probe_bones.h"
 
 #include "verification/in_parallel.h"
 #include "verification/sections.h"

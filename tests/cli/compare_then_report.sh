@@ -42,8 +42,12 @@ diff <(untimed a/summary.csv) <(untimed e/summary.csv) || fault "the same seed g
 [ "$(wc -l <d/summary.csv)" -eq 3 ] || fault "one algorithm, two phases"
 diff <(untimed a/summary.csv | grep point-shell) <(untimed d/summary.csv | grep point-shell) >/dev/null &&
   fault "another seed gave the same numbers"
-"$osteomill" compare --seconds 0.3 --algorithm point-shell --match-stiffness --no-stability --out f >f.out
+"$osteomill" compare --seconds 0.3 --match-stiffness --no-stability --out f >f.out 2>f.err
 grep -q "Stiffness is matched: .* felt as [0-9.]* N/mm" f/report.html || fault "the report should say that stiffness is matched"
+# Algorithm 2 leaps over the stiffness of the softest.
+grep -q "^osteomill: warning: left out: surface-points cannot be felt as" f.err || fault "who cannot be matched is not named: $(cat f.err)"
+grep -q "Left out of this comparison: surface-points cannot be felt as" f/report.html || fault "the report misses an algorithm in silence"
+[ "$(cut -d, -f1 f/summary.csv | sort -u | wc -l)" -eq 4 ] || fault "three algorithms should be compared"
 grep -q "matched.felt_stiffness" f/report.html || fault "the settings should say as what stiffness is felt"
 grep -q "Stiffness is not matched" a/report.html || fault "the report should say that stiffness is not matched"
 find . -name '*.writing-*' -o -name '*.part.*' | grep -q . && fault "left a half-written file"

@@ -31,7 +31,7 @@ y = "device-mass"
 colour = "force_mean_N"
 TOML
 "$osteomill" study study.toml --list >list
-[ "$(head -n 1 list)" = "trial,push,device-mass,algorithm" ] || fault "the list begins: $(head -n 1 list)"
+[ "$(head -n 1 list)" = "trial,push (N),device-mass (kg),algorithm" ] || fault "the list begins: $(head -n 1 list)"
 [ "$(wc -l <list)" -eq 9 ] || fault "the list should have a head and 8 trials"
 "$osteomill" study study.toml --estimate | grep -q "^8 trials; three of them took [0-9.e-]*, [0-9.e-]* and [0-9.e-]* s of CPU$" ||
   fault "no estimate"

@@ -91,6 +91,7 @@ std::vector<Field<M>> all_figures() {
       "torque_hp_share", "", [](auto& m) -> auto& { return m.torque_Nmm.hp_share; },
       "torque above 20 Hz / mean torque");
   add("path_mm", "mm", &M::path_mm, "path of the burr's centre");
+  add("burr_excursion_mm", "mm", &M::burr_excursion_mm, "greatest excursion of the burr's centre");
   add("put_back_mm3", "mm³", &M::put_back_mm3, "bone put back");
   add("shaft_from_handle_deg", "degrees", &M::shaft_from_handle_deg, "spread of the shaft against the handle",
       kLessIsBetter);
@@ -114,7 +115,8 @@ const std::vector<Field<MeasuredRun>>& fields_of<MeasuredRun>() {
   static const std::vector<Field<R>> all{
       field<R>({"hand_stiffness_N_per_m", "N/m", kAny, "stiffness of the hand"}, &R::hand_stiffness_N_per_m),
       field<R>({"hand_damping_Ns_per_m", "N s/m", kAny, "damping of the hand"}, &R::hand_damping_Ns_per_m),
-      field<R>({"hand_grip", "", kAny, "how firmly the hand gripped"}, &R::grip)};
+      field<R>({"hand_grip", "", kAny, "how firmly the hand gripped"}, &R::grip),
+      field<R>({"other_tremor", "", kAny, "number of another tremor in the same hand"}, &R::other_tremor)};
   return all;
 }
 

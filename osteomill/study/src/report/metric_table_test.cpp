@@ -30,6 +30,7 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   m.contact.force = 0.625;
   m.contact.torque = 0.375;
   m.path_mm = 25;
+  m.burr_excursion_mm = 30;
   m.put_back_mm3 = 26;
   m.counted_from_s = 27;
   m.shaft_from_handle_deg = 28;
@@ -42,10 +43,10 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
       "tick_us_median,tick_us_p99,tick_us_max,"
       "turn_50ms_max_deg,turn_at_torque_step_deg,torque_follows_force,contacts_mean,lost_after_s,"
       "lost_while_milling,force_contact_share,torque_contact_share,force_hp_share,torque_hp_share,path_mm,"
-      "put_back_mm3,shaft_from_handle_deg,removal_mm3_per_s,counted_from_s,not_reached");
+      "burr_excursion_mm,put_back_mm3,shaft_from_handle_deg,removal_mm3_per_s,counted_from_s,not_reached");
   EXPECT_EQ(summary_fields({algorithm_named("point-shell").id, "holding", m, nullptr, "this; that"}),
             "point-shell,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16,0.75,0.5,0.25,22,23,24,17,18,0.19,"
-            "20,21,1,0.625,0.375,0.125,0.25,25,26,28,29,27,this; that");
+            "20,21,1,0.625,0.375,0.125,0.25,25,30,26,28,29,27,this; that");
 }
 
 // A figure without a field would be lost between a trial and its study.

@@ -34,6 +34,21 @@ double path_mm(std::span<const TickRecord> records) {
   return path;
 }
 
+double burr_excursion_mm(std::span<const TickRecord> records, double tick_s) {
+  constexpr double kMeanOver_s = 0.1;
+  const auto each = static_cast<std::size_t>(std::max(1.0, std::round(kMeanOver_s / tick_s)));
+  const auto mean_of = [](std::span<const TickRecord> some) {
+    Vec3 sum_mm = Vec3::Zero();
+    for (const TickRecord& record : some) sum_mm += record.X_WT.position_mm;
+    return Vec3(sum_mm / static_cast<double>(some.size()));
+  };
+  const Vec3 mean_mm = mean_of(records);
+  double farthest_mm = 0;
+  for (std::size_t n = 0; n + each <= records.size(); n += each)
+    farthest_mm = std::max(farthest_mm, (mean_of(records.subspan(n, each)) - mean_mm).norm());
+  return farthest_mm;
+}
+
 ShaftTurns shaft_turns(std::span<const TickRecord> records, const std::vector<bool>& touches,
                        double rate_hz) {
   constexpr double kWithin_s = 0.05;
@@ -145,7 +160,9 @@ std::string contact_words(const ContactShares& contact) {
   if (contact.is_lost()) return fmt::format("lost contact after {:.1f} s", contact.lost_after_s);
   if (!is_enough_contact(contact.any)) return "touched " + share_of_time(contact.any);
   if (!is_enough_contact(contact.shaft)) return "the shaft touched " + share_of_time(contact.shaft);
-  return "felt a force " + share_of_time(contact.force);
+  if (!is_enough_contact(contact.torque)) return "felt a torque " + share_of_time(contact.torque);
+  if (!is_enough_contact(contact.force)) return "felt a force " + share_of_time(contact.force);
+  return "too little contact in half of the hands";
 }
 
 VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
@@ -245,6 +262,7 @@ RunMetrics run_metrics(const Recording& recording, std::size_t first) {
   metrics.removed_mm3 = records.back().removed_mm3 - records.front().removed_mm3 + metrics.put_back_mm3;
   if (cutting_s > 0) metrics.removal_mm3_per_s = metrics.removed_mm3 / cutting_s;
   metrics.path_mm = path_mm(records);
+  metrics.burr_excursion_mm = burr_excursion_mm(records, recording.description.tick_period_s);
   return metrics;
 }
 

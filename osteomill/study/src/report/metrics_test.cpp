@@ -111,6 +111,16 @@ TEST(RunMetrics, APathIsHowFarTheBurrGotAndNotHowMuchItTrembled) {
   EXPECT_NEAR(run_metrics(moving).path_mm, 10, 0.25);
 }
 
+TEST(RunMetrics, ABurrThatBuzzesInOnePlaceDoesNotGetFar) {
+  Recording moving = simple_recording(1000);
+  for (std::size_t n = 0; n < moving.records.size(); ++n)
+    moving.records[n].X_WT.position_mm = {n % 40 < 20 ? 0.3 : -0.3, 0, 0};
+  EXPECT_NEAR(run_metrics(moving).burr_excursion_mm, 0, 0.08);
+  // Another place for the last half of the time is 0.5 mm from the mean.
+  for (std::size_t n = 500; n < 1000; ++n) moving.records[n].X_WT.position_mm.z() = 1;
+  EXPECT_NEAR(run_metrics(moving).burr_excursion_mm, 0.5, 0.01);
+}
+
 // Handle and tool lean by 20 degrees together; then the tool leans 2 degrees less than the handle, half of
 // the time.
 TEST(RunMetrics, TheLeanThatTheHandCommandsIsNoSpreadAgainstTheHandle) {

@@ -1,12 +1,14 @@
 #include "report/report_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <type_traits>
 
 #include <fmt/format.h>
 
 #include "osteomill/base/input_error.h"
+#include "osteomill/base/parse_number.h"
 #include "osteomill/session/tick_counts.h"
 #include "osteomill/study/metric_table.h"
 #include "osteomill/visual/image.h"
@@ -42,14 +44,18 @@ const RunPicture* picture_named(const Recording& recording, std::string_view nam
   return nullptr;
 }
 
-// The bone before, then after each algorithm; of an algorithm's phases the first that has a picture is shown.
+// Each bone before, then after each algorithm; of an algorithm's phases the first that has a picture is
+// shown.
 std::vector<Panel> panels_of(const RunGroup& group) {
   std::vector<Panel> panels, along_the_entry;
   for (const MeasuredRun& run : group.runs) {
-    if (const RunPicture* before = picture_named(*run.recording, kPictureBefore)) {
-      panels.push_back({"Before", run.recording, before});
-      break;
-    }
+    const auto is_shown = [&](const Panel& panel) {
+      return panel.recording->description.scan_hash == run.recording->description.scan_hash;
+    };
+    const RunPicture* before = picture_named(*run.recording, kPictureBefore);
+    if (before == nullptr || std::ranges::any_of(panels, is_shown)) continue;
+    const std::string of = panels.empty() ? "" : ", another scan";
+    panels.push_back({"Before" + of, run.recording, before});
   }
   for (const AlgorithmId& algorithm : group.algorithms()) {
     for (const std::string& phase : group.phases()) {
@@ -239,7 +245,9 @@ std::string text_of(const Value& value) {
 std::vector<RunSetting> all_settings(const RunDescription& d) {
   std::vector<RunSetting> settings;
   visit_attributes(d, [&](const RunAttribute& of, const auto& value) {
-    if (of.is_setting) settings.push_back({of.name, text_of(value), ""});
+    // A hash of 0 is that of no label map.
+    const bool is_none = of.name == std::string_view("label_map_hash") && text_of(value) == "0";
+    if (of.is_setting && !is_none) settings.push_back({of.name, text_of(value), ""});
   });
   for (const RunSetting& setting : d.settings) {
     if (setting.key == kCommandLineKey || setting.key == kNotReachedKey) continue;
@@ -257,6 +265,14 @@ std::string raised(std::string unit) {
     if (const auto at = unit.find(power); at != std::string::npos) unit.replace(at, 2, digit);
   }
   return unit;
+}
+
+// Returns a number with fewer digits than a recording needs of it, or any other text as it is.
+std::string rounded(const std::string& text) {
+  const auto number = parsed_number<double>(text);
+  if (!number || text.find('.') == std::string::npos)
+    return number && std::isinf(*number) ? "no limit" : text;
+  return fmt::format("{:.6g}", *number);
 }
 
 struct SettingLine {
@@ -316,7 +332,9 @@ std::string value_of(const SettingLine& line, const std::vector<const Recording*
 
 Table settings_table(const std::vector<const Recording*>& recordings) {
   Table table{{"Setting", "Value", "Unit"}, {}};
-  for (const SettingLine& line : collect(recordings)) {
+  for (SettingLine& line : collect(recordings)) {
+    for (std::optional<std::string>& value : line.values)
+      if (value) value = rounded(*value);
     table.rows.push_back({line.key, value_of(line, recordings), raised(line.unit)});
   }
   return table;
@@ -353,7 +371,7 @@ Table differences_table(const std::vector<const Recording*>& recordings) {
   if (lines.empty()) return table;
   for (std::size_t n = 0; n < recordings.size(); ++n) {
     table.rows.push_back({recordings[n]->path.string()});
-    for (const SettingLine& line : lines) table.rows.back().push_back(line.values[n].value_or(""));
+    for (const SettingLine& line : lines) table.rows.back().push_back(rounded(line.values[n].value_or("")));
   }
   return table;
 }

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "report/report_parts.h"
@@ -18,6 +20,10 @@ std::string value_of(const Table& table, const std::string& key) {
 TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
   std::vector<Recording> runs = sample_runs(10);
   runs[3].description.settings.push_back({"only_here", std::string("<x>"), ""});
+  for (Recording& run : runs) {
+    run.description.settings.push_back({"felt", 26.057583387520594, ""});
+    run.description.settings.push_back({"most", std::numeric_limits<double>::infinity(), ""});
+  }
   std::vector<const Recording*> recordings;
   for (const Recording& run : runs) recordings.push_back(&run);
   const Table table = settings_table(recordings);
@@ -25,6 +31,8 @@ TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
   EXPECT_EQ(value_of(table, "algorithm.stiffness"), "line-proxy: 2; surface-points: 20; point-shell: 2");
   EXPECT_EQ(value_of(table, "only_here"), "surface-points, holding: <x>");
   EXPECT_EQ(value_of(table, "command_line"), "(none)");
+  EXPECT_EQ(value_of(table, "felt"), "26.0576");
+  EXPECT_EQ(value_of(table, "most"), "no limit");
 }
 
 std::vector<std::string> differing(std::vector<Recording>& runs) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <ostream>
 #include <utility>
 
@@ -56,47 +55,49 @@ double seconds_of(const Recording& recording) {
   return recording.records.back().time_s - recording.records.front().time_s;
 }
 
-// The times of each phase, and that which was asked for if the recordings name it: "Milling took 12.9 to 18.1
-// s (20 s asked for)".
-std::string how_long(const std::vector<const Recording*>& recordings) {
-  std::map<std::string, std::pair<double, double>> least_and_most;
-  for (const Recording* recording : recordings) {
-    const double seconds = seconds_of(*recording);
-    const auto [phase, is_new] =
-        least_and_most.try_emplace(recording->description.phase, std::pair(seconds, seconds));
-    phase->second.first = std::min(phase->second.first, seconds);
-    phase->second.second = std::max(phase->second.second, seconds);
-  }
+// The times of each phase, and that which was asked for if the recordings name it: "The milling took 12.9 to
+// 18.1 s (20 s asked for)".
+std::string how_long(const RunGroup& group) {
   std::string text;
-  for (const auto& [phase, seconds] : least_and_most) {
-    const auto [least, most] = seconds;
-    const double* asked = find_setting<double>(recordings.front()->description, "script." + phase);
+  for (const std::string& phase : group.phases()) {
+    std::vector<double> seconds;
+    for (const MeasuredRun* run : group.runs_of(phase)) seconds.push_back(seconds_of(*run->recording));
+    const auto [least, most] = std::ranges::minmax(seconds);
+    const auto asked_of = [&](const MeasuredRun& run) {
+      return find_setting<double>(run.recording->description, "script." + phase);
+    };
+    const double* asked = asked_of(group.runs.front());
+    const bool is_same = std::ranges::all_of(group.runs, [&](const MeasuredRun& run) {
+      return asked != nullptr && asked_of(run) != nullptr && *asked_of(run) == *asked;
+    });
     text += fmt::format(" {} took {}{:.3g} s{}.", phase.empty() ? "It" : "The " + phase,
                         most - least < 0.1 ? "" : fmt::format("{:.3g} to ", least), most,
-                        asked == nullptr ? "" : fmt::format(" ({:.3g} s asked for)", *asked));
+                        is_same ? fmt::format(" ({:.3g} s asked for)", *asked) : "");
   }
   return text;
 }
 
-Section what_was_run(const std::vector<const Recording*>& recordings) {
+Section what_was_run(const RunGroup& group) {
+  const std::vector<const Recording*> recordings = all_recordings(group);
   const RunDescription& d = recordings.front()->description;
   if (!differences_table(recordings).rows.empty())
     return {
         .title = "What was run",
         .paragraphs = {fmt::format("{} recordings, which differ as the first table shows.{} osteomill {}.",
-                                   recordings.size(), how_long(recordings), d.program_version)}};
+                                   recordings.size(), how_long(group), d.program_version)}};
   return {.title = "What was run",
           .paragraphs = {
               fmt::format("Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
                           "{:.6g}. Tool: a burr of {:.4g} mm "
                           "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} at {:.6g} "
-                          "ticks a second, seed {}.{} osteomill {}.",
+                          "ticks a second, seed {}.{} osteomill {}{}.",
                           d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(), d.spacing_mm.y(),
                           d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm, d.tool.shaft_radius_mm,
                           d.tool.shaft_length_mm, recordings.size(),
                           recordings.size() == 1 ? "recording" : "recordings", 1 / d.tick_period_s, d.seed,
-                          how_long(recordings), d.program_version),
-              "What is reported is what was sent to the hand at every tick."}};
+                          how_long(group), d.program_version,
+                          d.made.processor.empty() ? "" : " on " + d.made.processor),
+              "Forces and torques are those sent to the hand, tick by tick."}};
 }
 
 struct RunFigure {
@@ -118,20 +119,23 @@ const Topic kFelt[] = {
        "Magnitude of the force sent to the hand. The panels of a row have one scale. Each pixel's least and "
        "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables, "
        "nor is what is felt without contact."}},
-     {"force_mean_N", "force_max_N", "force_hp_rms_N", "force_step_max_N"}},
+     {"force_mean_N", "force_max_N", "force_hp_rms_N", "force_hp_share", "force_step_max_N"}},
     {"Torque",
-     {{"torque", draw_torque_figure, "Magnitude of the torque sent to the hand, about the burr's centre."}},
-     {"torque_mean_Nmm", "torque_max_Nmm", "torque_hp_rms_Nmm", "torque_step_max_Nmm"}},
+     {{"torque", draw_torque_figure,
+       "Magnitude of the torque sent to the hand, about the burr's centre, drawn as the force is."}},
+     {"torque_mean_Nmm", "torque_max_Nmm", "torque_hp_rms_Nmm", "torque_hp_share", "torque_step_max_Nmm"}},
     {"Shaft",
      {{"shaft", draw_shaft_figure,
        "Direction of the simulated tool's shaft while it touches, in degrees from its mean direction and "
        "coloured by time. Each panel has a scale of its own."}},
-     {"shaft_spread_deg", "shaft_excursion_deg"}},
+     {"shaft_spread_deg", "shaft_excursion_deg", "shaft_from_handle_deg"}},
     {"Path and bone removed",
      {{"removed", draw_removed_figure,
        "Bone removed since the milling began, in mm³ of bone of the reference density."},
-      {"path", draw_path_figure, "Position of the burr's centre along the scan's axes."}},
-     {"removed_mm3", "path_mm", "contact_share", "burr_contact_share", "shaft_contact_share"}}};
+      {"path", draw_path_figure,
+       "Position of the burr's centre along the scan's axes. Each panel has a scale of its own."}},
+     {"removed_mm3", "removal_mm3_per_s", "path_mm", "burr_excursion_mm", "contact_share",
+      "burr_contact_share", "shaft_contact_share"}}};
 const Topic kTimes{
     "How long the ticks took",
     {{"rate", draw_rate_figure,
@@ -153,8 +157,11 @@ std::vector<MetricLine> lines_of(const Topic& topic) {
     const Field<RunMetrics>& figure = metric(column);
     lines.push_back({label_of(figure), [&figure](const MeasuredRun& run) -> Cell {
                        const double value = figure.get(run.metrics);
-                       if (std::isnan(value)) return {contact_words(run.metrics.contact), Look::words};
-                       return shown(value);
+                       if (!std::isnan(value)) return shown(value);
+                       // Bone that was not cut is no matter of contact.
+                       return figure.name == "removal_mm3_per_s"
+                                  ? shown(value)
+                                  : Cell(contact_words(run.metrics.contact), Look::words);
                      }});
   }
   return lines;
@@ -290,7 +297,7 @@ Page report_page(const RunGroup& group, const PageText& text, const fs::path& fo
   sections.push_back(labels_section(group, folder));
   add(text.sections);
   sections.push_back(topic_section(kTimes, group, text, folder, text.further_times));
-  add({what_was_run(recordings),
+  add({what_was_run(group),
        {.title = "Settings", .tables = {settings_table(recordings)}},
        how_to_repeat(recordings)});
   return {text.title, sections};

@@ -25,6 +25,9 @@ namespace {
 
 constexpr const char* kStudyCsv = "study.csv";
 constexpr const char* kTitle = "6-DOF haptic algorithms compared while milling bone";
+// Titles of one algorithm and of a mix, in which nothing is compared.
+constexpr const char* kTitleOfOne = "A 6-DOF haptic algorithm while milling bone";
+constexpr const char* kTitleOfAMix = "Recordings of 6-DOF haptic algorithms while milling bone";
 
 // The paper's mean haptic rate in Hz, figure 6; empty for an algorithm or a phase that is not in the paper.
 std::string paper_rate(const MeasuredRun& run) {
@@ -45,14 +48,16 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
                             return matched(one) != nullptr && *matched(one) == *felt_N_per_mm;
                           });
   if (is_matched) {
+    const std::string* left_out = find_setting<std::string>(recordings.front().description, kNotMatchedKey);
     return fmt::format(
         "Stiffness is matched: each algorithm's was chosen so that a flat wall is felt as {:.3g} N/mm (the "
         "slope of the force over the depth about 0.5 N, pressed with the burr). How it resists turning, and "
-        "what is felt of an edge or with the shaft, is not matched.",
-        *felt_N_per_mm);
+        "what is felt of an edge or with the shaft, is not matched.{}",
+        *felt_N_per_mm, left_out == nullptr ? "" : " Left out of this comparison: " + *left_out + ".");
   }
-  return "Stiffness is not matched: each algorithm has that of its own equations, and the hand feels another "
-         "from each. What differs in force between them is partly this (compare --match-stiffness).";
+  return "Stiffness is not matched: each algorithm has the stiffness of its own equations, so the hand feels "
+         "another one with each. Some of the differences in force come from this (compare "
+         "--match-stiffness).";
 }
 
 std::string about_cutting(const Recording& recording) {
@@ -82,7 +87,7 @@ std::string about_line_proxy(const Study& study, const MillingTool& tool) {
     if (algorithm == kPapersAlgorithms.front()) {
       return fmt::format(
           "{} feels the tool's centreline alone, as the paper has it: bone is felt when it meets the burr's "
-          "centre, {:.3g} mm after its rim.",
+          "centre, {:.3g} mm after it met the burr's surface.",
           algorithm.label, tool.burr_radius_mm);
     }
   }
@@ -95,21 +100,15 @@ Section opening(const Study& study, const std::vector<Recording>& recordings) {
   if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};
   for (const std::string& text :
        {which_to_take(study), what_was_compared(study, recordings.front().description.scan_name),
-        about_stiffness(recordings), about_cutting(recordings.front()),
-        about_line_proxy(study, recordings.front().description.tool)})
+        study.algorithms().size() > 1 ? about_stiffness(recordings) : "", about_cutting(recordings.front()),
+        about_line_proxy(study, recordings.front().description.tool), about_the_table(study)})
     if (!text.empty()) section.paragraphs.push_back(text);
   return section;
 }
 
-// The recordings do not belong together, or some algorithm lacks a phase that another has.
-Section opening_of_a_mix(const RunGroup& group) {
-  std::vector<std::string> labels;
-  for (const AlgorithmId& algorithm : group.algorithms()) labels.push_back(algorithm.label);
-  return {.paragraphs = {fmt::format(
-              "Recordings of {}, which were not made as one comparison: either they differ in more than the "
-              "algorithm, or an algorithm lacks what another was recorded with. So nothing is concluded from "
-              "them here.",
-              fmt::join(labels, ", "))}};
+Section opening_of_a_mix(const RunGroup& group, const char* why) {
+  return {.paragraphs = {fmt::format("Recordings of {}. Nothing is concluded from them here, because {}.",
+                                     in_words(labels_of(group.algorithms())), why)}};
 }
 
 bool belong_together(const std::vector<Recording>& recordings) {
@@ -139,8 +138,10 @@ Study study_of(const RunGroup& group, const ReportExtras& extras) {
 Section hands_section(const Study& study, const fs::path& figures) {
   std::vector<CaptionedFigure> drawn;
   for (const std::string_view phase : study.phases())
-    drawn.push_back({draw_study_figure(study, phase, figures).svg,
-                     "Every hand of the study, by algorithm; logarithmic if values lie far apart."});
+    drawn.push_back(
+        {draw_study_figure(study, phase, figures).svg,
+         "Every hand of the study, by algorithm. Each panel has a scale of its own, logarithmic if "
+         "values lie far apart."});
   return study_section(study, drawn);
 }
 
@@ -155,14 +156,18 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
                                  const ReportExtras& extras, std::vector<Table>* came_out) {
   const RunGroup group = group_runs(recordings, measured_phase);
-  if (!belong_together(recordings) || !have_the_same_phases(group)) {
+  const bool belong = belong_together(recordings);
+  if (!belong || !have_the_same_phases(group)) {
     return write_report(group, out_dir, [&](const fs::path&) {
-      return PageText{.title = kTitle, .opening = opening_of_a_mix(group)};
+      return PageText{.title = kTitleOfAMix,
+                      .opening = opening_of_a_mix(
+                          group, belong ? "an algorithm lacks a phase that another was recorded with"
+                                        : "they differ in more than the algorithm")};
     });
   }
   const Study study = study_of(group, extras);
   // Measured beside the recordings and kept nowhere else: they stay if no figure can be drawn.
-  const bool has_further_rows = study.rows().size() + study.rows_of_other_grips().size() > recordings.size();
+  const bool has_further_rows = study.rows().size() + study.rows_beside().size() > recordings.size();
   if (has_further_rows || !extras.passivity.empty() || !extras.in_one_hole.empty()) create_folder(out_dir);
   if (has_further_rows) write_study_csv(out_dir / kStudyCsv, study);
   if (!extras.passivity.empty()) write_passivity_csv(out_dir / "stability.csv", extras.passivity);
@@ -170,14 +175,16 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   const Section came = opening(study, recordings);
   if (came_out != nullptr) *came_out = came.tables;
   return write_report(group, out_dir, [&](const fs::path& figures) {
-    PageText text{.title = kTitle, .opening = came, .sections = {findings_section(study)}};
+    PageText text{.title = study.algorithms().size() > 1 ? kTitle : kTitleOfOne,
+                  .opening = came,
+                  .sections = {findings_section(study)}};
     if (study.seeds().size() > 1) text.sections.push_back(hands_section(study, figures));
     if (!extras.in_one_hole.empty()) text.sections.push_back(one_hole_section(Study(extras.in_one_hole)));
     if (!extras.passivity.empty()) {
       text.sections.push_back(
           passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, figures)));
     }
-    text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
+    text.further_times = {{"haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
     text.caption_notes = {{"rate", "The paper's figure 6 shows the rate that follows from it."},
                           {"force", "The paper's figure 7."},
                           {"torque", "The paper's figure 8."},

@@ -9,6 +9,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/study/paper.h"
+#include "osteomill/study/trial_plan.h"
 #include "osteomill/study/write_rates_report.h"
 #include "osteomill/study/write_report.h"
 
@@ -93,12 +94,48 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
     EXPECT_EQ(html.find(link), std::string::npos) << link;
   }
   EXPECT_NE(html.find("osteomill compare --out &lt;folder&gt; --seed 1"), std::string::npos);
-  EXPECT_NE(html.find("bone is felt when it meets the burr's centre, 1.5 mm after its rim"),
+  EXPECT_NE(html.find("bone is felt when it meets the burr's centre, 1.5 mm after it met the "
+                      "burr's surface"),
             std::string::npos);
   EXPECT_NE(html.find("holds in this hand</span>"), std::string::npos);
   const std::string summary = bytes_of(out_ / "summary.csv");
   EXPECT_EQ(std::count(summary.begin(), summary.end(), '\n'), 7);
   EXPECT_NE(summary.find("\npoint-shell,holding,20000,"), std::string::npos);
+}
+
+// Runs of different length removed other volumes at one rate.
+TEST_F(ReportTest, RatesStandBesideVolumes) {
+  std::vector<Recording> runs = sample_runs(4000);
+  runs.front().records.resize(3000);
+  for (Recording& run : runs)
+    for (TickRecord& r : run.records) {
+      r.spindle_on = run.description.phase == kMilling;
+      r.dt_s = 1e-3;
+      r.burr_force_W_N.z() = -1;
+      if (r.spindle_on) r.removed_mm3 = 2 * r.time_s;
+    }
+  const std::string html = bytes_of(write_comparison_report(runs, out_));
+  const std::size_t volumes = html.find("<th>bone removed (mm³)</th>");
+  const std::size_t rates = html.find("<th>bone removed per second of cutting (mm³/s)</th>");
+  ASSERT_NE(volumes, std::string::npos);
+  ASSERT_NE(rates, std::string::npos);
+  const auto row_at = [&](std::size_t at) { return html.substr(at, html.find("</tr>", at) - at); };
+  EXPECT_NE(row_at(volumes).find("5.998"), std::string::npos) << row_at(volumes);
+  EXPECT_NE(row_at(volumes).find("7.998"), std::string::npos) << row_at(volumes);
+  EXPECT_EQ(row_at(rates).find("5."), std::string::npos) << row_at(rates);
+  EXPECT_NE(row_at(rates).find("1.999"), std::string::npos) << row_at(rates);
+  EXPECT_NE(html.find("The milling took 3 to 4 s."), std::string::npos);
+}
+
+TEST_F(ReportTest, AnAlgorithmThatCouldNotBeMatchedIsNamedWithTheReason) {
+  std::vector<Recording> runs = sample_runs(200);
+  for (Recording& run : runs) {
+    run.description.settings.push_back({std::string(kMatchedStiffnessKey), 1.5, "N/mm"});
+    run.description.settings.push_back({std::string(kNotMatchedKey), std::string("another leaps"), ""});
+  }
+  const std::string html = bytes_of(write_comparison_report(runs, out_));
+  EXPECT_NE(html.find("a flat wall is felt as 1.5 N/mm"), std::string::npos);
+  EXPECT_NE(html.find("is not matched. Left out of this comparison: another leaps.</p>"), std::string::npos);
 }
 
 // A report of a session at the window describes what the person did, and mentions no trial.
@@ -131,7 +168,9 @@ TEST_F(ReportTest, ACutThatWasTakenBackIsNoBoneRemovedBelowNothing) {
 TEST_F(ReportTest, OneRecordingIsEnough) {
   Recording run = sample_run("surface-points", kHolding, 500);
   const std::string html = bytes_of(write_comparison_report({run}, out_));
-  EXPECT_NE(html.find("not recorded"), std::string::npos);
+  EXPECT_NE(html.find("8 further findings belong to algorithms, phases or grips that were not tried here"),
+            std::string::npos);
+  EXPECT_EQ(html.find("compared"), std::string::npos);
   EXPECT_TRUE(fs::exists(out_ / "figures/fig9_shaft.svg"));
   EXPECT_FALSE(fs::exists(out_ / "figures/bone.svg"));
 }
@@ -186,7 +225,7 @@ TEST_F(ReportTest, NothingIsConcludedWhereAnAlgorithmLacksAPhase) {
   std::vector<Recording> runs = sample_runs(200);
   runs.pop_back();
   const std::string html = bytes_of(write_comparison_report(runs, out_));
-  EXPECT_NE(html.find("an algorithm lacks what another was recorded with"), std::string::npos);
+  EXPECT_NE(html.find("an algorithm lacks a phase that another was recorded with"), std::string::npos);
   EXPECT_EQ(html.find("the same bone"), std::string::npos);
 }
 

@@ -79,7 +79,7 @@ Finding finding_by(const Rule& rule, const RunGroup& group) {
   if (!not_reached.empty())
     finding.measured += fmt::format(" (not all reached: {})", fmt::join(not_reached, "; "));
   const bool known = std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
-  finding.verdict = !known               ? Verdict::lost_contact
+  finding.verdict = !known               ? Verdict::too_little_contact
                     : rule.holds(values) ? Verdict::agrees
                                          : Verdict::does_not_agree;
   return finding;
@@ -109,9 +109,10 @@ Finding grip_finding(const GripForces& grips) {
                   fmt::join(kGrips, ", "), kBuzzAbove_hz, kGripRatio),
       "needs three grips", Verdict::not_recorded};
   if (grips.empty()) return finding;
-  finding.measured = fmt::format("{:.3g} N", fmt::join(grips, ", "));
+  finding.measured =
+      fmt::format("2 while holding, by grip {:g}: {:.3g} N", fmt::join(kGrips, ", "), fmt::join(grips, ", "));
   if (std::any_of(grips.begin(), grips.end(), [](double v) { return std::isnan(v); })) {
-    finding.verdict = Verdict::lost_contact;
+    finding.verdict = Verdict::too_little_contact;
     return finding;
   }
   const bool one_way =
@@ -197,8 +198,8 @@ std::string_view name_of(Verdict verdict) {
       return "not settled";
     case Verdict::not_recorded:
       return "not recorded";
-    case Verdict::lost_contact:
-      return "lost contact";
+    case Verdict::too_little_contact:
+      return "too little contact";
   }
   return "";
 }

@@ -88,12 +88,12 @@ TEST_F(FindingsTest, WhoLostContactIsNeitherBestNorWorst) {
       std::numeric_limits<double>::quiet_NaN();
   grips_[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(disagreeing(), Numbers{});
-  EXPECT_EQ(findings_that(Verdict::lost_contact), (Numbers{2, 3, 5, 7}));
+  EXPECT_EQ(findings_that(Verdict::too_little_contact), (Numbers{2, 3, 5, 7}));
   for (const Finding& f : check_findings(group_, grips_)) {
     if (f.paper_says.find("gripping") != std::string::npos) continue;
     EXPECT_EQ(f.measured.find("nan"), std::string::npos) << f.measured;
     EXPECT_EQ(f.measured.find("lost contact after 3.2 s") != std::string::npos,
-              f.verdict == Verdict::lost_contact)
+              f.verdict == Verdict::too_little_contact)
         << f.measured;
   }
   m.contact.lost_while_milling = true;

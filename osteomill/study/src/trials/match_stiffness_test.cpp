@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/study/measure_passivity.h"
+#include "osteomill/study/probe_bones.h"
 
 namespace osteomill {
 namespace {

@@ -82,33 +82,6 @@ std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescriptio
   return cases;
 }
 
-Volume flat_wall(const MillingTool& tool) {
-  constexpr double kMargin_mm = 0.5, kAbove_mm = 1, kEdge_voxels = 2;
-  constexpr double kVoxelsToTheRadius = 12, kMinVoxel_mm = 0.05, kMaxVoxel_mm = 0.5;
-  constexpr float kIsovalue = 500;
-  const double spacing_mm = std::clamp(tool.burr_radius_mm / kVoxelsToTheRadius, kMinVoxel_mm, kMaxVoxel_mm);
-  // Deeper than the handle is ever pressed, be it the burr's centre that is felt.
-  const double thick_mm = tool.burr_radius_mm + 4;
-  const double half_mm = tool.burr_radius_mm + kMargin_mm;
-  GridGeometry geometry;
-  geometry.dims[0] = geometry.dims[1] = 1 + 2 * static_cast<int>(std::ceil(half_mm / spacing_mm));
-  geometry.dims[2] = 1 + static_cast<int>(std::ceil((thick_mm + kAbove_mm) / spacing_mm));
-  geometry.spacing_mm = Vec3::Constant(spacing_mm);
-  // The surface lies between two layers, nearer to one of them: no voxel is on it.
-  geometry.origin_mm = {-0.5 * (geometry.dims[0] - 1) * spacing_mm,
-                        -0.5 * (geometry.dims[1] - 1) * spacing_mm,
-                        -(std::floor(thick_mm / spacing_mm) + 0.3) * spacing_mm};
-  std::vector<float> densities;
-  densities.reserve(geometry.voxel_count());
-  const auto layer = static_cast<std::size_t>(geometry.dims[0]) * static_cast<std::size_t>(geometry.dims[1]);
-  for (int k = 0; k < geometry.dims[2]; ++k) {
-    const double height_mm = geometry.world_from_voxel(VoxelIndex{0, 0, k}).z();
-    const double share = std::clamp(0.5 - height_mm / (kEdge_voxels * spacing_mm), 0.0, 1.0);
-    densities.insert(densities.end(), layer, static_cast<float>(2 * kIsovalue * share));
-  }
-  return Volume(DensityGrid(geometry, std::move(densities)), kIsovalue);
-}
-
 WallPressResult press_on_wall(const TrialSettings& settings, const Volume& wall) {
   const auto algorithm = make_algorithm(settings.algorithm, settings.haptics);
   algorithm->prepare({&wall, settings.tool, settings.tick_s});

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "osteomill/study/probe_bones.h"
+
 namespace osteomill {
 namespace {
 

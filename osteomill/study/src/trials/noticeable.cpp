@@ -23,10 +23,12 @@ double least_noticeable(const FieldDescription& figure, double value) {
 std::string about_noticeable() {
   return "A difference counts as the same for a hand if it is less than a hand notices: 7 % of a force "
          "(Pang, Tan and Durlach 1991), 13 % of a torque (Jandura and Srinivasan 1994), 20 % of what "
-         "trembles above "
-         "20 Hz (Forta, Griffin and Morioka 2012), 2 degrees of the shaft's direction (the wrist's, Tan et "
-         "al. 1994). These were measured with the whole hand's attention on one thing; who mills notices "
-         "less.";
+         "trembles "
+         "above 20 Hz (Forta, Griffin and Morioka 2012), 2 degrees of the shaft's direction (the wrist's, "
+         "Tan et "
+         "al. 1994; an eye on the tool sees less). They were measured with the attention on one thing; a "
+         "hand "
+         "that mills notices less.";
 }
 
 }  // namespace osteomill

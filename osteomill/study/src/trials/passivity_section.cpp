@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ostream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -62,25 +63,28 @@ Table devices_table(std::span<const PassivityRow> rows) {
   return table;
 }
 
-// "1 line-proxy 0.98 to 1.05"
+// "1 line-proxy 0.98 to 1.05, and passive at every stiffness on 1 of 12 devices"
 std::string range_against_rule(std::span<const PassivityRow> rows, const AlgorithmId& algorithm) {
   std::vector<double> ratios;
-  std::size_t none = 0;
+  std::size_t none = 0, every = 0;
   for (const PassivityRow& row : rows) {
     if (row.algorithm != algorithm) continue;
-    if (row.limit.kind == Kind::below_all) {
-      ++none;
-    } else {
-      ratios.push_back(row.limit.felt_N_per_mm / row.rule_N_per_mm);
-    }
+    none += row.limit.kind == Kind::below_all;
+    every += row.limit.kind == Kind::above_all;
+    if (row.limit.kind == Kind::found) ratios.push_back(row.limit.felt_N_per_mm / row.rule_N_per_mm);
   }
-  const std::string& name = algorithm.label;
-  if (ratios.empty()) return name + " passive on no device";
-  const auto [min, max] = std::minmax_element(ratios.begin(), ratios.end());
-  const std::string range = fmt::format("{} {:.2f} to {:.2f}", name, *min, *max);
-  if (none == 0) return range;
-  return fmt::format("{}, and passive at no stiffness on {} of {} devices", range, none,
-                     none + ratios.size());
+  std::string text = algorithm.label;
+  if (!ratios.empty()) {
+    const auto [min, max] = std::minmax_element(ratios.begin(), ratios.end());
+    text += fmt::format(" {:.2f} to {:.2f}", *min, *max);
+  }
+  const std::size_t all = none + every + ratios.size();
+  for (const auto& [count, stiffness] : {std::pair(none, "no"), std::pair(every, "every")}) {
+    if (count > 0)
+      text += fmt::format("{} passive at {} stiffness on {} of {} devices",
+                          text.size() > algorithm.label.size() ? ", and" : "", stiffness, count, all);
+  }
+  return text;
 }
 
 std::string in_words(std::span<const PassivityRow> rows) {

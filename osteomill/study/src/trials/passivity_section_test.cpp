@@ -90,7 +90,7 @@ TEST_F(PassivitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
   const std::string page = html(passivity_section(rows, draw_passivity_figure(rows, out_)));
   EXPECT_NE(
       page.find("1 line-proxy 1.00 to 1.00; 2 surface-points 0.50 to 0.50, and passive at no stiffness on 3 "
-                "of 12 devices; 3 point-shell"),
+                "of 12 devices; 3 point-shell passive at every stiffness on 12 of 12 devices."),
       std::string::npos);
   EXPECT_NE(page.find("none passive"), std::string::npos);
   EXPECT_NE(page.find("over 200 → 9"), std::string::npos);
@@ -102,7 +102,7 @@ TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
   std::erase_if(rows, [](const PassivityRow& row) { return row.algorithm != "line-proxy"; });
   for (PassivityRow& row : rows) row.limit = {};
   const std::string page = html(passivity_section(rows, draw_passivity_figure(rows, out_)));
-  EXPECT_NE(page.find("1 line-proxy passive on no device"), std::string::npos);
+  EXPECT_NE(page.find("1 line-proxy passive at no stiffness on 12 of 12 devices."), std::string::npos);
 }
 
 TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/study/match_stiffness.h"
@@ -39,26 +38,6 @@ double torque_error(const MillingSetup& setup, const Volume& edge) {
 }
 
 }  // namespace
-
-Volume sharp_edge(const MillingTool& tool) {
-  constexpr double kVoxelsToTheRadius = 5, kHalfInRadii = 4, kEdge_voxels = 2;
-  constexpr float kIsovalue = 500;
-  const double spacing_mm = tool.shaft_radius_mm / kVoxelsToTheRadius;
-  GridGeometry geometry;
-  geometry.dims.fill(1 + 2 * static_cast<int>(kVoxelsToTheRadius * kHalfInRadii));
-  geometry.spacing_mm = Vec3::Constant(spacing_mm);
-  // The edge lies on no voxel.
-  geometry.origin_mm = Vec3::Constant(-(kVoxelsToTheRadius * kHalfInRadii + 0.3) * spacing_mm);
-  std::vector<float> densities;
-  densities.reserve(geometry.voxel_count());
-  for_each(geometry.all_voxels(), [&](const VoxelIndex& voxel) {
-    const Vec3 p = geometry.world_from_voxel(voxel);
-    const double above_mm = (p.z() + std::abs(p.x())) / std::numbers::sqrt2;
-    const double share = std::clamp(0.5 - above_mm / (kEdge_voxels * spacing_mm), 0.0, 1.0);
-    densities.push_back(static_cast<float>(2 * kIsovalue * share));
-  });
-  return Volume(DensityGrid(geometry, std::move(densities)), kIsovalue);
-}
 
 Probe probe(const MillingSetup& setup, const Volume& wall, const Volume& edge) {
   return {felt_stiffness_N_per_mm(setup, wall), torque_error(setup, edge)};

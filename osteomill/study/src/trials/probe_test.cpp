@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "osteomill/study/measure_passivity.h"
+#include "osteomill/study/probe_bones.h"
 
 namespace osteomill {
 namespace {

@@ -74,6 +74,35 @@ TEST_F(RecordedTrialTest, EveryFieldOfHandDeviceScriptAndSessionIsRestored) {
   EXPECT_EQ(session_settings(run, "a.h5").densities.surroundings, 0.5);
 }
 
+TEST_F(RecordedTrialTest, AnotherTremorIsOneOfTheSameHand) {
+  TrialSettings settings;
+  settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 0.5;
+  const TrialPlan plan = with_seed(plan_of(settings), 5);
+  std::vector<double> paths_mm;
+  for (const TrialPlan& other : trials_with_other_tremors(plan)) {
+    EXPECT_EQ(other.settings.hand_and_device.hand.stiffness_N_per_mm,
+              plan.settings.hand_and_device.hand.stiffness_N_per_mm);
+    const MeasuredRun run = try_trial(StudyTest::milling, other).rows.front().run;
+    EXPECT_EQ(run.seed, 5u);
+    EXPECT_FALSE(run.is_own());
+    EXPECT_EQ(run.other_tremor, other.other_tremor);
+    paths_mm.push_back(run.metrics.path_mm);
+  }
+  ASSERT_EQ(paths_mm.size(), 2u);
+  EXPECT_NE(paths_mm[0], paths_mm[1]);
+  EXPECT_NE(paths_mm[0], try_trial(StudyTest::milling, plan).rows.front().run.metrics.path_mm);
+}
+
+// The algorithms are exchanged in the first second, in which the force may leap.
+TEST_F(RecordedTrialTest, AHoldingInOneHoleCountsFromASecondAfterTheExchange) {
+  TrialSettings settings;
+  settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 1.5;
+  const TrialPlan plan = plan_of(settings);
+  const std::vector<MeasuredRun> held = hold_in_one_hole(plan, {plan, plan});
+  ASSERT_EQ(held.size(), 2u);
+  EXPECT_NEAR(held.back().metrics.steps, 500, 1);
+}
+
 // The hand is in the loop: another one anywhere would feel, and mill, something else.
 TEST_F(RecordedTrialTest, MillsAgainWhatWasRecorded) {
   TrialSettings settings;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <random>
 #include <utility>
 
@@ -25,6 +26,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kTicksBetweenProgress = 500;
+
+// The seed of a hand's other tremor lies this far from its own, so that it is that of no other hand of a
+// study.
+constexpr int kOtherTremors = 2;
+constexpr std::uint64_t kTremorStride = 0x9e3779b97f4a7c15;
 
 std::string recording_name(const TrialPlan& plan, std::string_view phase) {
   return fmt::format("{}-{}.h5", plan.settings.algorithm.id.name, phase);
@@ -134,6 +140,8 @@ TriedTrial try_trial(StudyTest test, const TrialPlan& plan) {
       TrialRow& row = tried.rows.emplace_back(TrialRow{.part = part, .run = measured_phase(phase)});
       row.run.recording = nullptr;
       row.run.grip = plan.grip;
+      row.run.other_tremor = plan.other_tremor;
+      row.run.seed -= kTremorStride * static_cast<std::uint64_t>(plan.other_tremor);
     }
     tried.faults = milled.faults;
   } else {
@@ -154,7 +162,13 @@ std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::ve
     holding.path = fmt::format("{}, seed {}, in one hole", hold.settings.algorithm.id.name,
                                milled.settings.hand_and_device.seed);
     holding.description = describe_trial(hold, trial.algorithm().sample_point_count(), kHolding);
-    while (!trial.finished()) holding.records.push_back(trial.tick().record);
+    double exchanged_s = kNotMeasured;
+    while (!trial.finished()) {
+      const TickRecord record = trial.tick().record;
+      if (std::isnan(exchanged_s)) exchanged_s = record.time_s;
+      // The leap from one algorithm to the other is no part of the holding.
+      if (record.time_s >= exchanged_s + ScriptSettings{}.settle_s) holding.records.push_back(record);
+    }
     note_shortfall(trial, milled.settings.hand_and_device.script, holding);
     runs.push_back(measured_phase(holding));
     runs.back().recording = nullptr;
@@ -171,6 +185,16 @@ std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan) {
     HandSettings& hand = other.settings.hand_and_device.hand;
     hand = gripping(hand, grip);
     other.grip = grip;
+  }
+  return trials;
+}
+
+std::vector<TrialPlan> trials_with_other_tremors(const TrialPlan& plan) {
+  std::vector<TrialPlan> trials;
+  for (int n = 1; n <= kOtherTremors; ++n) {
+    TrialPlan& other = trials.emplace_back(plan);
+    other.settings.hand_and_device.seed += kTremorStride * static_cast<std::uint64_t>(n);
+    other.other_tremor = n;
   }
   return trials;
 }
@@ -197,7 +221,9 @@ std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, 
     for (const TrialRow& row : trial.rows) all.push_back(row.run);
     const MeasuredRun& last = all.back();
     const auto warn = [&](const std::string& line) {
-      events.warn(fmt::format("{}, seed {}: {}", last.algorithm.name, last.seed, line));
+      events.warn(fmt::format("{}, seed {}{}{}: {}", last.algorithm.name, last.seed,
+                              last.grip == 1 ? "" : fmt::format(", grip {:g}", last.grip),
+                              last.other_tremor == 0 ? "" : ", another tremor", line));
     };
     if (trial.faults) warn(*trial.faults);
     if (!last.not_reached.empty()) warn(last.not_reached);

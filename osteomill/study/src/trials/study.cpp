@@ -94,8 +94,8 @@ std::string short_label(const AlgorithmId& algorithm) {
 
 Study::Study(std::vector<MeasuredRun> rows) : rows_(std::move(rows)) {
   const auto others =
-      std::stable_partition(rows_.begin(), rows_.end(), [](const MeasuredRun& row) { return row.grip == 1; });
-  other_grips_.assign(others, rows_.end());
+      std::stable_partition(rows_.begin(), rows_.end(), [](const MeasuredRun& row) { return row.is_own(); });
+  beside_.assign(others, rows_.end());
   rows_.erase(others, rows_.end());
   if (rows_.empty()) throw std::invalid_argument("study: there are no trials");
   std::map<std::uint64_t, std::size_t> order;
@@ -170,6 +170,23 @@ std::vector<double> Study::values(const AlgorithmId& algorithm, std::string_view
   return values;
 }
 
+std::vector<double> Study::values_by_tremor(const AlgorithmId& algorithm, std::string_view phase,
+                                            const RunFigure& figure) const {
+  std::vector<double> values;
+  std::optional<std::uint64_t> hand;
+  for (const MeasuredRun& row : beside_) {
+    if (row.other_tremor == 0 || place(row) != std::tuple(phase_number(phase), algorithm)) continue;
+    values.push_back(figure(row.metrics));
+    hand = row.seed;
+  }
+  for (const MeasuredRun& row : rows_) {
+    if (row.seed == hand && place(row) == std::tuple(phase_number(phase), algorithm))
+      values.push_back(figure(row.metrics));
+  }
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  return values;
+}
+
 ContactShares Study::contact(const AlgorithmId& algorithm, std::string_view phase) const {
   const auto median = [&](const RunFigure& figure) {
     return distribution_of(values(algorithm, phase, figure)).median;
@@ -188,14 +205,20 @@ ContactShares Study::contact(const AlgorithmId& algorithm, std::string_view phas
 }
 
 std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view phase) const {
+  // Between the parts of MeasuredRun::not_reached.
+  constexpr std::string_view kBetween = "; ";
   std::map<std::string, std::size_t> hands;
   for (const MeasuredRun& row : rows_) {
-    if (!row.not_reached.empty() && place(row) == std::tuple(phase_number(phase), algorithm))
-      ++hands[row.not_reached];
+    if (place(row) != std::tuple(phase_number(phase), algorithm)) continue;
+    for (std::size_t from = 0; from < row.not_reached.size();) {
+      const std::size_t to = std::min(row.not_reached.find(kBetween, from), row.not_reached.size());
+      ++hands[row.not_reached.substr(from, to - from)];
+      from = to + kBetween.size();
+    }
   }
   std::string text;
   for (const auto& [words, count] : hands) {
-    if (!text.empty()) text += "; ";
+    if (!text.empty()) text += kBetween;
     text += seeds_.size() == 1 ? words : fmt::format("{} ({} of {} hands)", words, count, seeds_.size());
   }
   return text;
@@ -204,7 +227,7 @@ std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view ph
 void write_study_csv(const std::filesystem::path& path, const Study& study) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << columns() << '\n';
-    for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
+    for (const auto* rows : {&study.rows(), &study.rows_beside()}) {
       for (const MeasuredRun& row : *rows)
         out << row.seed << csv_values(fields_of<MeasuredRun>(), row) << ',' << summary_fields(row) << '\n';
     }
@@ -220,7 +243,7 @@ std::optional<Study> read_study_csv(const std::filesystem::path& path, const std
   while (next_line(in, line)) {
     std::optional<MeasuredRun> row = read_row(line, rows);
     if (!row) continue;
-    found += row->grip == 1 && std::any_of(rows.begin(), rows.end(), [&](const MeasuredRun& one) {
+    found += row->is_own() && std::any_of(rows.begin(), rows.end(), [&](const MeasuredRun& one) {
                return one.seed == row->seed && place(one) == place(*row) && same_figures(one, *row);
              });
     all.push_back(*std::move(row));

@@ -21,7 +21,7 @@ Verdict verdict_of(const StudyFinding& finding, const Study& study) {
     return chance_of_at_least(hands, finding.tested) <= kSignificance;
   };
   if (!is_tested(finding.of_medians.verdict)) return finding.of_medians.verdict;
-  if (!study.are_most(finding.tested)) return Verdict::lost_contact;
+  if (!study.are_most(finding.tested)) return Verdict::too_little_contact;
   if (shows(finding.agreeing)) return Verdict::agrees;
   return shows(finding.tested - finding.agreeing) ? Verdict::does_not_agree : Verdict::not_settled;
 }
@@ -40,10 +40,10 @@ RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
 // Algorithm 2's force above 20 Hz while it is held, in a grip: of one seed, or of all.
 std::vector<double> grip_forces(const Study& study, double grip, std::optional<std::uint64_t> seed) {
   std::vector<double> forces;
-  for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
+  for (const auto* rows : {&study.rows(), &study.rows_beside()}) {
     for (const MeasuredRun& run : *rows) {
-      if (run.grip == grip && run.phase == kHolding && run.algorithm == kPapersAlgorithms[1] &&
-          (!seed || run.seed == *seed)) {
+      if (run.grip == grip && run.other_tremor == 0 && run.phase == kHolding &&
+          run.algorithm == kPapersAlgorithms[1] && (!seed || run.seed == *seed)) {
         forces.push_back(run.metrics.force_N.hp_rms);
       }
     }

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -199,7 +200,7 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
 struct Point {
   std::size_t panel;
   double x, y, colour;
-  // Its trial did not do all of its test.
+  // Its trial did not do all of this part of its test.
   bool is_unreached;
 };
 
@@ -233,7 +234,8 @@ Gathered gather(const StudyDesign& design, const StudyMap& map, const std::vecto
     const StudySettings settings = design.trial(row.trial);
     const Point point{place_in(all.panels, panel_name(map, settings)), all.x.of(settings, row),
                       all.y.of(settings, row), all.colour.of(settings, row), !row.run.not_reached.empty()};
-    if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.colour))
+    if (std::isfinite(point.x) && std::isfinite(point.y) &&
+        (point.is_unreached || std::isfinite(point.colour)))
       all.points.push_back(point);
   }
   return all;
@@ -245,7 +247,8 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
                                               const std::vector<TrialRow>& rows, const std::string& name,
                                               const std::filesystem::path& folder) {
   const auto [shown_x, shown_y, colour, panels, points] = gather(design, map, rows);
-  if (points.empty()) return std::nullopt;
+  const auto is_measured = [](const Point& point) { return std::isfinite(point.colour); };
+  if (std::ranges::none_of(points, is_measured)) return std::nullopt;
   const Cells x = cells_along(&Point::x, points, shown_x), y = cells_along(&Point::y, points, shown_y);
   struct MapCell {
     std::vector<double> values;
@@ -254,22 +257,28 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
   std::map<std::array<std::size_t, 3>, MapCell> cells;
   for (const Point& point : points) {
     MapCell& cell = cells[{point.panel, x.of(point.x), y.of(point.y)}];
-    cell.values.push_back(point.colour);
+    if (is_measured(point)) cell.values.push_back(point.colour);
     cell.has_unreached |= point.is_unreached;
   }
-  std::vector<std::string> data(panels.size()), hatched(panels.size());
+  // The hatching is white over a colour, and grey over none.
+  struct Boxes {
+    std::string coloured, hatched, hatched_grey;
+  };
+  std::vector<Boxes> boxes(panels.size());
   double min = std::numeric_limits<double>::infinity(), max = -min;
   for (const auto& [place, cell] : cells) {
     const auto [panel, column, row] = place;
-    const double value = statistic_of(map.statistic, cell.values);
-    min = std::min(min, value);
-    max = std::max(max, value);
     const std::string box = fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}",
                                         between(x.edges[column], x.edges[column + 1], false),
                                         between(y.edges[row], y.edges[row + 1], false), x.edges[column],
                                         x.edges[column + 1], y.edges[row], y.edges[row + 1]);
-    data[panel] += fmt::format("{} {:.9g}\n", box, value);
-    if (cell.has_unreached) hatched[panel] += box + "\n";
+    if (cell.has_unreached)
+      (cell.values.empty() ? boxes[panel].hatched_grey : boxes[panel].hatched) += box + "\n";
+    if (cell.values.empty()) continue;
+    const double value = statistic_of(map.statistic, cell.values);
+    min = std::min(min, value);
+    max = std::max(max, value);
+    boxes[panel].coloured += fmt::format("{} {:.9g}\n", box, value);
   }
   PanelGrid grid{.columns = std::min<std::size_t>(panels.size(), 4),
                  .head_px = 118,
@@ -281,19 +290,23 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
   grid.height_px = grid.head_px + 340 * static_cast<double>(grid.rows);
   const auto panel = [&, &panels = panels](std::size_t column, std::size_t row, FigureScript& figure) {
     const std::size_t n = row * grid.columns + column;
-    if (n >= panels.size() || data[n].empty()) return std::string();
-    std::string over;
-    if (!hatched[n].empty()) {
-      over = fmt::format(
-          ", {} using 1:2:3:4:5:6 with boxxyerror fs transparent pattern 5 noborder lc rgb '#ffffff'",
-          figure.data(hatched[n]));
+    if (n >= panels.size()) return std::string();
+    const auto& [coloured, hatched, hatched_grey] = boxes[n];
+    std::vector<std::string> plots;
+    if (!coloured.empty())
+      plots.push_back(figure.data(coloured) +
+                      " using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette");
+    for (const auto& [data, paint] : {std::pair(&hatched, "ffffff"), std::pair(&hatched_grey, "9e9e9e")}) {
+      if (data->empty()) continue;
+      plots.push_back(
+          fmt::format("{} using 1:2:3:4:5:6 with boxxyerror fs transparent pattern 5 noborder lc rgb '#{}'",
+                      figure.data(*data), paint));
     }
-    if (map.line_of_equality) over += ", x with lines dt 2 lw 2 lc rgb '#d32f2f'";
-    return fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels[n])) +
-           fmt::format(
-               "plot {} using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette{}\n"
-               "unset label\nunset colorbox\n",
-               figure.data(data[n]), over);
+    if (plots.empty()) return std::string();
+    if (map.line_of_equality) plots.emplace_back("x with lines dt 2 lw 2 lc rgb '#d32f2f'");
+    return fmt::format("set title {} offset 0,-0.4 noenhanced\nplot {}\nunset label\n{}",
+                       gnuplot_quoted(panels[n]), fmt::join(plots, ", "),
+                       coloured.empty() ? "" : "unset colorbox\n");
   };
   const Figure figure =
       draw_panels(name, grid,
@@ -302,10 +315,13 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
                   panel, folder);
   const bool is_hatched = std::ranges::any_of(points, &Point::is_unreached);
   return CaptionedFigure{
-      figure.svg, fmt::format("{}: {} of the trials in a cell, by {} and {}. What is white was not tried, or "
-                              "could not be measured.{}",
-                              colour.label, map.statistic, shown_x.label, shown_y.label,
-                              is_hatched ? " In hatched cells a trial did not do all of its test." : "")};
+      figure.svg,
+      fmt::format("{}: {} of the trials in a cell, by {} and {}; all panels share the colours. What is "
+                  "white was not tried, or could not be measured.{}",
+                  colour.label, map.statistic, shown_x.label, shown_y.label,
+                  is_hatched ? " In hatched cells a trial did not do all of this part of its test; "
+                               "grey ones have none that could be measured."
+                             : "")};
 }
 
 }  // namespace osteomill

@@ -135,8 +135,10 @@ std::string unreached_words(std::size_t short_of, std::size_t done, Unreached un
   if (short_of == 0) return "";
   return fmt::format(" {} of the {} trials did not do all of their test ({}); {}.", short_of, done,
                      "not_reached in trials.csv",
-                     unreached == Unreached::dropped ? "they are left out of everything here"
-                                                     : "they count below, hatched in the maps");
+                     unreached == Unreached::dropped
+                         ? "they are left out of everything here"
+                         : "they count below, and are hatched in the maps of the part "
+                           "that they did not do");
 }
 
 std::string share_text(std::size_t done, std::size_t all) {
@@ -148,7 +150,7 @@ std::string share_text(std::size_t done, std::size_t all) {
 
 std::string list_head(const StudyDesign& design) {
   std::string head = "trial";
-  for (const std::string& key : design.varied()) head += "," + key;
+  for (const std::string& key : design.varied()) head += "," + csv_field(design.label_of(key));
   return head;
 }
 

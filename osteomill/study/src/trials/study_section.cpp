@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
 
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/milling_script.h"
 #include "osteomill/study/metric_table.h"
 #include "osteomill/study/noticeable.h"
 #include "osteomill/study/paper.h"
@@ -15,6 +17,17 @@
 #include "trials/statistics.h"
 
 namespace osteomill {
+
+std::vector<std::string> labels_of(const std::vector<AlgorithmId>& algorithms) {
+  std::vector<std::string> labels;
+  for (const AlgorithmId& algorithm : algorithms) labels.push_back(algorithm.label);
+  return labels;
+}
+
+std::string in_words(const std::vector<std::string>& all) {
+  if (all.size() < 2) return fmt::format("{}", fmt::join(all, ""));
+  return fmt::format("{} and {}", fmt::join(all.begin(), all.end() - 1, ", "), all.back());
+}
 
 namespace {
 
@@ -85,21 +98,26 @@ std::string panel(const Study& study, std::string_view phase, const Field<RunMet
   return range_for(all_values(study, phase, metric)) + plot + "\n";
 }
 
-// Breaks a text that is wider than a panel at the blank nearest to its middle.
+// Breaks a text that is wider than a panel at the blank nearest to its middle, but not between a number and
+// its unit.
 std::string in_two_lines(std::string text) {
-  constexpr std::size_t kWide = 26;
-  if (text.size() <= kWide) return text;
-  const std::size_t after = text.find(' ', text.size() / 2), before = text.rfind(' ', text.size() / 2);
-  const bool is_nearer = after == std::string::npos ||
-                         (before != std::string::npos && text.size() / 2 - before < after - text.size() / 2);
-  if (const std::size_t blank = is_nearer ? before : after; blank != std::string::npos)
-    text.replace(blank, 1, "\\n");
+  constexpr std::size_t kMostInALine = 26;
+  if (text.size() <= kMostInALine) return text;
+  std::size_t nearest = std::string::npos, least = text.size();
+  for (std::size_t blank = text.find(' '); blank != std::string::npos; blank = text.find(' ', blank + 1)) {
+    const std::size_t off = 2 * blank > text.size() ? 2 * blank - text.size() : text.size() - 2 * blank;
+    const bool is_in_number = blank > 0 && text[blank - 1] >= '0' && text[blank - 1] <= '9';
+    if (is_in_number || off >= least) continue;
+    nearest = blank;
+    least = off;
+  }
+  if (nearest != std::string::npos) text.replace(nearest, 1, "\\n");
   return text;
 }
 
 // The title stands over the whole panel: some are wider than its axes.
 std::string title(const Field<RunMetrics>& metric, const PanelGrid& grid, const PanelCell& cell) {
-  constexpr double kTitle_px = 32;
+  constexpr double kTitle_px = 28;
   return fmt::format("set label 2 \"{}\" at screen {:.4f},screen {:.4f} center\n",
                      in_two_lines(label_of(metric)),
                      (cell.left_px + 0.55 * cell.wide_px) / PanelGrid::kWidth_px,
@@ -108,9 +126,9 @@ std::string title(const Field<RunMetrics>& metric, const PanelGrid& grid, const 
 
 std::vector<LegendEntry> legend(const Study& study, std::string_view phase) {
   constexpr std::string_view kInk = "#111111";
-  std::vector<LegendEntry> entries{{phase == kMilling ? "Milling:" : "Holding still:", kInk, 105}};
+  std::vector<LegendEntry> entries{{phase == kMilling ? "Milling:" : "Holding still:", kInk, 125}};
   for (const AlgorithmId& algorithm : study.algorithms())
-    entries.push_back({algorithm.label, algorithm.colour, 135});
+    entries.push_back({algorithm.label, algorithm.colour, 155});
   entries.push_back({"a dot for each hand, a bar at the median", kInk, 310});
   return entries;
 }
@@ -119,34 +137,50 @@ std::string interval_text(const MedianInterval& interval) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", interval.median, interval.low, interval.high);
 }
 
-// "by 54 %", "3.2 times", "from 0".
-std::string size_text(const PairedComparison& pair) {
-  if (std::isinf(pair.share)) return fmt::format("by {:.2g}", pair.difference);
-  return pair.share < 1 ? fmt::format("by {:.2g} %", 100 * pair.share)
-                        : fmt::format("{:.2g} times", 1 + pair.share);
+// Returns a number with two digits, or all of those before the point.
+std::string in_two_digits(double value) {
+  return std::abs(value) < 100 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
 }
 
-// A line for each pair: "2 > 1, 3.2 times, p = 0.012" with the order strong if a hand notices it, "1, 2: same
-// for a hand (2 %), p = 0.02", and "1, 2: not settled, p = 0.3".
+// "54 % more than", "3.2 times", "0.08 more than" zero.
+std::string size_text(const PairedComparison& pair) {
+  if (std::isinf(pair.share)) return in_two_digits(pair.difference) + " more than";
+  return pair.share < 1 ? in_two_digits(100 * pair.share) + " % more than"
+                        : in_two_digits(1 + pair.share) + " times";
+}
+
+// A sentence for each pair: "2 is 3.2 times 1, p = 0.012" with the order strong if a hand notices it, "2 is 2
+// % more than 1: same for a hand, p = 0.02", and "1 and 2: not settled, p = 0.3".
 Cell differences(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
   std::vector<Cell::Piece> pieces;
   for (const PairedComparison& pair : compare_algorithms(study, phase, metric)) {
     const std::string first = short_label(pair.first), second = short_label(pair.second);
     if (!pieces.empty()) pieces.push_back({"\n"});
     if (!pair.is_settled()) {
-      pieces.push_back({fmt::format("{}, {}: not settled, {}", first, second, p_text(pair.p)), Look::faint});
-    } else if (!pair.is_noticeable) {
       pieces.push_back(
-          {fmt::format("{}, {}: same for a hand ({}), {}", first, second, size_text(pair), p_text(pair.p)),
-           Look::faint});
-    } else {
-      pieces.push_back({pair.second_is_greater ? fmt::format("{} > {}", second, first)
-                                               : fmt::format("{} > {}", first, second),
-                        Look::strong});
-      pieces.push_back({fmt::format(", {}, {}", size_text(pair), p_text(pair.p))});
+          {fmt::format("{} and {}: not settled, {}", first, second, p_text(pair.p)), Look::faint});
+      continue;
     }
+    pieces.push_back({fmt::format("{} is {} {}", pair.second_is_greater ? second : first, size_text(pair),
+                                  pair.second_is_greater ? first : second),
+                      pair.is_noticeable ? Look::strong : Look::faint});
+    pieces.push_back(
+        {fmt::format("{}{}, {}", pair.is_noticeable ? "" : ": same for a hand",
+                     pair.is_less_than_tremor ? ", less than another tremor gives" : "", p_text(pair.p)),
+         pair.is_noticeable ? Look::plain : Look::faint});
   }
   return pieces;
+}
+
+// Returns by how much the figure differs between two runs of one hand that differ in its tremor alone: the
+// median over the pairs of runs; not a number if no hand tried other tremors.
+double given_by_tremor(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
+                       const Field<RunMetrics>& figure) {
+  const std::vector<double> values = study.values_by_tremor(algorithm, phase, figure.get);
+  std::vector<double> differences;
+  for (std::size_t a = 0; a < values.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) differences.push_back(std::abs(values[a] - values[b]));
+  return differences.empty() ? kNotMeasured : distribution_of(differences).median;
 }
 
 // "0.02 [0.01, 0.03]", of one hand without the interval, and with the hands if it could not be measured in
@@ -156,9 +190,13 @@ Cell values_cell(const Study& study, const AlgorithmId& algorithm, std::string_v
   const std::vector<double> values = study.values(algorithm, phase, metric.get);
   const std::size_t hands = study.seeds().size();
   if (values.empty()) return {contact_words(study.contact(algorithm, phase)), Look::words};
-  const std::string text =
+  std::string text =
       hands == 1 ? fmt::format("{:.3g}", values.front()) : interval_text(median_interval(values));
-  return values.size() == hands ? text : fmt::format("{} in {} of {} hands", text, values.size(), hands);
+  if (values.size() != hands) text += fmt::format(" in {} of {} hands", values.size(), hands);
+  const double by_tremor = given_by_tremor(study, algorithm, phase, metric);
+  if (std::isnan(by_tremor) || metric.has(kOfTheMachine)) return text;
+  return std::vector<Cell::Piece>{{std::move(text)},
+                                  {fmt::format("\ntremor {:.2g}", by_tremor), Look::faint}};
 }
 
 // Fewer hands cannot show a difference.
@@ -208,6 +246,13 @@ Table algorithms_table(const Study& study, std::string_view phase) {
   return table;
 }
 
+// Returns how many runs of one hand differ in its tremor alone; 0 if no hand tried others.
+std::size_t tremors_tried(const Study& study) {
+  if (study.phases().empty()) return 0;
+  const auto steps = [](const RunMetrics& m) { return m.steps; };
+  return study.values_by_tremor(study.algorithms().front(), study.phases().front(), steps).size();
+}
+
 // Returns paragraphs on the meaning of the numbers and how far they can be trusted.
 std::vector<std::string> how_to_read(const Study& study) {
   const std::size_t n = study.seeds().size();
@@ -225,7 +270,7 @@ std::vector<std::string> how_to_read(const Study& study) {
       "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
       "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
       "every trial. Recordings are kept of seed {} alone, which is the one that the figures of force, "
-      "torque, shaft and path show; of the others only these figures of merit.",
+      "torque, shaft and path show.",
       n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front())};
   paragraphs.push_back(
       interval.is_range
@@ -237,12 +282,21 @@ std::vector<std::string> how_to_read(const Study& study) {
                         100 * interval.coverage));
   paragraphs.push_back(fmt::format(
       "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, corrected "
-      "after Holm over what is compared in one row (not over the rows); bold ones are significant (p at most "
-      "{}). The least p that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
+      "after Holm over what is compared in one row (not over the rows). The size of a "
+      "difference is its median over the hands, in bold if a hand notices it; one with p above {} is not "
+      "settled. The least p that {} hands can give is "
+      "{:.2g}, after the correction {:.2g}{}.",
       kSignificance, n, min_p(n), min_corrected,
       min_corrected > kSignificance ? ", so that no difference can be significant here and none is shown"
                                     : ""));
   paragraphs.push_back(about_noticeable());
+  if (const std::size_t runs = tremors_tried(study); runs > 0) {
+    paragraphs.push_back(fmt::format(
+        "Below a value stands what tremor alone gives: by how much two runs differ in which one and the same "
+        "hand, that of seed {}, has another tremor (the median over the pairs of {} such runs). A difference "
+        "below that shows over many hands, but not from one run to the next.",
+        study.seeds().front(), runs));
+  }
   paragraphs.emplace_back(
       "Compute times are the machine's: those of the first seed were taken with nothing else of this program "
       "running, the others with a trial beside on each further core. Everything else comes out the same on "
@@ -260,16 +314,25 @@ Cell verdict_cell(const StudyFinding& finding, bool one_hand) {
                                                                               : Look::faint};
 }
 
-Table findings_table(const Study& study) {
+// Returns the findings of which there is what they need.
+std::vector<StudyFinding> recorded_findings(const Study& study) {
+  std::vector<StudyFinding> findings = check_study_findings(study);
+  std::erase_if(findings, [](const StudyFinding& finding) {
+    return finding.of_medians.verdict == Verdict::not_recorded;
+  });
+  return findings;
+}
+
+Table findings_table(const Study& study, const std::vector<StudyFinding>& findings) {
   const bool one = study.seeds().size() == 1;
   Table table{{"The paper found", one ? "Measured here" : "Medians over the hands",
-               one ? "One hand settles nothing" : "Verdict", "Rule"},
+               one ? "In one hand, which settles nothing" : "Verdict", "Rule"},
               {}};
   if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
-  for (const StudyFinding& f : check_study_findings(study)) {
+  for (const StudyFinding& f : findings) {
     std::vector<Cell> row{f.of_medians.paper_says, f.of_medians.measured, verdict_cell(f, one)};
     if (!one) row.insert(row.end(), {fmt::format("{} of {}", f.agreeing, f.tested), p_text(f.p)});
-    row.emplace_back("agrees if " + f.of_medians.rule);
+    row.emplace_back((one ? "holds if " : "agrees if ") + f.of_medians.rule);
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -284,17 +347,17 @@ Table verdicts_table(const Study& study) {
   };
   std::map<Verdict, Findings> findings;
   std::size_t all = 0;
-  for (const StudyFinding& f : check_study_findings(study)) {
+  for (const StudyFinding& f : recorded_findings(study)) {
     if (f.of_medians.of_the_machine) continue;
     ++all;
     Findings& alike = findings[one ? f.of_medians.verdict : f.verdict];
     alike.verdict = verdict_cell(f, one);
     alike.which.push_back(f.of_medians.paper_says);
     if (!one && is_tested(f.verdict))
-      alike.which.back() += fmt::format(", in {} of {}", f.agreeing, f.tested);
+      alike.which.back() += fmt::format(", in {} of {} hands", f.agreeing, f.tested);
   }
-  Table table{{fmt::format("The paper's {} findings on force, torque and shaft", all), "How many", "Which"},
-              {}};
+  Table table{
+      {fmt::format("{} of the paper's findings on force, torque and shaft", all), "How many", "Which"}, {}};
   for (const auto& [verdict, alike] : findings) {
     table.rows.push_back(
         {alike.verdict, fmt::format("{}", alike.which.size()),
@@ -323,43 +386,51 @@ std::vector<Question> questions_of(const Study& study) {
   return all;
 }
 
-// An algorithm's place in a question. Not settled if the hands do not settle it against another one.
+// An algorithm's place in a question.
 struct Rank {
   AlgorithmId algorithm;
   std::size_t place = 1;
-  bool is_settled = true;
-  // Another one is the same for a hand.
-  bool is_shared = false;
+  // False if the figure is missing in half of the hands or more: it has no place, and takes none.
+  bool is_measured = true;
+  // Short labels of those against which the hands do not settle it, and of those that are the same for a
+  // hand.
+  std::vector<std::string> open = {}, alike = {};
+
+  bool is_first() const { return is_measured && open.empty() && place == 1; }
 };
 
-std::vector<Rank> ranks_of(const Study& study, const Question& question) {
+// Ranks these algorithms among themselves.
+std::vector<Rank> ranks_of(const Study& study, const Question& question,
+                           const std::vector<AlgorithmId>& algorithms) {
   std::vector<Rank> ranks;
   const Field<RunMetrics>& figure = metric(question.column);
-  // Which lacks the figure in most hands lost contact, and has no place.
-  for (const AlgorithmId& algorithm : study.algorithms())
+  for (const AlgorithmId& algorithm : algorithms)
     ranks.push_back(
-        {algorithm, 1, study.are_most(study.values(algorithm, question.phase, figure.get).size())});
-  const auto rank_of = [&](const AlgorithmId& algorithm) -> Rank& {
-    return *std::ranges::find(ranks, algorithm, &Rank::algorithm);
-  };
+        {.algorithm = algorithm,
+         .is_measured = study.are_most(study.values(algorithm, question.phase, figure.get).size())});
   for (const PairedComparison& pair : compare_algorithms(study, question.phase, figure)) {
-    Rank &first = rank_of(pair.first), &second = rank_of(pair.second);
-    if (!pair.is_settled()) {
-      first.is_settled = second.is_settled = false;
-    } else if (!pair.is_noticeable) {
-      first.is_shared = second.is_shared = true;
-    } else {
-      ++(pair.second_is_greater ? second : first).place;
+    const auto first = std::ranges::find(ranks, pair.first, &Rank::algorithm);
+    const auto second = std::ranges::find(ranks, pair.second, &Rank::algorithm);
+    if (first == ranks.end() || second == ranks.end() || !first->is_measured || !second->is_measured)
+      continue;
+    if (pair.is_settled() && pair.is_noticeable) {
+      ++(pair.second_is_greater ? second : first)->place;
+      continue;
     }
+    const auto list = pair.is_settled() ? &Rank::alike : &Rank::open;
+    ((*first).*list).push_back(short_label(pair.second));
+    ((*second).*list).push_back(short_label(pair.first));
   }
   return ranks;
 }
 
 std::string rank_text(const Rank& rank) {
   constexpr const char* kEndings[] = {"th", "st", "nd", "rd"};
-  if (!rank.is_settled) return "not settled";
-  return fmt::format("{}{}{}", rank.place, kEndings[rank.place < 4 ? rank.place : 0],
-                     rank.is_shared ? ", shared: same for a hand" : "");
+  if (!rank.is_measured) return "no rank";
+  if (!rank.open.empty()) return fmt::format("not settled\nagainst {}", fmt::join(rank.open, ", "));
+  const std::string place = fmt::format("{}{}", rank.place, kEndings[rank.place < 4 ? rank.place : 0]);
+  if (rank.alike.empty()) return place;
+  return fmt::format("{}, same for\na hand as {}", place, fmt::join(rank.alike, ", "));
 }
 
 // In how many hands the algorithm did all of the test, milling and holding.
@@ -386,35 +457,47 @@ std::string head_of(const Question& question) {
                      figure.unit.empty() ? "above 20 Hz, of the mean" : "spread, " + figure.unit);
 }
 
+// Returns the value of one hand and those with other tremors, or of several the median and the rank.
+Cell answer_cell(const Study& study, const Question& question, const Rank& rank) {
+  const Field<RunMetrics>& figure = metric(question.column);
+  const auto text_of = [&](double value) {
+    return figure.unit.empty() ? share_text(value) : in_two_digits(value);
+  };
+  const std::vector<double> values = study.values(rank.algorithm, question.phase, figure.get);
+  if (values.empty()) return {contact_words(study.contact(rank.algorithm, question.phase)), Look::words};
+  std::vector<Cell::Piece> cell{{text_of(distribution_of(values).median)}};
+  if (values.size() < study.seeds().size())
+    cell.push_back({fmt::format("\n{} of {} hands", values.size(), study.seeds().size()), Look::faint});
+  if (are_compared(study))
+    cell.push_back({"\n" + rank_text(rank), rank.is_first() ? Look::strong : Look::faint});
+  if (study.seeds().size() > 1) return cell;
+  const std::vector<double> by_tremor = study.values_by_tremor(rank.algorithm, question.phase, figure.get);
+  if (by_tremor.size() > 1) {
+    const auto [least, most] = std::ranges::minmax(by_tremor);
+    const std::string from = figure.unit.empty() ? fmt::format("{:.2g}", 100 * least) : in_two_digits(least);
+    cell.push_back({fmt::format("\n{} to {}", from, text_of(most)), Look::faint});
+  }
+  return cell;
+}
+
 Table answer_table(const Study& study, const std::map<std::string, Probe>& probes) {
-  Table table{{study.seeds().size() > 1 ? "Median over the hands" : "In this hand"}, {}, true};
+  Table table{{study.seeds().size() > 1   ? "Median over the hands"
+               : tremors_tried(study) > 1 ? "In this hand\n(with other tremors)"
+                                          : "In this hand"},
+              {},
+              true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.rows.push_back({algorithm.label});
   for (const Question& question : questions_of(study)) {
     table.header.push_back(head_of(question));
-    const Field<RunMetrics>& figure = metric(question.column);
-    const std::vector<Rank> ranks = ranks_of(study, question);
-    for (std::size_t n = 0; n < ranks.size(); ++n) {
-      const std::vector<double> values = study.values(ranks[n].algorithm, question.phase, figure.get);
-      if (values.empty()) {
-        table.rows[n].emplace_back(contact_words(study.contact(ranks[n].algorithm, question.phase)),
-                                   Look::words);
-        continue;
-      }
-      const double median = distribution_of(values).median;
-      std::vector<Cell::Piece> cell{
-          {figure.unit.empty() ? share_text(median) : fmt::format("{:.2g}", median)}};
-      if (are_compared(study)) {
-        const bool first = ranks[n].is_settled && ranks[n].place == 1;
-        cell.push_back({"\n" + rank_text(ranks[n]), first ? Look::strong : Look::faint});
-      }
-      table.rows[n].emplace_back(std::move(cell));
-    }
+    const std::vector<Rank> ranks = ranks_of(study, question, study.algorithms());
+    for (std::size_t n = 0; n < ranks.size(); ++n)
+      table.rows[n].push_back(answer_cell(study, question, ranks[n]));
   }
   table.header.emplace_back("Did all of the test\nhands");
   if (!probes.empty())
     table.header.insert(table.header.end(),
                         {"Torque of the shaft on an edge\nerror", "Felt stiffness of a wall\nN/mm"});
-  table.header.emplace_back("A tick takes\nmedian, µs");
+  table.header.emplace_back("A tick of milling takes\nmedian, µs");
   const Field<RunMetrics>& cost = metric("tick_us_median");
   for (std::size_t n = 0; n < table.rows.size(); ++n) {
     const AlgorithmId algorithm = study.algorithms()[n];
@@ -424,11 +507,11 @@ Table answer_table(const Study& study, const std::map<std::string, Probe>& probe
       const auto probed = probes.find(algorithm.name);
       const bool is_probed = probed != probes.end();
       row.emplace_back(!is_probed                                ? "–"
-                       : std::isnan(probed->second.torque_error) ? "not felt"
+                       : std::isnan(probed->second.torque_error) ? "no force felt"
                                                                  : share_text(probed->second.torque_error));
       row.emplace_back(is_probed ? fmt::format("{:.3g}", probed->second.felt_N_per_mm) : "–");
     }
-    row.emplace_back(shown(distribution_of(study.values(algorithm, kMilling, cost.get)).median));
+    row.emplace_back(in_two_digits(distribution_of(study.values(algorithm, kMilling, cost.get)).median));
   }
   return table;
 }
@@ -447,9 +530,9 @@ Figure draw_study_figure(const Study& study, std::string_view phase, const std::
                  .head_px = 52,
                  .left_px = 76,
                  .right_px = 10,
-                 .above_px = 52,
+                 .above_px = 64,
                  .below_px = 36};
-  grid.height_px = grid.head_px + 298 * static_cast<double>(grid.rows);
+  grid.height_px = grid.head_px + 310 * static_cast<double>(grid.rows);
   return draw_panels(
       fmt::format("study_{}", phase), grid,
       begin_panels("y") + "set format y '%g'\n" + tics(study) + legend_row(grid, legend(study, phase)),
@@ -487,6 +570,10 @@ std::vector<PairedComparison> compare_algorithms(const Study& study, std::string
       pair.difference = std::abs(distribution_of(differences).median);
       pair.share = pair.difference / lesser;
       pair.is_noticeable = pair.difference >= least_noticeable(figure, lesser);
+      // False if no hand tried other tremors.
+      pair.is_less_than_tremor =
+          pair.difference < std::fmax(given_by_tremor(study, algorithms[a], phase, figure),
+                                      given_by_tremor(study, algorithms[b], phase, figure));
       p.push_back(test.p);
     }
   }
@@ -496,57 +583,102 @@ std::vector<PairedComparison> compare_algorithms(const Study& study, std::string
 }
 
 std::string what_was_compared(const Study& study, std::string_view scan_name) {
-  std::vector<std::string> algorithms;
-  for (const AlgorithmId& algorithm : study.algorithms()) algorithms.push_back(algorithm.label);
   const std::size_t hands = study.seeds().size();
-  const bool one = algorithms.size() == 1;
+  const bool one = study.algorithms().size() == 1;
   return fmt::format(
-      "{} milled {} ({}) in {} simulated hand{}. {} was to move the burr in until it touched, mill a hole "
+      "{} milled {} ({}) in {}. {} was to move the burr in until it touched, mill a hole and push the shaft "
+      "against the hole's edge; then, with the spindle off, to stand in that hole with the shaft against the "
+      "wall and keep as still as it could.",
+      in_words(labels_of(study.algorithms())), one ? "a bone" : "the same bone", scan_name,
+      hands == 1 ? "one simulated hand" : fmt::format("{} simulated hands", hands), one ? "It" : "Each");
+}
+
+std::string about_the_table(const Study& study) {
+  std::string text =
+      "How calm a force or torque is stands in the table as its rms above 20 Hz, where a hand feels a buzz "
       "and "
-      "push the shaft against the hole's edge; then, with the spindle off, to stand in that hole with the "
-      "shaft against the wall and keep as still as it could.",
-      fmt::join(algorithms, ", "), one ? "a bone" : "the same bone", scan_name, hands, hands == 1 ? "" : "s",
-      one ? "It" : "Each");
+      "no longer follows, against its mean. The shaft is that of the simulated tool; its spread against the "
+      "handle is 0 if an algorithm shows the tool where the handle is.";
+  if (study.seeds().size() == 1 && tremors_tried(study) > 1)
+    text += fmt::format(
+        " Below each value stands the range over {} runs of this hand that differ in its tremor "
+        "alone.",
+        tremors_tried(study));
+  return text;
 }
 
 std::string too_few_hands(const Study& study) {
   const std::size_t hands = study.seeds().size(), needed = study.seeds_needed();
   if (hands >= needed || study.algorithms().size() == 1) return "";
   return fmt::format(
-      "Only {} hand{} tried this, too few to say which algorithm is the better: a difference shows in {} or "
-      "more (--seeds {}). The numbers are those of this trial.",
-      hands, hands == 1 ? "" : "s", needed, needed);
+      "Only {} tried this, too few to say which algorithm is better: it takes {} or more to show a "
+      "difference "
+      "(--seeds {}). The numbers are those of {}.",
+      hands == 1 ? "one hand" : fmt::format("{} hands", hands), needed, needed,
+      hands == 1 ? "this trial" : "these trials");
 }
 
 std::vector<Table> conclusions(const Study& study, const std::map<std::string, Probe>& probes) {
-  return {answer_table(study, probes), verdicts_table(study)};
+  std::vector<Table> tables{answer_table(study, probes), verdicts_table(study)};
+  if (tables.back().rows.empty()) tables.pop_back();
+  return tables;
 }
+
+namespace {
+
+// "1.3 % against 2.8 % with the next"
+std::string reason_for(const Study& study, const Question& question, const AlgorithmId& best,
+                       const std::vector<AlgorithmId>& others) {
+  const Field<RunMetrics>& figure = metric(question.column);
+  const auto median = [&](const AlgorithmId& algorithm) {
+    return distribution_of(study.values(algorithm, question.phase, figure.get)).median;
+  };
+  double next = std::numeric_limits<double>::infinity();
+  for (const AlgorithmId& other : others)
+    if (other != best && !study.values(other, question.phase, figure.get).empty())
+      next = std::min(next, median(other));
+  const auto text = [&](double value) {
+    return figure.unit.empty() ? share_text(value) : in_two_digits(value) + " " + figure.unit;
+  };
+  return fmt::format("{} ({}, the next {})", question.name, text(median(best)), text(next));
+}
+
+}  // namespace
 
 // An algorithm whose test most hands could not do is taken for nothing, however calm it is.
 std::string which_to_take(const Study& study) {
   if (!are_compared(study)) return "";
+  std::vector<AlgorithmId> candidates;
+  std::vector<std::string> left_out;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    const std::size_t done = hands_that_did_all(study, algorithm);
+    if (study.are_most(done))
+      candidates.push_back(algorithm);
+    else
+      left_out.push_back(fmt::format("{} ({} of {} hands did all of the test with it)", algorithm.label, done,
+                                     study.seeds().size()));
+  }
   std::map<AlgorithmId, std::vector<std::string>> reasons;
   std::vector<std::string> same, open;
   for (const Question& question : questions_of(study)) {
-    std::vector<Rank> first = ranks_of(study, question);
-    std::erase_if(first, [&](const Rank& rank) {
-      return !rank.is_settled || rank.place != 1 ||
-             !study.are_most(hands_that_did_all(study, rank.algorithm));
-    });
-    if (first.empty()) open.push_back(question.name);
-    if (first.size() > 1) same.push_back(question.name);
-    if (first.size() == 1) reasons[first.front().algorithm].push_back(question.name);
+    std::vector<Rank> first = ranks_of(study, question, candidates);
+    std::erase_if(first, [](const Rank& rank) { return !rank.is_first(); });
+    if (first.empty() || candidates.size() < 2)
+      open.emplace_back(question.name);
+    else if (first.size() > 1)
+      same.emplace_back(question.name);
+    else
+      reasons[first.front().algorithm].push_back(
+          reason_for(study, question, first.front().algorithm, candidates));
   }
-  std::vector<std::string> parts;
-  parts.reserve(reasons.size() + 2);
+  std::vector<std::string> sentences;
   for (const auto& [algorithm, names] : reasons)
-    parts.push_back(fmt::format("take {} for {}", algorithm.label, fmt::join(names, ", ")));
+    sentences.push_back(fmt::format("Take {} for {}.", algorithm.label, in_words(names)));
   if (!same.empty())
-    parts.push_back(fmt::format("several are the same for a hand at {}", fmt::join(same, ", ")));
-  if (!open.empty()) parts.push_back(fmt::format("not settled is {}", fmt::join(open, ", ")));
-  std::string text = fmt::format("{}.", fmt::join(parts, "; "));
-  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
+    sentences.push_back(fmt::format("The best are the same for a hand in this: {}.", in_words(same)));
+  if (!open.empty()) sentences.push_back(fmt::format("Not settled: {}.", in_words(open)));
+  if (!left_out.empty()) sentences.push_back(fmt::format("Not considered: {}.", in_words(left_out)));
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 Section study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
@@ -562,28 +694,38 @@ Section one_hole_section(const Study& study) {
   return {
       .title = "Holding still in one hole",
       .paragraphs = {fmt::format(
-          "Each algorithm's own hole differs, by up to some millimetres, so what is felt while holding "
-          "there is the algorithm's and the hole's. Here each hand milled once, with {}, and then held in "
-          "that hole with every algorithm.",
-          default_algorithm().id.label)},
+          "The holes of the algorithms differ, by up to a few millimetres, so what is felt while holding "
+          "comes "
+          "from both the algorithm and its hole. Here each hand milled once, with {}, and then held in that "
+          "hole with every algorithm. What is felt is counted from {:g} s after the algorithms were "
+          "exchanged.",
+          default_algorithm().id.label, ScriptSettings{}.settle_s)},
       .tables = {algorithms_table(study, kHolding)}};
 }
 
 Section findings_section(const Study& study) {
+  const std::vector<StudyFinding> findings = recorded_findings(study);
+  if (findings.empty()) return {};
   Section section{
       .title = "The paper's findings",
       .paragraphs = {
           "What section 8.2 of the paper says it found, each held against what was measured by a rule of "
-          "this project."}};
+          "this project. The paper does not give its hand, push and bone, so a finding that does not hold "
+          "here may hold there."}};
+  if (const std::size_t missing = check_study_findings(study).size() - findings.size(); missing > 0) {
+    section.paragraphs.push_back(
+        fmt::format("{} further finding{} to algorithms, phases or grips that were not tried here.", missing,
+                    missing == 1 ? " belongs" : "s belong"));
+  }
   if (study.seeds().size() > 1) {
     section.paragraphs.push_back(
         "Hands agree with the paper, or do not, if more than half do, and tossing a coin would give as many "
         "in "
-        "one of twenty tries at most, which takes five hands; else it is not settled. p is the "
-        "chance "
-        "that as many or more would agree by the toss.");
+        "one of twenty tries at most, which takes five hands; else it is not settled. p is the chance that "
+        "as "
+        "many or more would agree by the toss.");
   }
-  section.tables = {findings_table(study)};
+  section.tables = {findings_table(study, findings)};
   return section;
 }
 

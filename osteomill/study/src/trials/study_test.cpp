@@ -124,7 +124,7 @@ TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
   const Study study(rows);
   EXPECT_EQ(study.rows().size(), all);
   const StudyFinding finding = check_study_findings(study)[2];
-  EXPECT_EQ(finding.of_medians.measured, "2.4, 1.02, 0.6 N");
+  EXPECT_EQ(finding.of_medians.measured, "2 while holding, by grip 0.5, 1, 2: 2.4, 1.02, 0.6 N");
   EXPECT_EQ(finding.of_medians.verdict, Verdict::agrees);
   EXPECT_EQ(finding.agreeing, 3u) << "in the third it falls by then";
   EXPECT_EQ(finding.tested, 3u);
@@ -136,10 +136,10 @@ TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
             std::string::npos);
   EXPECT_NE(three.find("the range of all values: 3 hands are too few"), std::string::npos);
   EXPECT_NE(three.find("100 to 300 N/m"), std::string::npos);
-  EXPECT_EQ(three.find("\"strong\">2 &gt; 1<"), std::string::npos);
+  EXPECT_EQ(three.find("\"strong\">2 is "), std::string::npos);
   const std::string ten = html(study_section(Study(sample_rows(10)), {}));
   EXPECT_NE(ten.find("covers the median with 97.9 %"), std::string::npos);
-  EXPECT_NE(ten.find("\"strong\">2 &gt; 1<"), std::string::npos);
+  EXPECT_NE(ten.find("\"strong\">2 is 10 times 1<"), std::string::npos);
   // Zero throughout.
   EXPECT_EQ(ten.find("bone removed"), std::string::npos);
 }
@@ -162,13 +162,14 @@ TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
   std::ifstream in(path);
   const std::string csv{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   EXPECT_TRUE(
-      csv.starts_with("seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,algorithm,phase,steps,"));
-  EXPECT_NE(csv.find("\n2,200,5,1,point-shell,holding,0,"), std::string::npos) << csv;
+      csv.starts_with("seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,other_tremor,algorithm,"
+                      "phase,steps,"));
+  EXPECT_NE(csv.find("\n2,200,5,1,0,point-shell,holding,0,"), std::string::npos) << csv;
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
   std::filesystem::remove(path);
 }
 
-// A report of the first seed's recordings finds the other hands and grips in the table again.
+// A report of the first seed's recordings finds the other hands, grips and tremors in the table again.
 TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "study.csv";
@@ -179,6 +180,8 @@ TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
     rows.back().not_reached = "the tool was lost";
     rows.back().metrics.shaft.spread_deg = std::numeric_limits<double>::quiet_NaN();
   }
+  rows.push_back(testing_support::row(1, "surface-points", kHolding, {1.3, 2}));
+  rows.back().other_tremor = 1;
   write_study_csv(path, Study(rows));
   std::vector<MeasuredRun> recorded = sample_rows(1);
   const std::optional<Study> read = read_study_csv(path, recorded);
@@ -190,6 +193,8 @@ TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
     return std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   };
   EXPECT_EQ(text(again), text(path));
+  EXPECT_EQ(read->values_by_tremor(algorithm_named("surface-points").id, kHolding, force_hp()),
+            (std::vector<double>{1.3, 1.01}));
   EXPECT_EQ(check_study_findings(*read)[2].of_medians.measured,
             check_study_findings(Study(rows))[2].of_medians.measured);
   std::erase_if(recorded, [](const MeasuredRun& r) { return r.algorithm == "line-proxy"; });

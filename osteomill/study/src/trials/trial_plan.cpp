@@ -38,6 +38,7 @@ RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::str
   if (plan.matched_N_per_mm) {
     run.settings.push_back({std::string(kMatchedStiffnessKey), *plan.matched_N_per_mm, "N/mm"});
   }
+  if (!plan.not_matched.empty()) run.settings.push_back({std::string(kNotMatchedKey), plan.not_matched, ""});
   if (plan.probed) {
     run.settings.push_back({kFeltStiffnessKey, plan.probed->felt_N_per_mm, "N/mm"});
     if (!std::isnan(plan.probed->torque_error))
@@ -82,7 +83,7 @@ RunMetrics phase_metrics(const Recording& recording) {
   return metrics;
 }
 
-std::string broken_hold_words(const RunMetrics& metrics, std::string_view phase, double tick_s) {
+std::string broken_hold_words(const RunMetrics& metrics, std::string_view phase) {
   std::vector<std::string> parts;
   if (phase != kHolding) return "";
   if (metrics.contact.any < kHeldContact)
@@ -93,15 +94,15 @@ std::string broken_hold_words(const RunMetrics& metrics, std::string_view phase,
   }
   if (metrics.shaft.excursion_deg > kHeldTurn_deg)
     parts.push_back(fmt::format("the shaft turned by more than {:g} degrees", kHeldTurn_deg));
-  if (metrics.path_mm > kHeldPath_mm_per_s * metrics.steps * tick_s)
-    parts.push_back(fmt::format("the burr moved by more than {:g} mm/s", kHeldPath_mm_per_s));
+  if (metrics.burr_excursion_mm > kHeldBurr_mm)
+    parts.push_back(fmt::format("the burr moved by more than {:g} mm", kHeldBurr_mm));
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 MeasuredRun measured_phase(const Recording& recording) {
   const RunDescription& run = recording.description;
   MeasuredRun measured = measured_run(recording, phase_metrics(recording));
-  const std::string broken = broken_hold_words(measured.metrics, run.phase, run.tick_period_s);
+  const std::string broken = broken_hold_words(measured.metrics, run.phase);
   if (!measured.not_reached.empty() && !broken.empty()) measured.not_reached += "; ";
   measured.not_reached += broken;
   return measured;

@@ -9,11 +9,11 @@
 namespace osteomill {
 
 /// The verdict on a Finding. `not_settled`: the recordings speak neither for it nor against it;
-/// `not_recorded`: runs that it needs are not there; `lost_contact`: a run that it needs had not enough
+/// `not_recorded`: runs that it needs are not there; `too_little_contact`: a run that it needs had not enough
 /// contact.
-enum class Verdict : unsigned char { agrees, does_not_agree, not_settled, not_recorded, lost_contact };
+enum class Verdict : unsigned char { agrees, does_not_agree, not_settled, not_recorded, too_little_contact };
 
-/// Returns "agrees", "does not agree", "not settled", "not recorded" or "lost contact".
+/// Returns "agrees", "does not agree", "not settled", "not recorded" or "too little contact".
 std::string_view name_of(Verdict verdict);
 /// Returns whether the recordings sufficed to apply the finding's rule.
 inline bool is_tested(Verdict verdict) {
@@ -42,7 +42,7 @@ inline constexpr std::array<double, 3> kGrips{0.5, 1, 2};
 using GripForces = std::vector<double>;
 
 /// Returns the nine findings of the paper's section 8, as its text has them. One that needs runs which are
-/// not there is `not_recorded`, one that needs a run that had not enough contact `lost_contact`.
+/// not there is `not_recorded`, one that needs a run that had not enough contact `too_little_contact`.
 std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips);
 
 }  // namespace osteomill

@@ -54,12 +54,8 @@ struct PassivityRow {
 std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
                                            const TrialSettings& settings = {});
 
-/// Returns bone that fills z < 0, wide and deep enough to press this tool on, of voxels a twelfth of the
-/// burr's radius (0.05 to 0.5 mm).
-Volume flat_wall(const MillingTool& tool);
-
-/// Presses on the wall (wall_press.h) with the algorithm, tool, tick and device of `settings`. Throws
-/// std::invalid_argument if one is out of range.
+/// Presses on the wall (flat_wall, wall_press.h) with the algorithm, tool, tick and device of `settings`.
+/// Throws std::invalid_argument if one is out of range.
 WallPressResult press_on_wall(const TrialSettings& settings, const Volume& wall);
 
 /// Seeks the greatest `--stiffness` at which the wall stays passive, pressed as `press_on_wall` does. Throws

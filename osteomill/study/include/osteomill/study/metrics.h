@@ -63,7 +63,9 @@ inline bool is_enough_contact(double share) {
 
 /// Returns why something that is felt could not be measured: "never touched", "lost while milling", "lost
 /// while milling, after 3.2 s", "lost contact after 3.2 s", "touched for 4 % of the time", "the shaft touched
-/// for 4 % of the time" or "felt a force for 4 % of the time".
+/// for 4 % of the time", "felt a torque for 4 % of the time" or "felt a force for 4 % of the time". Medians
+/// of several hands may be enough though half of the hands had too little: "too little contact in half of the
+/// hands".
 std::string contact_words(const ContactShares& contact);
 
 /// Figures of a vector over time: force (N) or torque (N mm).
@@ -140,6 +142,9 @@ struct RunMetrics {
   /// The length of the burr's path, by its centre's place every 0.02 s: from tick to tick a trembling hand
   /// goes far without getting anywhere.
   double path_mm = 0;
+  /// The burr's greatest distance from its mean place, by the means of every 0.1 s: a burr that buzzes in one
+  /// place does not get far.
+  double burr_excursion_mm = 0;
 };
 
 /// Returns the figures of the ticks from the `first` on. Throws InputError, naming the recording, if these
@@ -179,6 +184,11 @@ struct MeasuredRun {
   double hand_damping_Ns_per_m = 0;
   /// The firmness of that hand's grip: 1 for the hand as it is, else for a trial beside it (TrialPlan::grip).
   double grip = 1;
+  /// 0 with that hand's own tremor, else the number of another one (TrialPlan::other_tremor).
+  double other_tremor = 0;
+
+  /// Returns whether this is the hand as it is, and no trial beside it.
+  bool is_own() const { return grip == 1 && other_tremor == 0; }
 };
 
 /// Returns the numbers that a run has of its hand, the columns of study.csv behind the seed.

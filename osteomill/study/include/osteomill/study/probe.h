@@ -20,10 +20,6 @@ inline constexpr const char* kFeltStiffnessKey = "probe.felt_stiffness";
 /// The key of the setting in which a recording has Probe::torque_error; it is missing if it was not measured.
 inline constexpr const char* kTorqueErrorKey = "probe.torque_error";
 
-/// Returns bone with a sharp edge along y (W) at the origin, both its faces falling away at 45 degrees: wide
-/// and fine enough for this tool's shaft to lie across.
-Volume sharp_edge(const MillingTool& tool);
-
 /// Probes the setup's algorithm with its settings on `wall` (flat_wall) and on `edge` (sharp_edge) of its
 /// tool. Throws std::invalid_argument if a setting is out of range.
 Probe probe(const MillingSetup& setup, const Volume& wall, const Volume& edge);

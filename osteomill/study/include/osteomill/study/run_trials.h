@@ -49,6 +49,9 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
 /// (findings.h).
 std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan);
 
+/// The plan's trial in the same hand with two other tremors each, by which one sees what tremor alone gives.
+std::vector<TrialPlan> trials_with_other_tremors(const TrialPlan& plan);
+
 /// Runs the trials, measures both phases, and keeps nothing else. Trials run side by side on `threads`
 /// threads, each in simulated time; except for the step times, the rows are the same for any number of
 /// threads. Warns if wrenches were clamped.
@@ -56,7 +59,8 @@ std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, 
                                           const RunEvents& events);
 
 /// Mills with `milled` and then holds in that same hole with each of `holds`, in the hand of `milled`.
-/// Returns the run of each holding. Throws std::invalid_argument if a setting is out of range.
+/// Returns the run of each holding, without its first second, in which the algorithms are exchanged. Throws
+/// std::invalid_argument if a setting is out of range.
 std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::vector<TrialPlan>& holds);
 
 /// Returns a text that no other comparison has (kComparisonKey).

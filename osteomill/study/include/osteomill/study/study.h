@@ -27,13 +27,14 @@ std::string short_label(const AlgorithmId& algorithm);
 /// can be compared seed by seed.
 class Study {
  public:
-  /// Takes rows in any order; those of other grips are kept apart. Throws std::invalid_argument if there are
-  /// none, or if a seed lacks an algorithm and phase that another has, or has it twice.
+  /// Takes rows in any order; those of other grips and tremors are kept apart. Throws std::invalid_argument
+  /// if there are none, or if a seed lacks an algorithm and phase that another has, or has it twice.
   explicit Study(std::vector<MeasuredRun> rows);
 
   /// Returns the rows by seed, in the order in which seeds first came; within a seed as in summary.csv.
   const std::vector<MeasuredRun>& rows() const { return rows_; }
-  const std::vector<MeasuredRun>& rows_of_other_grips() const { return other_grips_; }
+  /// Returns the rows of hands in other grips and with other tremors.
+  const std::vector<MeasuredRun>& rows_beside() const { return beside_; }
   const std::vector<std::uint64_t>& seeds() const { return seeds_; }
   /// Returns the rows of the n-th seed.
   std::span<const MeasuredRun> rows_of_seed(std::size_t n) const;
@@ -56,6 +57,10 @@ class Study {
   /// Returns those of `all_values` that are numbers.
   std::vector<double> values(const AlgorithmId& algorithm, std::string_view phase,
                              const RunFigure& figure) const;
+  /// Returns the figure's values in the runs of one hand that differ in its tremor alone; none if no hand
+  /// tried others.
+  std::vector<double> values_by_tremor(const AlgorithmId& algorithm, std::string_view phase,
+                                       const RunFigure& figure) const;
   /// Returns for how much of the phase the tool touched: medians of the seeds. `lost_after_s` is the median
   /// of those that lost contact, if they are no fewer than half.
   ContactShares contact(const AlgorithmId& algorithm, std::string_view phase) const;
@@ -67,17 +72,17 @@ class Study {
 
  private:
   std::vector<MeasuredRun> rows_;
-  std::vector<MeasuredRun> other_grips_;
+  std::vector<MeasuredRun> beside_;
   std::vector<std::uint64_t> seeds_;
 };
 
-/// Writes study.csv: seed, the hand's stiffness (N/m) and damping (N s/m), its grip, and the columns of
-/// summary.csv; rows of other grips last. The file appears whole or not at all. Throws InputError if it
-/// cannot be written.
+/// Writes study.csv: seed, the hand's stiffness (N/m) and damping (N s/m), its grip, the number of another
+/// tremor, and the columns of summary.csv; rows of other grips and tremors last. The file appears whole or
+/// not at all. Throws InputError if it cannot be written.
 void write_study_csv(const std::filesystem::path& path, const Study& study);
 
-/// Returns the study of these rows, of one seed, with the other hands and grips that `path` has of it;
-/// nothing if there is no such file, or if it does not have these rows' figures.
+/// Returns the study of these rows, of one seed, with the other hands, grips and tremors that `path` has of
+/// it; nothing if there is no such file, or if it does not have these rows' figures.
 std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<MeasuredRun>& rows);
 
 }  // namespace osteomill

@@ -21,7 +21,7 @@ enum class Unreached : unsigned char { marked, dropped };
 std::filesystem::path write_study_report(const StudyDesign& design, const StudyFolder& study,
                                          Unreached unreached = Unreached::marked);
 
-/// Returns the head of a study's list of trials: "trial," and the options that vary, separated by commas.
+/// Returns the head of a study's list of trials, "trial,algorithm,push (N)": what varies.
 std::string list_head(const StudyDesign& design);
 /// Returns the row of the trial of this number, from 0, in that list.
 std::string list_row(const StudyDesign& design, std::size_t number);

@@ -26,9 +26,14 @@ struct TrialPlan {
   /// The factor by which the hand grips more firmly than the study's hand; `settings` already have the hand
   /// with this grip.
   double grip = 1;
+  /// Beyond 0 the number of another tremor in the same hand; `settings` already have its seed.
+  int other_tremor = 0;
   /// The algorithm's stiffness was chosen so that a flat wall is felt as this (match_stiffness.h); nothing if
   /// it has its own.
   std::optional<double> matched_N_per_mm = std::nullopt;
+  /// One sentence on each algorithm that was left out, because no stiffness of it is felt as this; empty for
+  /// none.
+  std::string not_matched = {};
   /// The algorithm with these settings, felt where the right answer is known; nothing if it was not probed.
   std::optional<Probe> probed = std::nullopt;
   /// The value of kComparisonKey in its recordings; empty for none.
@@ -47,6 +52,9 @@ inline constexpr std::string_view kScriptHoldingKey = "script.holding";
 
 /// The key of the setting in which a recording says TrialPlan::matched_N_per_mm.
 inline constexpr std::string_view kMatchedStiffnessKey = "matched.felt_stiffness";
+
+/// The key of the setting in which it says TrialPlan::not_matched.
+inline constexpr std::string_view kNotMatchedKey = "matched.left_out";
 
 /// Returns all that a recording says about a phase of section 8.2: what any session's recording says, and
 /// hand, device and script.
@@ -67,14 +75,16 @@ RunMetrics phase_metrics(const Recording& recording);
 inline constexpr double kHeldContact = 0.9;
 /// The least share of the time of a hold with the shaft against the wall.
 inline constexpr double kHeldShaft = 0.5;
-/// The furthest that the shaft may turn from its mean direction in a hold. Hands that hold still keep to 0.2.
+/// The furthest that the shaft may turn from its mean direction in a hold. Hands that hold still keep to 1 degree
+/// with burrs of 0.5 to 3 mm and pushes of 1 to 5 N.
 inline constexpr double kHeldTurn_deg = 3;
-/// The longest path of the burr per second of a hold. Hands that hold still keep, by their tremor, to 0.9.
-inline constexpr double kHeldPath_mm_per_s = 2;
+/// The furthest that the burr may go from its mean place in a hold. Hands that hold still keep to 0.2 mm even if
+/// they buzz. A buzz in one place is held: how calm that is, is what a holding measures.
+inline constexpr double kHeldBurr_mm = 0.5;
 
 /// Returns which of these a holding of section 8.2 broke: "the tool touched for less than 90 % of the
 /// holding; the shaft turned by more than 3 degrees". Empty for none, and for a milling.
-std::string broken_hold_words(const RunMetrics& metrics, std::string_view phase, double tick_s);
+std::string broken_hold_words(const RunMetrics& metrics, std::string_view phase);
 
 /// Returns the run of a phase of section 8.2 with its figures (phase_metrics). What it did not reach is what
 /// its recording names and broken_hold_words.
