@@ -80,7 +80,9 @@ class MillingSession {
   /// as `tick`.
   void resume_from(const SessionHandover& before) noexcept;
   /// Returns the state from which another session resumes, after the last tick.
-  SessionHandover handover() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back(), spindle_.speed_rpm()}; }
+  SessionHandover handover() const {
+    return {last_X_WT_, guard_.sent(), guard_.is_held_back(), spindle_.speed_rpm()};
+  }
   /// Lets the next tick count as one that reaches no hand (Device::is_driven), as after a time without ticks.
   /// The call is as safe as `tick`.
   void hold_back() noexcept { hold_back_requested_ = true; }
