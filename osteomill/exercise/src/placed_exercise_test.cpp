@@ -89,7 +89,7 @@ TEST(PlaceExercise, RefusesWhatDoesNotFitTheScanAndNamesTheLine) {
   one.dims = {1, 1, 1};
   one.origin_mm = bone.geometry().world_from_voxel(first);
   bone.set_labels(std::make_shared<LabelMap>(std::vector<Label>{{3, "Mandible", {}, false}}, bone.geometry(),
-                                             one, std::vector<LabelMap::Place>{1}));
+                                             one, std::vector<LabelMap::LabelIndex>{1}));
   EXPECT_EQ(refusal(with_target(LabelShape{"nerve"}), bone),
             "task.toml: line 7: nerve is not in the label map, which has Mandible");
   EXPECT_EQ(refusal(with_target(LabelShape{"mandible"}), bone), "");

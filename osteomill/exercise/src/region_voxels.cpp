@@ -117,8 +117,8 @@ class Finder {
     for (std::size_t n = 0; n < map->labels().size(); ++n) {
       const Label& label = map->labels()[n];
       if (in_lower_case(label.name) != name && std::to_string(label.value) != name) continue;
-      const auto place = static_cast<LabelMap::Place>(n + 1);
-      return {map->box(), [map, place](const VoxelIndex& v) { return map->at(v) == place; }};
+      const auto index = static_cast<LabelMap::LabelIndex>(n + 1);
+      return {map->box(), [map, index](const VoxelIndex& v) { return map->at(v) == index; }};
     }
     std::string known;
     constexpr std::size_t kShown = 8;
