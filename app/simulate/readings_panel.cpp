@@ -210,7 +210,7 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
   row("removed", fmt::format("{:.2f} mm³", state.record.removed_mm3));
   const double set_rpm = simulation.milling.setup().cutting.spindle_speed_rpm;
   row("spindle", fmt::format("{:.0f} of {:.0f} rpm", std::max(state.record.spindle_rpm, 0.0), set_rpm));
-  ui::hint("The spindle's speed, and the one that it is set to");
+  ui::tooltip("The spindle's speed, and the one that it is set to");
   if (simulation.tool_source.hardware != nullptr) draw_device(view, *simulation.tool_source.hardware);
   ImGui::Separator();
   const auto& history = simulation.history;
