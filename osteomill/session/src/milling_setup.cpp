@@ -138,7 +138,7 @@ std::vector<Field<S>> law_fields() {
       field<S>(choice("milling.burr", "Kind of burr, for --law chips", "burr", names_of(burr_types())),
                &S::burr),
       field<S>({"milling.wear",
-                "",
+                "cuts",
                 {0, 1000},
                 "Cuts that the burr has made before; 20 take 20 % of its rate (--law chips)",
                 kOfTheCutting | kOfTheRecording | kMayBeAbsent,
