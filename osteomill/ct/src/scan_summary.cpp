@@ -37,6 +37,10 @@ void summarise_values(double isovalue, ScanSummary& summary) {
       sum / static_cast<double>(grid.geometry().voxel_count() - grid.voxels_without_density());
 }
 
+std::string volume_text(double volume_mm3) {
+  return volume_mm3 < 1e4 ? fmt::format("{:.4g}", volume_mm3) : fmt::format("{:.0f}", volume_mm3);
+}
+
 // "pieces      812 connected pieces of bone: 105000, 3020, 12.1 mm³ and smaller ones of 8.2 mm³ in all"
 std::string pieces_text(std::span<const double> volumes_mm3) {
   constexpr std::size_t kListed = 3;
@@ -44,12 +48,11 @@ std::string pieces_text(std::span<const double> volumes_mm3) {
                                  volumes_mm3.size() == 1 ? "" : "s");
   const std::span<const double> listed = volumes_mm3.first(std::min(kListed, volumes_mm3.size()));
   const std::span<const double> others = volumes_mm3.subspan(listed.size());
-  for (const double& volume : listed)
-    text += fmt::format("{}{:.4g}", &volume == listed.data() ? "" : ", ", volume);
+  for (const double& volume : listed) text += (&volume == listed.data() ? "" : ", ") + volume_text(volume);
   text += " mm³";
   if (!others.empty())
-    text += fmt::format(", and smaller ones of {:.4g} mm³ in all",
-                        std::accumulate(others.begin(), others.end(), 0.0));
+    text += ", and smaller ones of " + volume_text(std::accumulate(others.begin(), others.end(), 0.0)) +
+            " mm³ in all";
   return text + "\n";
 }
 
