@@ -156,7 +156,7 @@ bool is_builtin_tooth(const std::string& scan) {
 
 // Returns the phantom of this name, null for another scan. Throws InputError for a name that none has.
 const BuiltinPhantom* phantom_of(const std::string& scan) {
-  if (scan.empty() || !is_builtin(scan)) return nullptr;
+  if (is_builtin_tooth(scan) || !is_builtin(scan)) return nullptr;
   const std::string name = scan.substr(kBuiltinPrefix.size());
   std::vector<std::string> names{"tooth"};
   for (const BuiltinPhantom& phantom : builtin_phantoms()) {
