@@ -162,14 +162,16 @@ std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::ve
     holding.path = fmt::format("{}, seed {}, in one hole", hold.settings.algorithm.id.name,
                                milled.settings.hand_and_device.seed);
     holding.description = describe_trial(hold, trial.algorithm().sample_point_count(), kHolding);
+    const ScriptSettings& script = milled.settings.hand_and_device.script;
+    const double left_out_s = std::min(script.settle_s, script.holding_s / 2);
     double exchanged_s = kNotMeasured;
     while (!trial.finished()) {
       const TickRecord record = trial.tick().record;
       if (std::isnan(exchanged_s)) exchanged_s = record.time_s;
       // The leap from one algorithm to the other is no part of the holding.
-      if (record.time_s >= exchanged_s + ScriptSettings{}.settle_s) holding.records.push_back(record);
+      if (record.time_s >= exchanged_s + left_out_s) holding.records.push_back(record);
     }
-    note_shortfall(trial, milled.settings.hand_and_device.script, holding);
+    note_shortfall(trial, script, holding);
     runs.push_back(measured_phase(holding));
     runs.back().recording = nullptr;
   }

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/session/milling_script.h"
 #include "osteomill/study/metric_table.h"
 #include "osteomill/study/noticeable.h"
 #include "osteomill/study/paper.h"
@@ -139,7 +138,7 @@ std::string interval_text(const MedianInterval& interval) {
 
 // Returns a number with two digits, or all of those before the point.
 std::string in_two_digits(double value) {
-  return std::abs(value) < 100 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+  return std::abs(value) < 99.5 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
 }
 
 // "54 % more than", "3.2 times", "0.08 more than" zero.
@@ -658,12 +657,14 @@ std::string which_to_take(const Study& study) {
       left_out.push_back(fmt::format("{} ({} of {} hands did all of the test with it)", algorithm.label, done,
                                      study.seeds().size()));
   }
+  if (candidates.size() < 2)
+    return fmt::format("None is recommended, because too few did all of the test: {}.", in_words(left_out));
   std::map<AlgorithmId, std::vector<std::string>> reasons;
   std::vector<std::string> same, open;
   for (const Question& question : questions_of(study)) {
     std::vector<Rank> first = ranks_of(study, question, candidates);
     std::erase_if(first, [](const Rank& rank) { return !rank.is_first(); });
-    if (first.empty() || candidates.size() < 2)
+    if (first.empty())
       open.emplace_back(question.name);
     else if (first.size() > 1)
       same.emplace_back(question.name);
@@ -697,9 +698,10 @@ Section one_hole_section(const Study& study) {
           "The holes of the algorithms differ, by up to a few millimetres, so what is felt while holding "
           "comes "
           "from both the algorithm and its hole. Here each hand milled once, with {}, and then held in that "
-          "hole with every algorithm. What is felt is counted from {:g} s after the algorithms were "
-          "exchanged.",
-          default_algorithm().id.label, ScriptSettings{}.settle_s)},
+          "hole with every algorithm. The first second (at most half of the holding), in which the "
+          "algorithms "
+          "are exchanged, is not counted.",
+          default_algorithm().id.label)},
       .tables = {algorithms_table(study, kHolding)}};
 }
 

@@ -59,7 +59,8 @@ std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, 
                                           const RunEvents& events);
 
 /// Mills with `milled` and then holds in that same hole with each of `holds`, in the hand of `milled`.
-/// Returns the run of each holding, without its first second, in which the algorithms are exchanged. Throws
+/// Returns the run of each holding, without its first second (at most half of it), in which the
+/// algorithms are exchanged. Throws
 /// std::invalid_argument if a setting is out of range.
 std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::vector<TrialPlan>& holds);
 
