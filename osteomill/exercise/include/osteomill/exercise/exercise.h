@@ -38,6 +38,7 @@ struct RecordedShape {
   std::vector<std::filesystem::path> recordings;
   int at_least = 1;
 };
+/// One shape of a region.
 using Shape = std::variant<BoxShape, SphereShape, CylinderShape, ShellShape, LabelShape, RecordedShape>;
 
 /// A part of the scan: everything that lies in all of its shapes.

@@ -31,6 +31,7 @@ const std::vector<Measure>& all_measures();
 
 /// Returns the measure of this name; null if there is none.
 const Measure* find_measure(std::string_view name);
+/// Returns the names of all measures, in the same order.
 std::vector<std::string> measure_names();
 
 /// Returns all measures as a Markdown table, which docs/exercises.md has.

@@ -21,6 +21,7 @@ struct RecordedExercise {
   bool has_guidance = true;
 };
 
+/// Puts the exercise among the run's settings.
 void put_exercise(RunDescription& run, const RecordedExercise& exercise);
 /// Returns what the run says; nothing if it was none of an exercise.
 std::optional<RecordedExercise> recorded_exercise(const RunDescription& run);

@@ -6,9 +6,11 @@
 
 namespace osteomill {
 
-/// Return the distance of a point from a shape, mm; 0 inside. Safe in the haptic tick.
+/// Returns the distance of a point from a box, mm; 0 inside. Safe in the haptic tick.
 double distance_mm(const BoxShape& box, const Vec3& point_W) noexcept;
+/// Returns the distance of a point from a sphere, mm; 0 inside. Safe in the haptic tick.
 double distance_mm(const SphereShape& sphere, const Vec3& point_W) noexcept;
+/// Returns the distance of a point from a cylinder, mm; 0 inside. Safe in the haptic tick.
 double distance_mm(const CylinderShape& cylinder, const Vec3& point_W) noexcept;
 
 /// The distance of any point from a structure. A box, sphere or cylinder is measured exactly. A structure of

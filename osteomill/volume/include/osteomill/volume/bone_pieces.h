@@ -19,6 +19,7 @@ struct PieceChoice {
   bool keeps_all() const { return !only_largest && min_mm3 <= 0; }
 };
 
+/// Returns the fields of the choice: --keep-largest and --min-piece.
 template <>
 const std::vector<Field<PieceChoice>>& fields_of<PieceChoice>();
 
