@@ -42,14 +42,12 @@ StructureDistance::StructureDistance(const Shape& shape) : shape_(shape) {
 }
 
 StructureDistance::StructureDistance(const VoxelSet& voxels, const GridGeometry& scan)
-    : is_of_voxels_(true),
-      scan_(scan),
-      nearest_(voxels, reached_from(voxels.box(), scan.spacing_mm), scan.spacing_mm) {
+    : scan_(scan), nearest_(voxels, reached_from(voxels.box(), scan.spacing_mm), scan.spacing_mm) {
   if (!nearest_.found()) throw std::invalid_argument("StructureDistance: the structure has no voxels");
 }
 
 double StructureDistance::from(const Vec3& point_W) const noexcept {
-  if (is_of_voxels_) return from_voxels(point_W);
+  if (nearest_.found()) return from_voxels(point_W);
   if (const auto* box = std::get_if<BoxShape>(&shape_)) return distance_mm(*box, point_W);
   if (const auto* sphere = std::get_if<SphereShape>(&shape_)) return distance_mm(*sphere, point_W);
   if (const auto* cylinder = std::get_if<CylinderShape>(&shape_)) return distance_mm(*cylinder, point_W);

@@ -33,8 +33,8 @@ class StructureDistance {
   double from_voxels(const Vec3& point_W) const noexcept;
 
   Shape shape_;
-  bool is_of_voxels_ = false;
   GridGeometry scan_;
+  // Empty if the shape is a box, a sphere or a cylinder.
   NearestVoxels nearest_;
 };
 
