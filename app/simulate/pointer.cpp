@@ -166,6 +166,16 @@ void pull_tool(ViewState& view, Simulation& simulation, const ToolInput& input, 
   simulation.hand.pull_to(view.X_W_target);
 }
 
+// Stops the spindle and the push if the hand has just let go of the tool, which otherwise would mill on alone.
+void relax_if_let_go(ViewState& view, Simulation& simulation) {
+  const bool held = view.holding_tool || view.dragging_tool;
+  if (!std::exchange(view.was_held, held) || held) return;
+  simulation.milling.set_spindle(false);
+  if (!simulation.tool_source.is_pointer()) return;
+  view.X_W_target = simulation.milling.state().record.X_WT;
+  simulation.hand.pull_to(view.X_W_target);
+}
+
 void release_buttons(ViewState& view, LiveMilling& milling) {
   if (view.pedal_down) milling.set_spindle(false);
   view.pedal_down = view.dragging_tool = view.dragging_view = false;
@@ -174,6 +184,7 @@ void release_buttons(ViewState& view, LiveMilling& milling) {
 }  // namespace
 
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size) {
+  relax_if_let_go(view, simulation);
   if (is_dialogue_open()) {
     release_buttons(view, simulation.milling);
     return;

@@ -28,6 +28,8 @@ struct ViewState {
   bool holding_tool = false;
   /// Whether the left button drags the tool; decided by the place where it was pressed.
   bool dragging_tool = false;
+  /// Whether a hand was on the tool, in either way, in the picture before.
+  bool was_held = false;
   bool dragging_view = false;
   /// The left button is the spindle's pedal as long as it is down.
   bool pedal_down = false;

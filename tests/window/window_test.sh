@@ -28,6 +28,9 @@ above "$(reading touching force)" 0.2 || fail "the tool did not touch the bone"
 above 0.001 "$(reading touching removed)" || fail "bone went without the spindle"
 # By the law of chips an enamel cap goes slowly.
 above "$(reading milling removed)" 0.3 || fail "no bone was milled"
+# A tool that is let go in the bone, its spindle turning, neither presses nor mills any more.
+above 0.15 "$(reading let-go force)" || fail "the tool that was let go presses"
+[ "$(reading let-go removed)" = "$(reading let-go-later removed)" ] || fail "the tool that was let go mills"
 # With another algorithm the tool is still on the bone.
 above "$(reading other-algorithm force)" 0.02 || fail "the other algorithm feels nothing"
 above 0.001 "$(reading undone removed)" || fail "the cut was not taken back"
