@@ -143,7 +143,7 @@ same start not-full size; is full size "1400 x 900"
 
 # --- Milling, what is drawn and heard, algorithm, tool, scan's isovalue ----------------------------------------------
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; state touching
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; hold page-up 0.7 ;; wait 0.2 ;; state touching
 click ghost ;; state no-ghost ;; click ghost
 click arrows ;; state no-arrows ;; click arrows
 click spindle on ;; wait 0.6 ;; state milling ;; click sound ;; wait 0.1 ;; state silent ;; click sound
@@ -201,7 +201,7 @@ value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told 
 
 # --- A tool in bone that comes back, or grows ----------------------------------------------------------------------
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.3 ;; key t
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.3 ;; key t ;; hold page-up 0.7
 click 3 point-shell ;; settle ;; drag spindle speed 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing
 glide 640 750 0 ;; key t ;; key space ;; wheel 20 1 ;; wait 2 ;; key space ;; key t ;; wait 0.3 ;; state in-hole
 click Undo cut ;; settle ;; wait 0.5 ;; state out
