@@ -18,7 +18,7 @@ TEST(DeviceAllocation, NothingThatTheHapticThreadCallsAllocates) {
   long allocations = 0;
   for (int n = 0; n < 3000; ++n) {
     hardware.now_s += 1e-3;
-    hardware.input.X_DH.position_mm.x() = std::sin(0.1 * n);
+    hardware.input.X_BH.position_mm.x() = std::sin(0.1 * n);
     // Silent, clutched, turned, put elsewhere, lost and opened again meanwhile.
     hardware.silent = n % 100 > 80;
     hardware.input.buttons = n % 150 > 130 ? ConnectedDevice::kClutchButton : 1;

@@ -14,7 +14,7 @@ namespace osteomill::testing_support {
 struct ScriptedDevice {
   struct Got {
     double at_s;
-    Wrench wrench_D;
+    Wrench wrench_B;
   };
   DeviceCapabilities can;
   double now_s = 10;
@@ -40,14 +40,14 @@ struct ScriptedDevice {
   std::function<double()> clock() {
     return [this] { return now_s; };
   }
-  const Wrench& last() const { return got.back().wrench_D; }
+  const Wrench& last() const { return got.back().wrench_B; }
 
   /// The largest steps of force and torque from one writing to the next, a millisecond apart.
   Wrench largest_step() const {
     Wrench largest;
     for (std::size_t n = 1; n < got.size(); ++n) {
-      const Vec3 force_N = got[n].wrench_D.force_N - got[n - 1].wrench_D.force_N;
-      const Vec3 torque_Nmm = got[n].wrench_D.torque_Nmm - got[n - 1].wrench_D.torque_Nmm;
+      const Vec3 force_N = got[n].wrench_B.force_N - got[n - 1].wrench_B.force_N;
+      const Vec3 torque_Nmm = got[n].wrench_B.torque_Nmm - got[n - 1].wrench_B.torque_Nmm;
       if (force_N.norm() > largest.force_N.norm()) largest.force_N = force_N;
       if (torque_Nmm.norm() > largest.torque_Nmm.norm()) largest.torque_Nmm = torque_Nmm;
     }
@@ -70,10 +70,10 @@ struct ScriptedDevice {
       heard = device_.input;
       return ConnectionStatus::fresh;
     }
-    ConnectionStatus write(const Wrench& wrench_D) override {
+    ConnectionStatus write(const Wrench& wrench_B) override {
       if (device_.gone) return ConnectionStatus::lost;
       if (device_.busy) return ConnectionStatus::silent;
-      device_.got.push_back({device_.now_s, wrench_D});
+      device_.got.push_back({device_.now_s, wrench_B});
       return ConnectionStatus::fresh;
     }
 

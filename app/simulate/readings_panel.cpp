@@ -99,9 +99,9 @@ void draw_faults(const std::deque<TickRecord>& history) {
 
 using Step = ViewState::Calibration::Step;
 
-void save_device_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
+void save_device_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_B_mm) {
   const DeviceCapabilities& can = device.capabilities();
-  const auto turn_deg = turn_by_moves_deg(can, view.calibration.right_D_mm, up_D_mm);
+  const auto turn_deg = turn_by_moves_deg(can, view.calibration.right_B_mm, up_B_mm);
   if (!turn_deg) {
     view.dialogues.add_error(
         "The two moves were shorter than 10 mm, or both went the same way. What is known of the device stays "
@@ -118,11 +118,11 @@ void save_device_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D
   });
 }
 
-void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& handle_D_mm) {
+void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& handle_B_mm) {
   ViewState::Calibration& calibration = view.calibration;
   if (calibration.step == Step::none) {
     ImGui::SameLine(ui::px(kCalibrate_px));
-    if (ui::button("Calibrate")) calibration = {Step::right, handle_D_mm, Vec3::Zero()};
+    if (ui::button("Calibrate")) calibration = {Step::right, handle_B_mm, Vec3::Zero()};
     ui::tooltip("Two moves of your hand tell how the device stands before you; the tool stays meanwhile");
     return;
   }
@@ -134,9 +134,9 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   if (ui::button("Cancel##calibration")) {
     calibration = {};
   } else if (moved && to_the_right) {
-    calibration = {Step::up, handle_D_mm, handle_D_mm - calibration.from_D_mm};
+    calibration = {Step::up, handle_B_mm, handle_B_mm - calibration.from_B_mm};
   } else if (moved) {
-    save_device_turn(view, device, handle_D_mm - calibration.from_D_mm);
+    save_device_turn(view, device, handle_B_mm - calibration.from_B_mm);
     calibration = {};
   }
 }
@@ -157,7 +157,7 @@ void draw_device(ViewState& view, ConnectedDevice& device) {
   const DeviceReport report = device.report();
   ImGui::TextWrapped("%s", device.capabilities().name.c_str());
   ImGui::TextDisabled("%.0f poses/s", report.inputs_per_s);
-  draw_calibration(view, device, report.handle_D_mm);
+  draw_calibration(view, device, report.handle_B_mm);
   draw_complaint(report.complaint());
 }
 

@@ -37,8 +37,8 @@ struct ViewState {
   struct Calibration {
     enum class Step { none, right, up };
     Step step = Step::none;
-    Vec3 from_D_mm = Vec3::Zero();
-    Vec3 right_D_mm = Vec3::Zero();
+    Vec3 from_B_mm = Vec3::Zero();
+    Vec3 right_B_mm = Vec3::Zero();
   };
   Calibration calibration;
   /// The setup that the controls are set to, and whether milling is still to be changed to it.

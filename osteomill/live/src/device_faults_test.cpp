@@ -37,7 +37,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
   // Down onto the bone below z = 0, and into it; some feel the burr there, some the middle of it.
   void press() {
     for (int n = 0; n < 900 && (n == 0 || felt_N() < 2); ++n) {
-      hardware_.input.X_DH.position_mm.y() -= 0.01;
+      hardware_.input.X_BH.position_mm.y() -= 0.01;
       tick();
     }
     run(50);
@@ -46,14 +46,14 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
   }
   void lift() {
     for (int n = 0; n < 500; ++n) {
-      hardware_.input.X_DH.position_mm.y() += 0.01;
+      hardware_.input.X_BH.position_mm.y() += 0.01;
       tick();
     }
   }
 
   void tick(double dt_s = kTick_s) {
     hardware_.now_s += dt_s;
-    hardware_.input.X_DH.position_mm.x() = 1e-3 * std::sin(300 * hardware_.now_s);
+    hardware_.input.X_BH.position_mm.x() = 1e-3 * std::sin(300 * hardware_.now_s);
     if (!hangs_) {
       record_ = session_.tick(device_, {.time_s = hardware_.now_s, .dt_s = dt_s, .spindle_on = spindle_on_});
     }
@@ -99,7 +99,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
     EXPECT_TRUE(record_.driven);
     lift();
     EXPECT_EQ(record_.fault, WrenchFault::none);
-    for (const auto& got : hardware_.got) EXPECT_LE(got.wrench_D.force_N.norm(), WrenchGuard::kFreeForce_N);
+    for (const auto& got : hardware_.got) EXPECT_LE(got.wrench_B.force_N.norm(), WrenchGuard::kFreeForce_N);
     press();
     expect_no_step();
   }
@@ -173,18 +173,18 @@ TEST_P(DeviceFaults, TakesAWrenchWithEveryPoseButRarely) {
 }
 
 TEST_P(DeviceFaults, GivesNumbersThatAreNone) {
-  const Pose before = hardware_.input.X_DH;
+  const Pose before = hardware_.input.X_BH;
   expect_zero_after(
-      [this] { hardware_.input.X_DH.position_mm.y() = std::numeric_limits<double>::quiet_NaN(); }, 1);
+      [this] { hardware_.input.X_BH.position_mm.y() = std::numeric_limits<double>::quiet_NaN(); }, 1);
   EXPECT_EQ(record_.fault, WrenchFault::pose_not_finite);
-  expect_slow_return([&] { hardware_.input.X_DH = before; });
+  expect_slow_return([&] { hardware_.input.X_BH = before; });
 }
 
 // Deeper into the bone, where 20 N would be asked for.
 TEST_P(DeviceFaults, JumpsBy50mm) {
   const double before_N = felt_N();
   hardware_.got.clear();
-  hardware_.input.X_DH.position_mm.y() -= 50;
+  hardware_.input.X_BH.position_mm.y() -= 50;
   run(2);
   EXPECT_EQ(record_.fault, WrenchFault::pose_jumped);
   run(kTicksToZero);
@@ -222,7 +222,7 @@ TEST_P(DeviceFaults, TicksComeLateBy5ms) {
   for (int late = 0; late < 20; ++late) {
     for (int n = 0; n < 5; ++n) {
       hardware_.now_s += kTick_s;
-      hardware_.input.X_DH.position_mm.x() = 1e-3 * std::sin(300 * hardware_.now_s);
+      hardware_.input.X_BH.position_mm.x() = 1e-3 * std::sin(300 * hardware_.now_s);
       device_.exchange();
     }
     hardware_.now_s += kTick_s;

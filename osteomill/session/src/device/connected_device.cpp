@@ -100,7 +100,7 @@ class ConnectedDevice::Exchange {
     std::uint64_t reconnects = 0;
   };
   struct RequestedWrench {
-    Wrench wrench_D;
+    Wrench wrench_B;
     double at_s = -std::numeric_limits<double>::infinity();
   };
   LatestValue<ReceivedInput> latest_input;
@@ -133,7 +133,7 @@ class ConnectedDevice::Exchange {
   DeviceCapabilities opened_;
   ReceivedInput newest_;
   // The last wrench that went out, and its time.
-  Wrench sent_D_;
+  Wrench sent_B_;
   double sent_s_;
   // Progress of the rise from zero, 0 to 1.
   double blended_ = 0;
@@ -227,7 +227,7 @@ void ConnectedDevice::Exchange::store_input(const DeviceInput& input) {
   const double now_s = now_s_();
   newest_.input = input;
   newest_.at_s = now_s;
-  newest_.is_pose = is_pose(input.X_DH);
+  newest_.is_pose = is_pose(input.X_BH);
   if (newest_.is_pose) {
     if (now_s - last_pose_s_ > kMaxPoseGap_s) ++newest_.reconnects;
     last_pose_s_ = now_s;
@@ -246,7 +246,7 @@ void ConnectedDevice::Exchange::set_gate(bool is_open) {
 bool ConnectedDevice::Exchange::check_drivable(double now_s) {
   const RequestedWrench& newest_wrench = requested_wrench.read();
   const bool late = now_s - newest_wrench.at_s > kMaxAge_s;
-  if (late && !wrench_was_late_ && !is_zero(newest_wrench.wrench_D)) ++pending_report_.late_wrenches;
+  if (late && !wrench_was_late_ && !is_zero(newest_wrench.wrench_B)) ++pending_report_.late_wrenches;
   wrench_was_late_ = late;
   if (is_disengaged.load(std::memory_order_acquire)) set_gate(false);
   return !late && gate.load(std::memory_order_relaxed) % 2 == 1;
@@ -256,23 +256,23 @@ bool ConnectedDevice::Exchange::check_drivable(double now_s) {
 ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
   const double lapse_s = connection_->capabilities().watchdog_s;
   if (lapse_s > 0 && now_s - sent_s_ > lapse_s) {
-    sent_D_ = {};
+    sent_B_ = {};
     blended_ = 0;
   }
   const double passed_s = std::clamp(now_s - sent_s_, 0.0, kMaxAge_s);
   const double share = driven ? std::min(1.0, blended_ + passed_s / kBlend_s) : 0;
-  const Wrench wanted = make_safe(requested_wrench.read().wrench_D, opened_.limits).wrench;
+  const Wrench wanted = make_safe(requested_wrench.read().wrench_B, opened_.limits).wrench;
   const Wrench target = share * wanted;
-  const Wrench next = approach(sent_D_, target, kHandWrenchRates, std::min(passed_s, kRound_s));
+  const Wrench next = approach(sent_B_, target, kHandWrenchRates, std::min(passed_s, kRound_s));
   const ConnectionStatus status = connection_->write(next);
   if (status == ConnectionStatus::fresh) {
-    sent_D_ = next;
+    sent_B_ = next;
     sent_s_ = now_s;
   }
   if (status == ConnectionStatus::fresh || share == 0) blended_ = share;
-  delivered_fraction.store(driven ? sent_fraction(wanted.force_N, sent_D_.force_N) : 0,
+  delivered_fraction.store(driven ? sent_fraction(wanted.force_N, sent_B_.force_N) : 0,
                            std::memory_order_relaxed);
-  at_rest.store(is_zero(sent_D_), std::memory_order_release);
+  at_rest.store(is_zero(sent_B_), std::memory_order_release);
   return status;
 }
 
@@ -281,7 +281,7 @@ ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
 void ConnectedDevice::Exchange::ramp_to_zero() {
   double now_s = sent_s_;
   try {
-    for (int n = 0; n < kMaxFinalRounds && !is_zero(sent_D_); ++n) {
+    for (int n = 0; n < kMaxFinalRounds && !is_zero(sent_B_); ++n) {
       const ConnectionStatus status = send(now_s += kRound_s, false);
       if (status == ConnectionStatus::lost) return;
       std::this_thread::sleep_for(1ms);
@@ -298,7 +298,7 @@ void ConnectedDevice::Exchange::drop_connection(const std::string& reason) {
   set_gate(false);
   // Its own remarks go with it.
   newest_.input.not_driven = newest_.input.remark = nullptr;
-  sent_D_ = {};
+  sent_B_ = {};
   blended_ = 0;
   delivered_fraction.store(0, std::memory_order_relaxed);
   lost_s_ = now_s_();
@@ -350,7 +350,7 @@ void ConnectedDevice::Exchange::publish_report(State state, double now_s) {
     pending_report_.state = state;
     pending_report_.since_s = now_s;
   }
-  pending_report_.handle_D_mm = newest_.input.X_DH.position_mm;
+  pending_report_.handle_B_mm = newest_.input.X_BH.position_mm;
   if (const std::unique_lock lock(report_mutex_, std::try_to_lock); lock) published_report_ = pending_report_;
 }
 
@@ -408,16 +408,16 @@ Pose ConnectedDevice::read_pose() noexcept {
   if (const Mapping& mapping = mapping_.read();
       std::exchange(mapping_number_, mapping.number) != mapping.number) {
     workspace_.set(mapping.settings, mapping.R_WV);
-    workspace_.anchor(X_WD_, input.X_DH);
+    workspace_.anchor(X_WD_, input.X_BH);
   }
-  if (std::exchange(needs_anchor_, false)) workspace_.anchor(X_WT_, input.X_DH);
-  X_WD_ = workspace_.tool_pose(input.X_DH);
+  if (std::exchange(needs_anchor_, false)) workspace_.anchor(X_WT_, input.X_BH);
+  X_WD_ = workspace_.tool_pose(input.X_BH);
   return X_WD_;
 }
 
 void ConnectedDevice::write_wrench(const Wrench& wrench) noexcept {
   exchange_->requested_wrench.write(
-      {workspace_.wrench_D(wrench, shaft_direction(X_WD_)), exchange_->now_s()});
+      {workspace_.wrench_B(wrench, shaft_direction(X_WD_)), exchange_->now_s()});
 }
 
 void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) noexcept {

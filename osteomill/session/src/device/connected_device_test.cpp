@@ -32,7 +32,7 @@ class ConnectedDeviceTest : public ::testing::Test {
   void tick() {
     hardware_.now_s += kTick_s;
     // A hand trembles.
-    hardware_.input.X_DH.position_mm.x() += trembles_ ? 1e-3 * std::sin(300 * hardware_.now_s) : 0;
+    hardware_.input.X_BH.position_mm.x() += trembles_ ? 1e-3 * std::sin(300 * hardware_.now_s) : 0;
     if (!hangs_) {
       pose_ = device_.read_pose();
       device_.write_wrench(is_finite(pose_) ? asked_ : Wrench{});
@@ -58,7 +58,7 @@ TEST_F(ConnectedDeviceTest, MovesTheToolFromWhereItWasPutAndTurnsTheWrenchBack) 
   trembles_ = false;
   run(2);
   const Vec3 before_mm = pose_.position_mm;
-  hardware_.input.X_DH.position_mm += Vec3(0, 1, 0);
+  hardware_.input.X_BH.position_mm += Vec3(0, 1, 0);
   // Up on the screen is up on the patient, and the force of the bone below is up as well.
   asked_.force_N = {0, 0, 3};
   run(3);
@@ -109,14 +109,14 @@ TEST_F(ConnectedDeviceTest, SoIsItForADeviceThatIsTooSlow) {
 
 TEST_F(ConnectedDeviceTest, APoseThatIsNoneIsNotHandedOn) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Pose before = hardware_.input.X_DH;
+  const Pose before = hardware_.input.X_BH;
   for (const Pose& wrong : {Pose{{nan, 0, 0}, Quat::Identity()}, Pose{{0, 0, 0}, Quat(0, 0, 0, 0)},
                             Pose{{0, 0, 0}, Quat(nan, 0, 0, 0)}, Pose{{0, 0, 0}, Quat(2, 0, 0, 0)}}) {
-    hardware_.input.X_DH = wrong;
+    hardware_.input.X_BH = wrong;
     run(3);
     EXPECT_FALSE(is_finite(pose_));
     EXPECT_EQ(device_.report().state, State::not_finite);
-    hardware_.input.X_DH = before;
+    hardware_.input.X_BH = before;
     run(3);
     EXPECT_TRUE(is_finite(pose_));
   }
@@ -228,7 +228,7 @@ TEST_F(ConnectedDeviceTest, SoItIsForOneThatIsOpenedAgainUncalibrated) {
   hardware_.got.clear();
   run(1000);
   EXPECT_EQ(device_.report().reopened, 1u);
-  for (const auto& got : hardware_.got) EXPECT_TRUE(is_zero(got.wrench_D));
+  for (const auto& got : hardware_.got) EXPECT_TRUE(is_zero(got.wrench_B));
 }
 
 TEST_F(ConnectedDeviceTest, WhatElseThereIsToKnowIsSaidWhileItIsFelt) {
@@ -246,8 +246,8 @@ TEST_F(ConnectedDeviceTest, ADeviceThatIsBusyFeelsNoLargerSteps) {
     hardware_.busy = n % 3 != 0;
     asked_.force_N = {0, 0, n % 60 < 30 ? 19.0 : -19.0};
     tick();
-    const Vec3 asked_D(0, asked_.force_N.z(), 0);
-    EXPECT_EQ(device_.delivered_fraction(), sent_fraction(asked_D, hardware_.last().force_N)) << n;
+    const Vec3 asked_B(0, asked_.force_N.z(), 0);
+    EXPECT_EQ(device_.delivered_fraction(), sent_fraction(asked_B, hardware_.last().force_N)) << n;
   }
   EXPECT_EQ(hardware_.got.size(), 100u);
   expect_no_step();
@@ -276,7 +276,7 @@ TEST_F(ConnectedDeviceTest, ALostDeviceIsOpenedAgainAndTheToolGoesOnFromWhereItI
   EXPECT_EQ(hardware_.closed, 1);
   hardware_.gone = false;
   trembles_ = false;
-  hardware_.input.X_DH.position_mm = {100, 0, 0};
+  hardware_.input.X_BH.position_mm = {100, 0, 0};
   run(600);
   EXPECT_EQ(device_.report().state, State::ok);
   EXPECT_EQ(device_.report().reopened, 1u);
@@ -312,7 +312,7 @@ TEST_F(ConnectedDeviceTest, AClutchMovesTheHandleWithoutTheTool) {
   EXPECT_FALSE(is_finite(pose_));
   EXPECT_FALSE(device_.is_spindle_requested());
   EXPECT_EQ(felt_N(), 0);
-  hardware_.input.X_DH = {{40, -30, 20}, quaternion_from_rotation_vector({1, 0, 0})};
+  hardware_.input.X_BH = {{40, -30, 20}, quaternion_from_rotation_vector({1, 0, 0})};
   run(3);
   hardware_.input.buttons = 0;
   run(3);
@@ -327,7 +327,7 @@ TEST_F(ConnectedDeviceTest, ATurnedViewTurnsTheHandsWayAndLeavesTheTool) {
   device_.set_view(quaternion_from_rotation_vector({0, 0, 1}));
   run(2);
   EXPECT_LT((pose_.position_mm - before_mm).norm(), 1e-12);
-  hardware_.input.X_DH.position_mm += Vec3(0, 0, 2);
+  hardware_.input.X_BH.position_mm += Vec3(0, 0, 2);
   run(2);
   EXPECT_LT((pose_.position_mm - before_mm - Vec3(0, 0, 2)).norm(), 1e-12);
 }
@@ -369,12 +369,12 @@ class RunningDevice : public ::testing::Test {
     ConnectionStatus read(DeviceInput& input) override {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       if (test_.dumb_) return ConnectionStatus::silent;
-      input.X_DH.position_mm.x() = 1e-3 * ++reads_;
+      input.X_BH.position_mm.x() = 1e-3 * ++reads_;
       return ConnectionStatus::fresh;
     }
-    ConnectionStatus write(const Wrench& wrench_D) override {
-      test_.felt_N_ = wrench_D.force_N.norm();
-      test_.max_N_ = std::max(test_.max_N_.load(), wrench_D.force_N.norm());
+    ConnectionStatus write(const Wrench& wrench_B) override {
+      test_.felt_N_ = wrench_B.force_N.norm();
+      test_.max_N_ = std::max(test_.max_N_.load(), wrench_B.force_N.norm());
       return ConnectionStatus::fresh;
     }
 

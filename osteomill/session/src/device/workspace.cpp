@@ -23,20 +23,20 @@ void require_valid(const WorkspaceSettings& settings) {
   require_not_negative(settings.shaft_lever_mm, "the shaft's lever");
 }
 
-std::optional<Vec3> turn_by_moves_deg(const DeviceCapabilities& device, const Vec3& right_D_mm,
-                                      const Vec3& up_D_mm) {
+std::optional<Vec3> turn_by_moves_deg(const DeviceCapabilities& device, const Vec3& right_B_mm,
+                                      const Vec3& up_B_mm) {
   constexpr double kShortest_mm = 10;
   constexpr double kMaxCosine = 0.5;
-  if (!(right_D_mm.norm() >= kShortest_mm && up_D_mm.norm() >= kShortest_mm)) return std::nullopt;
-  const Vec3 right = right_D_mm.normalized();
-  const Vec3 up = up_D_mm.normalized();
+  if (!(right_B_mm.norm() >= kShortest_mm && up_B_mm.norm() >= kShortest_mm)) return std::nullopt;
+  const Vec3 right = right_B_mm.normalized();
+  const Vec3 up = up_B_mm.normalized();
   if (std::abs(right.dot(up)) > kMaxCosine) return std::nullopt;
-  Mat3 R_DV;
-  R_DV.col(0) = right;
-  R_DV.col(2) = right.cross(up).normalized();
-  R_DV.col(1) = R_DV.col(2).cross(R_DV.col(0));
-  const Quat R_VD(Mat3(R_DV.transpose()));
-  return 180 / std::numbers::pi * rotation_vector((R_VD * device.R_VD.conjugate()).normalized());
+  Mat3 R_BV;
+  R_BV.col(0) = right;
+  R_BV.col(2) = right.cross(up).normalized();
+  R_BV.col(1) = R_BV.col(2).cross(R_BV.col(0));
+  const Quat R_VB(Mat3(R_BV.transpose()));
+  return 180 / std::numbers::pi * rotation_vector((R_VB * device.R_VB.conjugate()).normalized());
 }
 
 Quat view_from_the_front() {
@@ -45,7 +45,7 @@ Quat view_from_the_front() {
 }
 
 Workspace::Workspace(const DeviceCapabilities& device, const WorkspaceSettings& settings)
-    : drives_torque_(device.driven == 6), device_limits_(device.limits), R_VD_as_made_(device.R_VD) {
+    : drives_torque_(device.driven == 6), device_limits_(device.limits), R_VB_as_made_(device.R_VB) {
   require_valid(settings);
   set(settings, view_from_the_front());
 }
@@ -53,30 +53,30 @@ Workspace::Workspace(const DeviceCapabilities& device, const WorkspaceSettings& 
 void Workspace::set(const WorkspaceSettings& settings, const Quat& R_WV) {
   settings_ = settings;
   const Vec3 turn_rad = std::numbers::pi / 180 * settings.turn_V_deg;
-  R_WD_ = (R_WV * quaternion_from_rotation_vector(turn_rad) * R_VD_as_made_).normalized();
+  R_WB_ = (R_WV * quaternion_from_rotation_vector(turn_rad) * R_VB_as_made_).normalized();
 }
 
-void Workspace::anchor(const Pose& X_WT, const Pose& X_DH) noexcept {
+void Workspace::anchor(const Pose& X_WT, const Pose& X_BH) noexcept {
   anchor_X_WT_ = X_WT;
-  anchor_X_DH_ = X_DH;
+  anchor_X_BH_ = X_BH;
 }
 
-Pose Workspace::tool_pose(const Pose& X_DH) const noexcept {
-  const Vec3 moved_D_mm = X_DH.position_mm - anchor_X_DH_.position_mm;
-  const Quat turned_D = X_DH.orientation * anchor_X_DH_.orientation.conjugate();
-  const Quat turned_W = R_WD_ * turned_D * R_WD_.conjugate();
-  return {anchor_X_WT_.position_mm + settings_.scale * (R_WD_ * moved_D_mm),
+Pose Workspace::tool_pose(const Pose& X_BH) const noexcept {
+  const Vec3 moved_B_mm = X_BH.position_mm - anchor_X_BH_.position_mm;
+  const Quat turned_B = X_BH.orientation * anchor_X_BH_.orientation.conjugate();
+  const Quat turned_W = R_WB_ * turned_B * R_WB_.conjugate();
+  return {anchor_X_WT_.position_mm + settings_.scale * (R_WB_ * moved_B_mm),
           (turned_W * anchor_X_WT_.orientation).normalized()};
 }
 
-Wrench Workspace::wrench_D(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept {
-  const Quat R_DW = R_WD_.conjugate();
+Wrench Workspace::wrench_B(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept {
+  const Quat R_BW = R_WB_.conjugate();
   Vec3 force_W_N = wrench_W.force_N;
   // The force at the burr whose moment about the hand is the torque's.
   if (!drives_torque_ && settings_.shaft_lever_mm > 0)
     force_W_N += shaft_W.cross(wrench_W.torque_Nmm) / settings_.shaft_lever_mm;
-  return {settings_.power * settings_.scale * (R_DW * force_W_N),
-          drives_torque_ ? Vec3(settings_.power * (R_DW * wrench_W.torque_Nmm)) : Vec3::Zero()};
+  return {settings_.power * settings_.scale * (R_BW * force_W_N),
+          drives_torque_ ? Vec3(settings_.power * (R_BW * wrench_W.torque_Nmm)) : Vec3::Zero()};
 }
 
 WrenchLimits Workspace::limits_W(const WrenchLimits& limits) const {

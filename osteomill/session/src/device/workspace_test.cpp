@@ -21,7 +21,7 @@ DeviceCapabilities device(int driven) {
   DeviceCapabilities can;
   can.driven = driven;
   can.limits = {6, 100};
-  can.R_VD = quaternion_from_rotation_vector({0, 1.5, 0.2});
+  can.R_VB = quaternion_from_rotation_vector({0, 1.5, 0.2});
   return can;
 }
 
@@ -38,21 +38,21 @@ TEST(Workspace, PowerAtTheHandIsThatAtTheToolTimesTheSetting) {
   const Workspace workspace = anchored(6, settings);
   const Wrench wrench_W{{1, -2, 0.5}, {30, 10, -20}};
   const Pose X_WT = workspace.tool_pose(kHandleStart);
-  const Wrench wrench_D = workspace.wrench_D(wrench_W, shaft_direction(X_WT));
+  const Wrench wrench_B = workspace.wrench_B(wrench_W, shaft_direction(X_WT));
   constexpr double kSmall = 1e-6;
   for (const auto& [move, turn] : {std::pair{Vec3(1, 0, 0), Vec3(0, 0, 0)},
                                    {Vec3(0, 2, -1), Vec3(0, 0, 0)},
                                    {Vec3(0, 0, 0), Vec3(1, -1, 2)},
                                    {Vec3(3, 1, 1), Vec3(-1, 0, 1)}}) {
-    const Vec3 move_D_mm = kSmall * move;
-    const Vec3 turn_D_rad = kSmall * turn;
-    const Pose moved{kHandleStart.position_mm + move_D_mm,
-                     quaternion_from_rotation_vector(turn_D_rad) * kHandleStart.orientation};
+    const Vec3 move_B_mm = kSmall * move;
+    const Vec3 turn_B_rad = kSmall * turn;
+    const Pose moved{kHandleStart.position_mm + move_B_mm,
+                     quaternion_from_rotation_vector(turn_B_rad) * kHandleStart.orientation};
     const Pose X_WT_moved = workspace.tool_pose(moved);
     const double work_on_tool =
         wrench_W.force_N.dot(X_WT_moved.position_mm - X_WT.position_mm) +
         wrench_W.torque_Nmm.dot(rotation_vector(X_WT_moved.orientation * X_WT.orientation.conjugate()));
-    const double work_on_hand = wrench_D.force_N.dot(move_D_mm) + wrench_D.torque_Nmm.dot(turn_D_rad);
+    const double work_on_hand = wrench_B.force_N.dot(move_B_mm) + wrench_B.torque_Nmm.dot(turn_B_rad);
     EXPECT_NEAR(work_on_hand, settings.power * work_on_tool, 1e-4 * std::abs(work_on_tool));
   }
 }
@@ -64,7 +64,7 @@ TEST(Workspace, AnAnchorLeavesTheToolWhereItIsAndWhatFollowsMovesIt) {
   workspace.anchor(kToolStart, elsewhere);
   Pose right = elsewhere;
   // To the operator's right, as the device stands.
-  right.position_mm += device(6).R_VD.conjugate() * Vec3(3, 0, 0);
+  right.position_mm += device(6).R_VB.conjugate() * Vec3(3, 0, 0);
   const Pose moved = workspace.tool_pose(right);
   EXPECT_NEAR((moved.position_mm - (kToolStart.position_mm + kView * Vec3(6, 0, 0))).norm(), 0, 1e-12);
   EXPECT_NEAR(moved.orientation.angularDistance(kToolStart.orientation), 0, 1e-7);
@@ -84,9 +84,9 @@ TEST(Workspace, WithoutAWindowUpIsUpAndTheOperatorLooksAtTheFront) {
 TEST(Workspace, TwoMovesTellHowADeviceStands) {
   const DeviceCapabilities can = device(6);
   const Vec3 turned_deg(20, -110, 45);
-  const Quat R_VD = quaternion_from_rotation_vector(std::numbers::pi / 180 * turned_deg) * can.R_VD;
+  const Quat R_VB = quaternion_from_rotation_vector(std::numbers::pi / 180 * turned_deg) * can.R_VB;
   const auto turn_V_deg =
-      turn_by_moves_deg(can, R_VD.conjugate() * Vec3(40, 0, 0), R_VD.conjugate() * Vec3(5, 30, 0));
+      turn_by_moves_deg(can, R_VB.conjugate() * Vec3(40, 0, 0), R_VB.conjugate() * Vec3(5, 30, 0));
   ASSERT_TRUE(turn_V_deg);
   EXPECT_NEAR((*turn_V_deg - turned_deg).norm(), 0, 1e-6);
   EXPECT_FALSE(turn_by_moves_deg(can, Vec3(9, 0, 0), Vec3(0, 30, 0)));
@@ -107,17 +107,17 @@ TEST(Workspace, ADeviceOfForceAloneGetsNoTorqueAndWhatTurnsTheShaftOnlyWhenAsked
   const Vec3 shaft_W(0, 0, 1);
   // Bone 10 mm up the shaft pushes it by 2 N to the right.
   const Wrench leaning{{2, 0, 0}, Vec3(0, 0, 10).cross(Vec3(2, 0, 0))};
-  const Wrench plain = anchored(3, {}).wrench_D(leaning, shaft_W);
+  const Wrench plain = anchored(3, {}).wrench_B(leaning, shaft_W);
   EXPECT_EQ(plain.torque_Nmm, Vec3::Zero());
   EXPECT_NEAR(plain.force_N.norm(), 2, 1e-12);
   // About a hand at 40 mm that is as a quarter less at the burr.
   WorkspaceSettings settings;
   settings.shaft_lever_mm = 40;
-  const Wrench levered = anchored(3, settings).wrench_D(leaning, shaft_W);
+  const Wrench levered = anchored(3, settings).wrench_B(leaning, shaft_W);
   EXPECT_EQ(levered.torque_Nmm, Vec3::Zero());
   EXPECT_NEAR(levered.force_N.norm(), 1.5, 1e-12);
   EXPECT_NEAR((levered.force_N - 0.75 * plain.force_N).norm(), 0, 1e-12);
-  EXPECT_NEAR((anchored(6, settings).wrench_D(leaning, shaft_W).force_N - plain.force_N).norm(), 0, 1e-12);
+  EXPECT_NEAR((anchored(6, settings).wrench_B(leaning, shaft_W).force_N - plain.force_N).norm(), 0, 1e-12);
 }
 
 TEST(Workspace, SettingsOutOfRangeAreRefused) {

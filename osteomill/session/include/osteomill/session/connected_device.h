@@ -43,7 +43,7 @@ struct DeviceReport {
   std::string reason;
   double inputs_per_s = 0;
   /// The place of its handle a moment ago.
-  Vec3 handle_D_mm = Vec3::Zero();
+  Vec3 handle_B_mm = Vec3::Zero();
   /// Counts: how often it left `ok`, how often the haptic thread's wrench was too old, and how often it was
   /// opened again.
   std::uint64_t faults = 0;

@@ -14,19 +14,19 @@ struct DeviceCapabilities {
   /// Degrees of freedom that it senses (3: position alone; 6) and drives (3: force alone; 6).
   int sensed = 6;
   int driven = 6;
-  /// The rotation of the base D before the operator, if it is placed as its maker means it to be: from D into
+  /// The rotation of the base B before the operator, if it is placed as its maker means it to be: from B into
   /// the operator's view V (x to the right, y up, z towards the operator).
-  Quat R_VD = Quat::Identity();
+  Quat R_VB = Quat::Identity();
   /// The most that its motors give.
   WrenchLimits limits;
   /// The time without a wrench after which the device's own watchdog sends zero; 0 if that is not known.
   double watchdog_s = 0;
 };
 
-/// One input of a device: the pose X_DH of its handle H in its base frame D (mm), and what else it reports.
+/// One input of a device: the pose X_BH of its handle H in its base frame B (mm), and what else it reports.
 /// An orientation that it does not sense is identity.
 struct DeviceInput {
-  Pose X_DH;
+  Pose X_BH;
   /// A bit each; the first asks for the spindle.
   unsigned buttons = 0;
   /// Why no force may be sent to the device now, and what helps, to be read after "it" ("is not calibrated:
@@ -62,10 +62,10 @@ class Connection {
   /// Waits for the next input, 2 ms at most. A device that stands still gives new inputs all the same.
   /// `input` is written to only if the result is `fresh`.
   virtual ConnectionStatus read(DeviceInput& input) = 0;
-  /// Sends force and torque as they act on the hand, in D about the handle's origin; a device that drives
+  /// Sends force and torque as they act on the hand, in B about the handle's origin; a device that drives
   /// force alone drops the torque. Finite, and within the capabilities' limits. Does not wait: returns
   /// `silent` if the device cannot take it yet and goes on with the wrench before.
-  virtual ConnectionStatus write(const Wrench& wrench_D) = 0;
+  virtual ConnectionStatus write(const Wrench& wrench_B) = 0;
 };
 
 }  // namespace osteomill

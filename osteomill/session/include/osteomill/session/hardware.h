@@ -35,7 +35,7 @@ struct HardwareKind {
 
 /// Opens a device of Force Dimension (delta, omega, sigma, lambda) or a Novint Falcon, by the maker's libdhd
 /// or libdrd, opened at run time (docs/devices.md). `address` is its number among those connected, 0 if
-/// empty. It is driven once it is calibrated, by the maker's tool. Its base D: x towards the operator, y to
+/// empty. It is driven once it is calibrated, by the maker's tool. Its base B: x towards the operator, y to
 /// the right, z up. Throws InputError if the library or the device cannot be had.
 std::unique_ptr<Connection> open_force_dimension(const std::string& address);
 /// Returns how many devices of Force Dimension are connected. Throws as `open_force_dimension`.
@@ -43,7 +43,7 @@ std::string probe_force_dimension(const std::string& address);
 
 /// Opens a Haply Inverse3 by the maker's Inverse service, at HOST:PORT (127.0.0.1:10001 if empty):
 /// versions 3.1 to 3.5 of its simulation channel (docs/devices.md). Takes the first Inverse3 that it names,
-/// and the first Verse Grip, wireless before wired, without which position alone is sensed. Its base D: x to
+/// and the first Verse Grip, wireless before wired, without which position alone is sensed. Its base B: x to
 /// the right, y away from the operator, z up. Throws InputError if no service or no Inverse3 is there.
 std::unique_ptr<Connection> open_haply(const std::string& address);
 /// Returns the name of the Inverse3 at the address, and whether another program uses it. Throws as
@@ -52,7 +52,7 @@ std::string probe_haply(const std::string& address);
 
 /// Opens a device of 3D Systems (Touch, Touch X, Phantom) by the maker's libHD, opened at run time
 /// (docs/devices.md). `address` is the name that it has in the maker's setup, the default device if empty.
-/// It is driven once it is calibrated. Its base D: x to the right, y up, z towards the operator. Throws
+/// It is driven once it is calibrated. Its base B: x to the right, y up, z towards the operator. Throws
 /// InputError if the library or the device cannot be had. One at a time.
 std::unique_ptr<Connection> open_touch(const std::string& address);
 /// Returns the name of the device of 3D Systems. Throws as `open_touch`.

@@ -12,7 +12,7 @@ namespace osteomill {
 struct WorkspaceSettings {
   /// The factor by which the tool moves further than the handle.
   double scale = 1;
-  /// The share of the power at the tool that is power at the hand (Workspace::wrench_D).
+  /// The share of the power at the tool that is power at the hand (Workspace::wrench_B).
   double power = 1;
   /// The rotation by which the device stands other than its maker means it to, about the axes of the
   /// operator's view V.
@@ -27,16 +27,16 @@ struct WorkspaceSettings {
 /// 0).
 void require_valid(const WorkspaceSettings& settings);
 
-/// Returns how a device stands (turn_V_deg), from two moves of its handle in D that the operator says went to
+/// Returns how a device stands (turn_V_deg), from two moves of its handle in B that the operator says went to
 /// the right and up. Returns nothing if either is shorter than 10 mm, or they are not at a right angle within
 /// 30 degrees.
-std::optional<Vec3> turn_by_moves_deg(const DeviceCapabilities& device, const Vec3& right_D_mm,
-                                      const Vec3& up_D_mm);
+std::optional<Vec3> turn_by_moves_deg(const DeviceCapabilities& device, const Vec3& right_B_mm,
+                                      const Vec3& up_B_mm);
 
 /// Returns the view of an operator without a window: at the patient's front, with the head up.
 Quat view_from_the_front();
 
-/// Maps poses from a device's base frame D to the scan's W, and wrenches back. The handle's motion since the
+/// Maps poses from a device's base frame B to the scan's W, and wrenches back. The handle's motion since the
 /// anchor is turned and scaled, and moves the tool from where it was then; so the handle can be moved on
 /// without the tool (a clutch) by anchoring again. All but making it is safe in the haptic tick.
 class Workspace {
@@ -46,17 +46,17 @@ class Workspace {
 
   /// Sets valid settings, and the operator's view. The way of moving changes, so anchor again.
   void set(const WorkspaceSettings& settings, const Quat& R_WV);
-  /// Lets the handle at `X_DH` hold the tool at `X_WT` from now on.
-  void anchor(const Pose& X_WT, const Pose& X_DH) noexcept;
-  /// Returns the pose of the tool in W that the handle at `X_DH` holds.
-  Pose tool_pose(const Pose& X_DH) const noexcept;
+  /// Lets the handle at `X_BH` hold the tool at `X_WT` from now on.
+  void anchor(const Pose& X_WT, const Pose& X_BH) noexcept;
+  /// Returns the pose of the tool in W that the handle at `X_BH` holds.
+  Pose tool_pose(const Pose& X_BH) const noexcept;
 
   /// Returns the wrench that the device is to send for one on the tool. By virtual work: whatever small
   /// motion the hand makes, the work done on it is `power` times that done on the tool. With scale s the tool
   /// moves s times as far and turns as much, so the force is power s times the tool's, and the torque power
   /// times. `shaft_W` is the tool's shaft direction. A device that drives force alone gets the torque as its
   /// settings say.
-  Wrench wrench_D(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept;
+  Wrench wrench_B(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept;
 
   /// Returns the most that may be asked for at the tool, in W, so that the device can give it; no more than
   /// `limits`. A torque that the device does not drive is limited by `limits` alone.
@@ -66,10 +66,10 @@ class Workspace {
   WorkspaceSettings settings_;
   bool drives_torque_;
   WrenchLimits device_limits_;
-  Quat R_VD_as_made_;
-  Quat R_WD_;
+  Quat R_VB_as_made_;
+  Quat R_WB_;
   Pose anchor_X_WT_;
-  Pose anchor_X_DH_;
+  Pose anchor_X_BH_;
 };
 
 /// Returns the file in which a device's workspace is kept, by the device's name: in `config_folder()`, under

@@ -132,7 +132,7 @@ class ForceDimensionConnection final : public Connection {
       capabilities_.name += fmt::format(" {}", serial);
     capabilities_.sensed = dhd_.has_wrist(id_) ? 6 : 3;
     capabilities_.driven = dhd_.has_active_wrist(id_) ? 6 : 3;
-    capabilities_.R_VD = Mat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+    capabilities_.R_VB = Mat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
     capabilities_.limits = model.limits;
     // Reopened too, what its operator or its brakes switched off is theirs to switch on.
     StatusOfDevice found{};
@@ -166,10 +166,10 @@ class ForceDimensionConnection final : public Connection {
       result = dhd_.pose(&position_m.x(), &position_m.y(), &position_m.z(), frame, id_);
     }
     if (result != 0) return result < 0 ? ConnectionStatus::lost : ConnectionStatus::silent;
-    input.X_DH = {kMmPerM * position_m, Quat::Identity()};
+    input.X_BH = {kMmPerM * position_m, Quat::Identity()};
     if (capabilities_.sensed == 6) {
-      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_DH(&frame[0][0]);
-      input.X_DH.orientation = rotation_of(R_DH);
+      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_BH(&frame[0][0]);
+      input.X_BH.orientation = rotation_of(R_BH);
     }
     input.buttons = dhd_.button_mask(id_);
     if (Clock::now() >= next_status_) {
@@ -180,10 +180,10 @@ class ForceDimensionConnection final : public Connection {
     return ConnectionStatus::fresh;
   }
 
-  ConnectionStatus write(const Wrench& wrench_D) override {
-    const Vec3& force_N = wrench_D.force_N;
-    const Vec3 torque_Nm = capabilities_.driven == 6 ? Vec3(wrench_D.torque_Nmm / kMmPerM) : Vec3::Zero();
-    sends_zero_ = is_zero(wrench_D);
+  ConnectionStatus write(const Wrench& wrench_B) override {
+    const Vec3& force_N = wrench_B.force_N;
+    const Vec3 torque_Nm = capabilities_.driven == 6 ? Vec3(wrench_B.torque_Nmm / kMmPerM) : Vec3::Zero();
+    sends_zero_ = is_zero(wrench_B);
     const int result = dhd_.set_wrench(force_N.x(), force_N.y(), force_N.z(), torque_Nm.x(), torque_Nm.y(),
                                        torque_Nm.z(), 0, id_);
     return result < 0 ? ConnectionStatus::lost : ConnectionStatus::fresh;

@@ -63,8 +63,8 @@ TEST_F(ForceDimension, SaysWhatItCan) {
   EXPECT_NEAR(can.watchdog_s, 0.032, 1e-3);
   EXPECT_TRUE(device_->emulates_button);
   // Its x points to the operator, its y to the right, its z up.
-  EXPECT_TRUE((can.R_VD * Vec3::UnitX()).isApprox(Vec3::UnitZ()));
-  EXPECT_TRUE((can.R_VD * Vec3::UnitY()).isApprox(Vec3::UnitX()));
+  EXPECT_TRUE((can.R_VB * Vec3::UnitX()).isApprox(Vec3::UnitZ()));
+  EXPECT_TRUE((can.R_VB * Vec3::UnitY()).isApprox(Vec3::UnitX()));
 }
 
 TEST_F(ForceDimension, WhereItHasNoWatchdogNoneIsSaid) {
@@ -178,8 +178,8 @@ TEST(ForceDimensionLibrary, TheMakersOwnIsRead) {
     ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
     ASSERT_EQ(connection->write({}), ConnectionStatus::fresh);
   }
-  EXPECT_NEAR(input.X_DH.orientation.norm(), 1, 1e-6);
-  EXPECT_LT(input.X_DH.position_mm.norm(), 500);
+  EXPECT_NEAR(input.X_BH.orientation.norm(), 1, 1e-6);
+  EXPECT_LT(input.X_BH.position_mm.norm(), 500);
 }
 
 TEST_F(ForceDimension, ReadsMmFromMAndTurnsFromFrames) {
@@ -191,9 +191,9 @@ TEST_F(ForceDimension, ReadsMmFromMAndTurnsFromFrames) {
   std::copy_n(&quarter[0][0], 9, &device_->frame[0][0]);
   DeviceInput input;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
-  EXPECT_TRUE(input.X_DH.position_mm.isApprox(Vec3(10, -20, 30)));
+  EXPECT_TRUE(input.X_BH.position_mm.isApprox(Vec3(10, -20, 30)));
   EXPECT_EQ(input.buttons, 5u);
-  EXPECT_NEAR((rotation_vector(input.X_DH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
+  EXPECT_NEAR((rotation_vector(input.X_BH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
 }
 
 TEST_F(ForceDimension, WritesNAndNm) {
@@ -213,7 +213,7 @@ TEST_F(ForceDimension, AWristThatIsNotThereIsNotSensedOrDriven) {
   DeviceInput input;
   device_->frame[0][0] = 0;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
-  EXPECT_TRUE(input.X_DH.orientation.isApprox(Quat::Identity()));
+  EXPECT_TRUE(input.X_BH.orientation.isApprox(Quat::Identity()));
 }
 
 TEST_F(ForceDimension, ThatHasNoNewPoseIsSilentAndOneThatFailsLost) {

@@ -115,9 +115,9 @@ bool take_grip(const Json* grip, DeviceInput& input) {
   Vec3 xyz;
   double w = 0;
   if (!take(orientation, xyz) || !take(orientation, "w", w)) return false;
-  const Quat R_DH(w, xyz.x(), xyz.y(), xyz.z());
-  if (R_DH.norm() < 0.5) return false;
-  input.X_DH.orientation = R_DH.normalized();
+  const Quat R_BH(w, xyz.x(), xyz.y(), xyz.z());
+  if (R_BH.norm() < 0.5) return false;
+  input.X_BH.orientation = R_BH.normalized();
   // A wired grip has one button, a wireless one three.
   const Json* const buttons = member(state, "buttons");
   input.buttons = is_true(member(state, "button")) || is_true(member(buttons, "a")) ? 1 : 0;
@@ -159,7 +159,7 @@ class HaplyConnection final : public Connection {
     capabilities_.name = service_.name();
     capabilities_.sensed = has_grip_ ? 6 : 3;
     capabilities_.driven = 3;
-    capabilities_.R_VD = Mat3{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+    capabilities_.R_VB = Mat3{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
     capabilities_.limits = {10, 0};
     not_driven_ = why_not_driven(member(service_.inverse3, "status"));
     // By which the Haply Hub knows whose forces these are; only once.
@@ -183,10 +183,10 @@ class HaplyConnection final : public Connection {
     return take_state(*text, input) ? ConnectionStatus::fresh : ConnectionStatus::silent;
   }
 
-  ConnectionStatus write(const Wrench& wrench_D) override {
+  ConnectionStatus write(const Wrench& wrench_B) override {
     // One text at a time is on its way: a slow service would else work off wrenches of long ago.
     if (is_asked_) return or_lost(ConnectionStatus::silent);
-    return or_lost(ask(wrench_D.force_N) ? ConnectionStatus::fresh : ConnectionStatus::silent);
+    return or_lost(ask(wrench_B.force_N) ? ConnectionStatus::fresh : ConnectionStatus::silent);
   }
 
  private:
@@ -237,9 +237,9 @@ class HaplyConnection final : public Connection {
     const Json* const state = member(device, "state");
     DeviceInput now;
     const Json* const grip = grip_of(message);
-    if (!take(member(state, "cursor_position"), now.X_DH.position_mm) || (has_grip_ && !take_grip(grip, now)))
+    if (!take(member(state, "cursor_position"), now.X_BH.position_mm) || (has_grip_ && !take_grip(grip, now)))
       return false;
-    now.X_DH.position_mm *= kMmPerM;
+    now.X_BH.position_mm *= kMmPerM;
     if (const Json* const status = member(device, "status")) not_driven_ = why_not_driven(status);
     now.not_driven = not_driven_ != nullptr ? not_driven_ : why_grip_is_not_used(grip);
     if (gives_other_forces(state)) now.remark = kOtherForces;

@@ -60,8 +60,8 @@ TEST_F(Haply, SaysWhatItCan) {
   EXPECT_EQ(can.sensed, 6);
   EXPECT_EQ(can.driven, 3);
   // Its y points away from the operator, its z up.
-  EXPECT_TRUE((can.R_VD * Vec3::UnitY()).isApprox(-Vec3::UnitZ()));
-  EXPECT_TRUE((can.R_VD * Vec3::UnitZ()).isApprox(Vec3::UnitY()));
+  EXPECT_TRUE((can.R_VB * Vec3::UnitY()).isApprox(-Vec3::UnitZ()));
+  EXPECT_TRUE((can.R_VB * Vec3::UnitZ()).isApprox(Vec3::UnitY()));
 }
 
 TEST_F(Haply, AMinverseIsNoInverse3) {
@@ -163,8 +163,8 @@ TEST_F(Haply, ReadsMmFromMAndTheGrip) {
   open();
   DeviceInput input;
   ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
-  EXPECT_TRUE(input.X_DH.position_mm.isApprox(Vec3(10, -20, 30)));
-  EXPECT_NEAR((rotation_vector(input.X_DH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
+  EXPECT_TRUE(input.X_BH.position_mm.isApprox(Vec3(10, -20, 30)));
+  EXPECT_NEAR((rotation_vector(input.X_BH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
   EXPECT_EQ(input.buttons, 5u);
 }
 
@@ -182,7 +182,7 @@ TEST_F(Haply, WithoutAGripPositionAloneIsSensed) {
   EXPECT_EQ(connection_->capabilities().sensed, 3);
   DeviceInput input;
   ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
-  EXPECT_TRUE(input.X_DH.orientation.isApprox(Quat::Identity()));
+  EXPECT_TRUE(input.X_BH.orientation.isApprox(Quat::Identity()));
 }
 
 TEST_F(Haply, AForceGoesAsItsVersionHasIt) {

@@ -157,22 +157,22 @@ class TouchConnection final : public Connection {
     return ConnectionStatus::fresh;
   }
 
-  ConnectionStatus write(const Wrench& wrench_D) override {
+  ConnectionStatus write(const Wrench& wrench_B) override {
     if (is_lost_.load(std::memory_order_relaxed)) return ConnectionStatus::lost;
     // One a frame: in a frame that has begun the one before may still be to be sent.
     const unsigned frames = frames_done_.load(std::memory_order_acquire);
     if (frames == frames_at_writing_) return ConnectionStatus::silent;
     frames_at_writing_ = frames;
-    return send(wrench_D) ? ConnectionStatus::fresh : ConnectionStatus::silent;
+    return send(wrench_B) ? ConnectionStatus::fresh : ConnectionStatus::silent;
   }
 
  private:
   // Returns, for a wrench of zero, whether the motors have it; true for any other.
-  bool send(const Wrench& wrench_D) {
-    const bool zero = is_zero(wrench_D);
+  bool send(const Wrench& wrench_B) {
+    const bool zero = is_zero(wrench_B);
     if (!zero || !sends_zero_) ++number_;
     sends_zero_ = zero;
-    sent_.write({wrench_D, Clock::now(), number_});
+    sent_.write({wrench_B, Clock::now(), number_});
     return !zero || zero_of_.load(std::memory_order_acquire) == number_;
   }
 
@@ -195,9 +195,9 @@ class TouchConnection final : public Connection {
     // Columns, as OpenGL has them; mm.
     std::array<double, 16> transform{};
     hd_.get_doubles(kCurrentTransform, transform.data());
-    const Eigen::Map<const Eigen::Matrix4d> X_DH(transform.data());
-    input.X_DH.position_mm = X_DH.topRightCorner<3, 1>();
-    if (capabilities_.sensed == 6) input.X_DH.orientation = rotation_of(X_DH.topLeftCorner<3, 3>());
+    const Eigen::Map<const Eigen::Matrix4d> X_BH(transform.data());
+    input.X_BH.position_mm = X_BH.topRightCorner<3, 1>();
+    if (capabilities_.sensed == 6) input.X_BH.orientation = rotation_of(X_BH.topLeftCorner<3, 3>());
     int buttons = 0;
     hd_.get_integers(kCurrentButtons, &buttons);
     input.buttons = static_cast<unsigned>(buttons);

@@ -93,8 +93,8 @@ TEST_F(Touch, ATransformThatTurnsByNoRotationIsNoPose) {
   open();
   DeviceInput input;
   read_until_it_is(ConnectionStatus::fresh, input);
-  EXPECT_FALSE(is_finite(input.X_DH));
-  EXPECT_TRUE(input.X_DH.position_mm.allFinite());
+  EXPECT_FALSE(is_finite(input.X_BH));
+  EXPECT_TRUE(input.X_BH.position_mm.allFinite());
 }
 
 TEST_F(Touch, IsDrivenOnceItIsCalibrated) {
@@ -152,8 +152,8 @@ TEST_F(Touch, ReadsColumnsInMm) {
   open();
   DeviceInput input;
   ASSERT_EQ(read_until_it_is(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
-  EXPECT_EQ(input.X_DH.position_mm, Vec3(10, -20, 30));
-  EXPECT_NEAR((rotation_vector(input.X_DH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
+  EXPECT_EQ(input.X_BH.position_mm, Vec3(10, -20, 30));
+  EXPECT_NEAR((rotation_vector(input.X_BH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
   EXPECT_EQ(input.buttons, 2u);
 }
 

@@ -137,10 +137,10 @@ class UdpConnection final : public Connection {
     return partner_.socket.is_open() ? ConnectionStatus::silent : ConnectionStatus::lost;
   }
 
-  ConnectionStatus write(const Wrench& wrench_D) override {
+  ConnectionStatus write(const Wrench& wrench_B) override {
     SentWrench sent;
-    Vec3::Map(sent.force_N.data()) = wrench_D.force_N;
-    if (partner_.capabilities.driven == 6) Vec3::Map(sent.torque_Nmm.data()) = wrench_D.torque_Nmm;
+    Vec3::Map(sent.force_N.data()) = wrench_B.force_N;
+    if (partner_.capabilities.driven == 6) Vec3::Map(sent.torque_Nmm.data()) = wrench_B.torque_Nmm;
     const bool is_sent = send(partner_.socket, sent, ++wrenches_);
     if (!partner_.socket.is_open()) return ConnectionStatus::lost;
     return is_sent ? ConnectionStatus::fresh : ConnectionStatus::silent;
@@ -155,9 +155,9 @@ class UdpConnection final : public Connection {
   void take(const State& state, DeviceInput& input) {
     newest_ = state.head.sequence;
     heard_ = Clock::now();
-    input.X_DH.position_mm = Vec3::Map(state.position_mm.data());
+    input.X_BH.position_mm = Vec3::Map(state.position_mm.data());
     const auto& [w, x, y, z] = state.orientation_wxyz;
-    input.X_DH.orientation = partner_.capabilities.sensed == 6 ? Quat(w, x, y, z) : Quat::Identity();
+    input.X_BH.orientation = partner_.capabilities.sensed == 6 ? Quat(w, x, y, z) : Quat::Identity();
     input.buttons = state.buttons;
     input.not_driven = kWhyNotDriven[std::min<std::size_t>(state.not_driven, kWhyNotDriven.size() - 1)];
   }

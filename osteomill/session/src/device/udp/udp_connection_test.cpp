@@ -115,8 +115,8 @@ TEST(UdpDevice, SaysWhatItIsTakesStatesAndSendsWrenches) {
   stub.send_state(1, 7);
   DeviceInput input;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
-  EXPECT_EQ(input.X_DH.position_mm, Vec3(7, 2, 3));
-  EXPECT_TRUE(input.X_DH.orientation.isApprox(Quat(0.6, 0, 0.8, 0)));
+  EXPECT_EQ(input.X_BH.position_mm, Vec3(7, 2, 3));
+  EXPECT_TRUE(input.X_BH.orientation.isApprox(Quat(0.6, 0, 0.8, 0)));
   EXPECT_EQ(input.buttons, 3u);
   EXPECT_EQ(connection->read(input), ConnectionStatus::silent);
   EXPECT_EQ(connection->write({{1, 2, 3}, {4, 5, 6}}), ConnectionStatus::fresh);
@@ -136,7 +136,7 @@ TEST(UdpDevice, TheNewestStateCountsAndWhatWasOvertakenDoesNot) {
   stub.send_state(last - 3, 3);
   DeviceInput input;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
-  EXPECT_EQ(input.X_DH.position_mm.x(), 2);
+  EXPECT_EQ(input.X_BH.position_mm.x(), 2);
   stub.send_state(0, 4);
   EXPECT_EQ(connection->read(input), ConnectionStatus::silent);
   // A device that was silent may have restarted.
