@@ -44,8 +44,12 @@ class Cushion final : public HapticAlgorithm {
 AlgorithmDescription cushion(double height_mm) {
   AlgorithmDescription description;
   description.id = {"cushion", "9 cushion", "#8e24aa"};
-  description.settings = {
-      {{"spring", "N/mm", NumberRange::positive(), "How stiff it is", 0, "stiffness"}, 2}};
+  description.settings = {{{.name = "spring",
+                            .unit = "N/mm",
+                            .range = NumberRange::positive(),
+                            .doc = "How stiff it is",
+                            .option = "stiffness"},
+                           2}};
   description.make = [height_mm](std::span<const double> values) {
     return std::make_unique<Cushion>(values[0], height_mm);
   };

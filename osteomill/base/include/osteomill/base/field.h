@@ -44,18 +44,19 @@ struct NumberRange {
 std::string range_text(const NumberRange& range);
 
 /// All there is to say of one value, for everything that names, checks, shows, reads or writes it: the
-/// command line, files, tables.
+/// command line, files, tables. Best written with the members' names, because most fields leave some out:
+/// `{.name = "push", .unit = "N", .range = NumberRange::positive(), .doc = "Push", .option = "push"}`.
 struct FieldDescription {
   /// The name in files; empty if files do not have the value.
-  std::string name;
+  std::string name = {};
   /// The unit, in ASCII as files of settings write it ("mm^3"); empty for a pure number. For a text, a word
   /// for what it holds ("FILE").
-  std::string unit;
+  std::string unit = {};
   /// The allowed values of a number; a switch is 0 or 1. For a text that is a list, the allowed number of its
   /// entries.
-  NumberRange range;
+  NumberRange range = {};
   /// A description in one line.
-  std::string doc;
+  std::string doc = {};
   /// Bits for further properties, which the struct's header defines.
   unsigned flags = 0;
   /// The name of the option on the command line, which is also its key in files for --config and in studies;

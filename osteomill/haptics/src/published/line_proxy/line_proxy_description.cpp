@@ -15,11 +15,16 @@ constexpr NumberRange kStiffness{0.001, 1e4};
 
 const Fields& fields() {
   static const Fields all{
-      field<Settings>(
-          {"vertices", "", NumberRange::count(2, 100000),
-           "Number of vertices on the tool's centreline, including the burr's centre", 0, "vertices"},
-          &Settings::vertices),
-      field<Settings>({"stiffness", "N/mm", kStiffness, "Spring constant k of (6) and (10)", 0, "stiffness"},
+      field<Settings>({.name = "vertices",
+                       .range = NumberRange::count(2, 100000),
+                       .doc = "Number of vertices on the tool's centreline, including the burr's centre",
+                       .option = "vertices"},
+                      &Settings::vertices),
+      field<Settings>({.name = "stiffness",
+                       .unit = "N/mm",
+                       .range = kStiffness,
+                       .doc = "Spring constant k of (6) and (10)",
+                       .option = "stiffness"},
                       &Settings::stiffness_N_per_mm),
   };
   return all;

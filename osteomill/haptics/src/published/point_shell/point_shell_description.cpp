@@ -15,20 +15,29 @@ constexpr NumberRange kStiffness{0.001, 1e4}, kTorsion{1, 1e7}, kDampingTime{0, 
 
 const Fields& fields() {
   static const Fields all{
-      field<Settings>({"scale", "", NumberRange::count(1, VoxelShell::kMaxScale),
-                       "Coarseness of the shell: width of its voxels in the scan's voxels along each axis", 0,
-                       "shell-scale"},
-                      &Settings::scale),
-      field<Settings>({"translational-stiffness", "N/mm", kStiffness,
-                       "Virtual coupling between device and simulated tool, translation", 0, "stiffness"},
+      field<Settings>(
+          {.name = "scale",
+           .range = NumberRange::count(1, VoxelShell::kMaxScale),
+           .doc = "Coarseness of the shell: width of its voxels in the scan's voxels along each axis",
+           .option = "shell-scale"},
+          &Settings::scale),
+      field<Settings>({.name = "translational-stiffness",
+                       .unit = "N/mm",
+                       .range = kStiffness,
+                       .doc = "Virtual coupling between device and simulated tool, translation",
+                       .option = "stiffness"},
                       &Settings::translational_stiffness_N_per_mm),
-      field<Settings>(
-          {"torsional-stiffness", "N mm/rad", kTorsion,
-           "Virtual coupling between device and simulated tool, rotation", 0, "torsional-stiffness"},
-          &Settings::torsional_stiffness_Nmm_per_rad),
-      field<Settings>(
-          {"damping-time", "s", kDampingTime, "Ratio of the virtual coupling's damping to its stiffness"},
-          &Settings::damping_time_s),
+      field<Settings>({.name = "torsional-stiffness",
+                       .unit = "N mm/rad",
+                       .range = kTorsion,
+                       .doc = "Virtual coupling between device and simulated tool, rotation",
+                       .option = "torsional-stiffness"},
+                      &Settings::torsional_stiffness_Nmm_per_rad),
+      field<Settings>({.name = "damping-time",
+                       .unit = "s",
+                       .range = kDampingTime,
+                       .doc = "Ratio of the virtual coupling's damping to its stiffness"},
+                      &Settings::damping_time_s),
   };
   return all;
 }

@@ -16,19 +16,25 @@ constexpr NumberRange kStiffness{0.001, 1e4};
 
 const Fields& fields() {
   static const Fields all{
-      field<Settings>(
-          {"stiffness", "N/mm", kStiffness,
-           "Spring constant k of (14), of a sphere or slice of which all vertices collide", 0, "stiffness"},
-          &Settings::stiffness_N_per_mm),
-      field<Settings>(
-          {"slices", "", NumberRange::count(1, 1000), "Number of circles along the free shaft", 0, "slices"},
-          &Settings::slices),
-      field<Settings>({"sphere-vertices", "", NumberRange::count(4, 500),
-                       "Number of vertices on the burr's sphere: 24 form a snub cube, another number spreads "
-                       "like equal charges"},
+      field<Settings>({.name = "stiffness",
+                       .unit = "N/mm",
+                       .range = kStiffness,
+                       .doc = "Spring constant k of (14), of a sphere or slice of which all vertices collide",
+                       .option = "stiffness"},
+                      &Settings::stiffness_N_per_mm),
+      field<Settings>({.name = "slices",
+                       .range = NumberRange::count(1, 1000),
+                       .doc = "Number of circles along the free shaft",
+                       .option = "slices"},
+                      &Settings::slices),
+      field<Settings>({.name = "sphere-vertices",
+                       .range = NumberRange::count(4, 500),
+                       .doc = "Number of vertices on the burr's sphere: 24 form a snub cube, another number "
+                              "spreads like equal charges"},
                       &Settings::sphere_vertices),
-      field<Settings>({"circle-vertices", "", NumberRange::count(3, 100),
-                       "Number of vertices on each circle of the shaft"},
+      field<Settings>({.name = "circle-vertices",
+                       .range = NumberRange::count(3, 100),
+                       .doc = "Number of vertices on each circle of the shaft"},
                       &Settings::circle_vertices),
   };
   return all;
