@@ -58,7 +58,6 @@ std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone
                                  const std::string& command_line) {
   TrialPlan plan = trial_plan(bone, options.trial, command_line);
   plan.comparison = new_comparison();
-  plan.scan_hash = fingerprint_of(bone.volume.grid());
   plan.scan_settings = scan_settings(options.scan);
   plan.settings.hand_and_device.script.until_leant = true;
   std::vector<TrialPlan> trials;

@@ -113,10 +113,8 @@ void replay_trajectory(ReplayOptions options, const std::string& command_line) {
   Log log(options, trajectory.size(), session.volume());
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
-    RunDescription run = describe_run(session.volume(), {setup, densities},
+    RunDescription run = describe_run(session.volume(), {bone.name, scan_hash}, {setup, densities},
                                       session.algorithm().sample_point_count(), command_line);
-    run.scan_name = bone.name;
-    run.scan_hash = scan_hash;
     std::ranges::move(scan_settings(options.scan), std::back_inserter(run.settings));
     if (exercise) put_exercise(run, *exercise);
     begin_recorder(recorder, options.record, run, Recorder::FirstSession::begins_at_once);

@@ -186,14 +186,14 @@ TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
   TrialSettings set = trial_settings(asked.trial);
   set.tick_s = 1 / asked.rate_hz;
   set.device_damping_Ns_per_mm = asked.device_damping_Ns_per_mm;
-  if (design_.test != StudyTest::milling) return {wall_of(set.tool), "a wall", {}, {}, set, ""};
+  if (design_.test != StudyTest::milling) return {wall_of(set.tool), {"a wall", 0}, {}, {}, set, ""};
   Bone& bone = bone_of(asked);
   std::string place = tool_text(set.tool);
   for (const auto& text : fields_of<TrialOptions, std::string>()) place += " " + text.get(asked.trial);
   auto entry = bone.entries.find(place);
   if (entry == bone.entries.end())
     entry = bone.entries.emplace(place, entry_into(bone.volume, asked.trial)).first;
-  const TrialPlan as_set{bone.volume, bone.name, bone.densities, entry->second, set, "", true};
+  const TrialPlan as_set{bone.volume, {bone.name, 0}, bone.densities, entry->second, set, ""};
   TrialPlan plan = asked.draw_hand ? with_seed(as_set, asked.trial.milling.seed) : as_set;
   plan.grip = asked.grip;
   HandSettings& hand = plan.settings.hand_and_device.hand;

@@ -86,7 +86,7 @@ void warn_of_settings(const MillingSetup& setup, const GridGeometry& scan) {
 TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const std::string& command_line) {
   require_workable(options.milling.setup.tool, bone.volume.geometry());
   return {bone.volume,
-          bone.name,
+          {bone.name, fingerprint_of(bone.volume.grid())},
           estimate_densities(bone.volume),
           place_entry(bone.volume, options),
           trial_settings(options),

@@ -21,10 +21,9 @@ int main(int argc, char** argv) {
   setup.algorithm = osteomill::algorithm_named("point-shell");
   osteomill::MillingSession session(std::make_shared<osteomill::Volume>(scan), densities, setup);
 
-  osteomill::RunDescription run =
-      osteomill::describe_run(scan, {setup, densities}, session.algorithm().sample_point_count());
-  run.scan_name = "built-in tooth";
-  run.scan_hash = fingerprint_of(scan.grid());
+  const osteomill::ScanIdentity identity{"built-in tooth", fingerprint_of(scan.grid())};
+  const osteomill::RunDescription run =
+      describe_run(scan, identity, {setup, densities}, session.algorithm().sample_point_count());
   osteomill::Recorder recorder(path, run);
   const osteomill::MillingEntry entry = place_entry(scan, setup.tool);
   osteomill::PosedDevice device;

@@ -34,7 +34,8 @@ std::vector<MeasuredRun> rows_on(const Volume& bone, Hands hands, double phase_s
   ScriptSettings& script = settings.hand_and_device.script;
   script.until_leant = true;
   script.milling_s = script.holding_s = phase_s;
-  const TrialPlan plan{bone, "", estimate_densities(bone), place_entry(bone, settings.tool), settings, ""};
+  const TrialPlan plan{bone,     {"", 0}, estimate_densities(bone), place_entry(bone, settings.tool),
+                       settings, ""};
   std::vector<TrialPlan> trials;
   for (std::uint64_t seed = hands.first; seed <= hands.last; ++seed) {
     TrialPlan in_hand = with_seed(plan, seed);

@@ -127,10 +127,7 @@ class Soak {
   }
 
   RunDescription description() const {
-    RunDescription run = describe_run(scan_, settings_, session_->algorithm().sample_point_count());
-    run.scan_name = "soak";
-    run.scan_hash = scan_hash_;
-    return run;
+    return describe_run(scan_, {"soak", scan_hash_}, settings_, session_->algorithm().sample_point_count());
   }
 
   const Volume& scan_;

@@ -13,6 +13,7 @@
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/bone_densities.h"
+#include "osteomill/volume/density_grid.h"
 
 #include "tests/shapes.h"
 
@@ -48,7 +49,8 @@ inline Recording record_poses(const Volume& bone, const std::vector<Vec3>& burr_
   MillingSession session(std::make_shared<Volume>(bone), settings.densities, settings.setup);
   Recording recording;
   recording.path = "attempt.h5";
-  recording.description = describe_run(bone, settings, session.algorithm().sample_point_count());
+  recording.description = describe_run(bone, {"scan", fingerprint_of(bone.grid())}, settings,
+                                       session.algorithm().sample_point_count());
   recording.sessions.push_back({0, {recording.description, {}, 0, {}, ""}});
   std::vector<TrajectoryPoint> trajectory;
   for (const Vec3& place_W : burr_W)

@@ -180,10 +180,8 @@ std::vector<double> LiveMilling::removed_by_label() const {
 
 RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
   const MillingSession& session = live_.session();
-  RunDescription run = describe_run(session.volume(), settings_of(session), sample_points_, command_line);
-  run.scan_name = scan_name;
-  run.scan_hash = scan_hash_;
-  return run;
+  return describe_run(session.volume(), {scan_name, scan_hash_}, settings_of(session), sample_points_,
+                      command_line);
 }
 
 std::string LiveMilling::start_recording(const std::filesystem::path& path, RunDescription description,

@@ -32,9 +32,7 @@ TEST(ReplayChips, SpindleDragAndVibrationComeOutToTheBit) {
   const testing_support::TestFolder folder;
   const Volume scan = testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 5));
-  RunDescription run = describe_run(scan, kSettings, 0);
-  run.scan_name = "ball";
-  run.scan_hash = fingerprint_of(scan.grid());
+  const RunDescription run = describe_run(scan, {"ball", fingerprint_of(scan.grid())}, kSettings, 0);
   auto bone = std::make_shared<Volume>(scan);
   auto session = std::make_unique<MillingSession>(bone, kSettings.densities, kSettings.setup);
   Recorder recorder(folder / "run.h5", run);
@@ -74,7 +72,7 @@ TEST(ReplayChips, SpindleDragAndVibrationComeOutToTheBit) {
 TEST(ReplayChips, ARecordingOfAnEarlierProgramHasConstantEnergyAndAConstantSpeed) {
   RunDescription run = describe_run(testing_support::shape_volume(testing_support::centred_cube(10, 0.25),
                                                                   testing_support::ball(Vec3::Zero(), 1)),
-                                    kSettings, 0);
+                                    {"ball", 0}, kSettings, 0);
   std::erase_if(run.settings, [](const RunSetting& setting) {
     return setting.key == "milling.law" || setting.key == "spindle.handpiece" ||
            setting.key == "milling.wear" || setting.key == "milling.burr" || setting.key == "milling.drag";

@@ -42,10 +42,7 @@ SessionSettings settings_of_all(const AlgorithmDescription& algorithm) {
 }
 
 RunDescription description_of(const Volume& scan, const AlgorithmDescription& algorithm) {
-  RunDescription run = describe_run(scan, settings_of_all(algorithm), 0);
-  run.scan_name = "ball";
-  run.scan_hash = fingerprint_of(scan.grid());
-  return run;
+  return describe_run(scan, {"ball", fingerprint_of(scan.grid())}, settings_of_all(algorithm), 0);
 }
 
 std::unique_ptr<MillingSession> make(std::shared_ptr<Volume> bone, const AlgorithmDescription& algorithm) {

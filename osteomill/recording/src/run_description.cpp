@@ -120,12 +120,14 @@ SessionSettings session_settings(const RunDescription& run, const std::filesyste
   return session;
 }
 
-RunDescription describe_run(const Volume& bone, const SessionSettings& session, int sample_points,
-                            const std::string& command_line) {
+RunDescription describe_run(const Volume& bone, const ScanIdentity& scan, const SessionSettings& session,
+                            int sample_points, const std::string& command_line) {
   const GridGeometry& geometry = bone.geometry();
   RunDescription run;
   run.program_version = OSTEOMILL_VERSION;
   run.made = current_origin();
+  run.scan_name = scan.name;
+  run.scan_hash = scan.fingerprint;
   run.dims = geometry.dims;
   run.spacing_mm = geometry.spacing_mm;
   run.origin_mm = geometry.origin_mm;

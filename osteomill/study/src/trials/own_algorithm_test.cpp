@@ -61,8 +61,12 @@ TEST(OwnAlgorithm, IsRunRecordedAndReportedBesideThePapers) {
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = 4;
   settings.hand_and_device.script.holding_s = 0.5;
-  TrialPlan plan{bone,     "built-in tooth", estimate_densities(bone), place_entry(bone, settings.tool),
-                 settings, "my_program"};
+  TrialPlan plan{bone,
+                 {"built-in tooth", fingerprint_of(bone.grid())},
+                 estimate_densities(bone),
+                 place_entry(bone, settings.tool),
+                 settings,
+                 "my_program"};
   const TemporaryFolder folder;
   const RunEvents quiet;
   const EntryPictures pictures(bone, plan.densities.reference, plan.entry, quiet);

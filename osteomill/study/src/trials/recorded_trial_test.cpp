@@ -20,7 +20,7 @@ class RecordedTrialTest : public ::testing::Test {
                                             testing_support::ball(Vec3::Zero(), 5))) {}
 
   TrialPlan plan_of(const TrialSettings& settings) const {
-    return {bone_, "a ball", {0.5, 1000}, place_entry(bone_, settings.tool, {}, {}), settings, ""};
+    return {bone_, {"a ball", 0}, {0.5, 1000}, place_entry(bone_, settings.tool, {}, {}), settings, ""};
   }
 
   Volume bone_;

@@ -248,7 +248,7 @@ TEST(StudySlices, ARowEqualsTheRowMeasuredFromItsRecording) {
   settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 1.5;
   settings.hand_and_device.seed = 3;
   const TrialPlan plan =
-      with_seed({bone, "a ball", {0, 1000}, place_entry(bone, settings.tool, {}, {}), settings, ""}, 3);
+      with_seed({bone, {"a ball", 0}, {0, 1000}, place_entry(bone, settings.tool, {}, {}), settings, ""}, 3);
   const TemporaryFolder folder;
   const StudyFolder study{folder.path(), {.trials = 1, .trials_a_slice = 1}};
   write_slice(study, run_slice(study, 0, {plan}, 1, {}));

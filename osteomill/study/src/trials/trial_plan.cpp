@@ -23,9 +23,8 @@ std::string point_text(const Vec3& v) {
 RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::string_view phase) {
   const TrialSettings& trial = plan.settings;
   const OperatorSettings& person = trial.hand_and_device;
-  RunDescription run = describe_run(plan.bone, {trial, plan.densities}, sample_points, plan.command_line);
-  run.scan_name = plan.scan_name;
-  run.scan_hash = plan.scan_hash;
+  RunDescription run =
+      describe_run(plan.bone, plan.scan, {trial, plan.densities}, sample_points, plan.command_line);
   run.seed = person.seed;
   run.phase = phase;
   run.settings.insert(run.settings.end(), plan.scan_settings.begin(), plan.scan_settings.end());

@@ -177,11 +177,19 @@ void set_session_settings(RunDescription& run, const SessionSettings& session, i
 /// setting is missing.
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path);
 
+/// The scan of a bone as it was read, by which a recording can be verified.
+struct ScanIdentity {
+  /// The scan as the user named it (RunDescription::scan_name).
+  std::string name;
+  /// The fingerprint of its densities before any was milled (fingerprint_of). 0 if it is not known: then no
+  /// recording of the run can be verified.
+  std::uint64_t fingerprint;
+};
+
 /// Returns all that a recording says about a session on this bone, without what the caller alone knows and
-/// adds: scan_name, scan_hash, seed, and settings of its own (a script, a hand). `sample_points` is the
-/// number that the algorithm works with as it stands; `command_line`, how the program was called, may be
-/// empty.
-RunDescription describe_run(const Volume& bone, const SessionSettings& session, int sample_points,
-                            const std::string& command_line = {});
+/// may add: a seed, and settings of its own (a script, a hand). `sample_points` is the number that the
+/// algorithm works with as it stands; `command_line`, how the program was called, may be empty.
+RunDescription describe_run(const Volume& bone, const ScanIdentity& scan, const SessionSettings& session,
+                            int sample_points, const std::string& command_line = {});
 
 }  // namespace osteomill

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,7 +16,7 @@ namespace osteomill {
 struct TrialPlan {
   /// The bone as scanned; outlives the plan.
   const Volume& bone;
-  std::string scan_name;
+  ScanIdentity scan;
   BoneDensities densities;
   MillingEntry entry;
   TrialSettings settings;
@@ -38,8 +37,6 @@ struct TrialPlan {
   std::optional<Probe> probed = std::nullopt;
   /// The value of kComparisonKey in its recordings; empty for none.
   std::string comparison = {};
-  /// The fingerprint of the bone as scanned (fingerprint_of), by which its recordings can be verified.
-  std::uint64_t scan_hash = 0;
   /// Further settings that its recordings carry: how the scan was read.
   std::vector<RunSetting> scan_settings = {};
 };
