@@ -202,7 +202,6 @@ int osteomill::app::run_osteomill(int argc, char** argv, WindowDriver* driver) {
   // full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  // Before leftovers are, so that a signal that removes them goes on to the devices.
   const CrashStop crash_stop;
   install_signal_cleanup();
   const InputProtection input_protection;

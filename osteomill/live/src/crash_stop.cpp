@@ -9,6 +9,8 @@
 #include <memory>
 #include <mutex>
 
+#include "osteomill/base/signal_cleanup.h"
+
 namespace osteomill {
 
 // Entry through which handlers find a device. Entries are reused and never destroyed, so that a handler may
@@ -145,7 +147,7 @@ void pass_to(const struct sigaction& before, int signal, siginfo_t* info, void* 
   }
 }
 
-void end_process(int signal) {
+void end_devices() {
   if (!ending.exchange(true)) {
     DrivenDevices().end();
     has_ended.store(true);
@@ -154,6 +156,10 @@ void end_process(int signal) {
     wait_for([] { return has_ended.load(); });
     wait_for([] { return has_ended.load(); });
   }
+}
+
+void end_process(int signal) {
+  end_devices();
   ::signal(signal, SIG_DFL);
   // A fault comes again by itself when its handler returns; a signal that was sent does not.
   raise(signal);
@@ -220,12 +226,16 @@ void CrashStop::install_signal_stack() {
 CrashStop::CrashStop() {
   install_signal_stack();
   const std::lock_guard lock(mutex);
-  if (object_count++ == 0) std::ranges::for_each(kSignals, install_handler);
+  if (object_count++ != 0) return;
+  std::ranges::for_each(kSignals, install_handler);
+  set_before_signal_cleanup(&end_devices);
 }
 
 CrashStop::~CrashStop() {
   const std::lock_guard lock(mutex);
-  if (--object_count == 0) std::ranges::for_each(kSignals, restore_handler);
+  if (--object_count != 0) return;
+  set_before_signal_cleanup(nullptr);
+  std::ranges::for_each(kSignals, restore_handler);
 }
 
 void CrashStop::disengage() noexcept {

@@ -20,6 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "osteomill/base/signal_cleanup.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/haptic_thread.h"
 
@@ -71,6 +72,7 @@ struct Ending {
   void (*main_thread)() = nullptr;
   void (*haptic_thread)() = nullptr;
   bool replaces_its_session = false;
+  bool removes_leftovers = false;
 };
 
 std::unique_ptr<HapticThread> live_on(const Volume& bone, Device& device) {
@@ -94,6 +96,7 @@ void overflow_the_stack() {
 
 [[noreturn]] void run_live(SharedWrench* sent, const Ending& end) {
   const Volume bone = flat_bone();
+  if (end.removes_leftovers) install_signal_cleanup();
   const CrashStop crash_stop;
   SharedDevice device(sent, end.haptic_thread);
   std::unique_ptr<HapticThread> live = live_on(bone, device);
@@ -172,6 +175,13 @@ TEST_F(CrashStopTest, SoItIsAfterACrashInAnyThread) {
         {SIGSEGV, [] { overflow_the_stack(); }}, {SIGSEGV, nullptr, [] { overflow_the_stack(); }},
 #endif
   };
+  expect_zero_after(ends);
+}
+
+TEST_F(CrashStopTest, ARequestToEndThatFirstRemovesLeftoversLeavesTheWrenchAtZero) {
+  const std::vector<Ending> ends{{.signal = SIGTERM, .removes_leftovers = true},
+                                 {.signal = SIGINT, .removes_leftovers = true},
+                                 {.signal = SIGHUP, .removes_leftovers = true}};
   expect_zero_after(ends);
 }
 

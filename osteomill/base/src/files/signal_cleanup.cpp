@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::array kSignals{SIGTERM, SIGINT, SIGHUP};
 std::array<struct sigaction, kSignals.size()> actions_before;
+std::atomic<void (*)()> before_cleanup{nullptr};
 
 // A path that is taken from an entry belongs to the thread that took it. Files for which there is no entry
 // are left.
@@ -46,6 +47,7 @@ void remove_recursively(int in, const char* name) {
 }
 
 void end_program(int signal) {
+  if (void (*const action)() = before_cleanup.load()) action();
   for (std::atomic<char*>& registered : registered_paths)
     if (const char* path = registered.exchange(nullptr)) remove_recursively(AT_FDCWD, path);
   for (std::size_t n = 0; n < kSignals.size(); ++n)
@@ -77,9 +79,16 @@ void install_signal_cleanup() {
   sigfillset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
   for (std::size_t n = 0; n < kSignals.size(); ++n) {
-    sigaction(kSignals[n], nullptr, &actions_before[n]);
-    if (actions_before[n].sa_handler != SIG_IGN) sigaction(kSignals[n], &action, nullptr);
+    struct sigaction now {};
+    sigaction(kSignals[n], nullptr, &now);
+    if (now.sa_handler == end_program) continue;
+    actions_before[n] = now;
+    if (now.sa_handler != SIG_IGN) sigaction(kSignals[n], &action, nullptr);
   }
+}
+
+void set_before_signal_cleanup(void (*action)()) {
+  before_cleanup.store(action);
 }
 
 }  // namespace osteomill

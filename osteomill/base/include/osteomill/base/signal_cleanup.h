@@ -19,7 +19,12 @@ class SignalCleanup {
 };
 
 /// Lets SIGTERM, SIGINT and SIGHUP remove every SignalCleanup before they do what they did; one that is
-/// ignored stays so. For a program to call as it starts.
+/// ignored stays so. For a program to call as it starts, before or after it makes a CrashStop: devices are
+/// let go of first either way.
 void install_signal_cleanup();
+
+/// Lets these signals call `action` before they remove anything; null for nothing. It may only do what is
+/// safe in a signal's handler. CrashStop sets one.
+void set_before_signal_cleanup(void (*action)());
 
 }  // namespace osteomill

@@ -13,7 +13,8 @@ namespace osteomill {
 /// It handles only signals that the program does not handle and whose default action would end or stop the
 /// process: after a crash (SIGABRT also comes from an exception that is not caught), a request to end, or a
 /// stop from the terminal, after which SIGCONT continues with the device. The default action then follows.
-/// Signals that the program ignores or handles, before or later, are left to it. Only
+/// Signals that the program ignores or handles, before or later, are left to it; the handler of
+/// `install_signal_cleanup` lets go of the devices as this class does, whichever of the two came first. Only
 /// a fault (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS) that had a handler before is passed to that one
 /// with the devices at zero, and if it returns, the sessions go on; a program that handles a fault in any
 /// other way calls `disengage` and `engage` in its own handler.
