@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -215,6 +216,7 @@ void replay_with_changes(const ReplayOptions& options, const std::string& comman
 }
 
 void run_replay(const ReplayOptions& options, const std::string& command_line) {
+  if (!std::filesystem::exists(options.input)) throw InputError(options.input, "no such file");
   if (!is_hdf5(options.input)) {
     if (options.verify) throw InputError(options.input, "is no recording, so there is nothing to verify");
     if (options.out.empty() && options.record.empty()) throw CLI::RequiredError("--out or --record");
