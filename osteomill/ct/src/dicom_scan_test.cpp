@@ -654,12 +654,12 @@ TEST_F(DicomSeries, DescriptionsAreShownInUtf8) {
   }
 }
 
-TEST_F(DicomSeries, AFolderWithoutSlicesIsRefused) {
-  EXPECT_TRUE(contains(refusal(folder_), "holds no DICOM slices"));
+TEST_F(DicomSeries, AFolderWithoutAScanIsRefused) {
+  EXPECT_TRUE(contains(refusal(folder_), "holds no scan: neither DICOM slices, nor NRRD"));
   write("notes.txt", "hello");
-  EXPECT_TRUE(contains(refusal(folder_), "holds no DICOM slices"));
+  EXPECT_TRUE(contains(refusal(folder_), "holds no scan: neither DICOM slices, nor NRRD"));
   fs::create_directories(folder_ / "series");
-  EXPECT_TRUE(contains(refusal(folder_), "holds no DICOM slices"));
+  EXPECT_TRUE(contains(refusal(folder_), "holds no scan: neither DICOM slices, nor NRRD"));
   write_slice({.file = "one"});
   EXPECT_TRUE(contains(refusal(folder_), "only one slice"));
   EXPECT_TRUE(contains(refusal(folder_ / "one"), "only one slice"));

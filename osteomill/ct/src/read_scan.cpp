@@ -136,7 +136,10 @@ Scan read_folder(const fs::path& folder, const ReadOptions& options) {
     if (entry.is_regular_file() && !hidden && is_picture(entry.path())) pictures.push_back(entry.path());
   }
   if (volumes.empty() && !pictures.empty()) return read_pictures(folder, std::move(pictures), options);
-  if (volumes.empty()) throw InputError(folder.string(), "holds no DICOM slices");
+  if (volumes.empty()) {
+    throw InputError(folder.string(),
+                     "holds no scan: neither DICOM slices, nor NRRD, MetaImage, NIfTI, PNG or TIFF files");
+  }
   if (volumes.size() > 1) {
     throw InputError(folder.string(), fmt::format("holds {} scans; name one of them", volumes.size()));
   }

@@ -42,7 +42,7 @@ TEST_F(ZipArchive, HoldsAScanAndNamesItself) {
   EXPECT_TRUE(contains(refusal(write_zip({{"case/a.nrrd", kNrrd.substr(0, kNrrd.size() - 4)}})),
                        (folder_ / "scan.zip/case/a.nrrd: is cut short").string()));
   EXPECT_TRUE(contains(refusal(write_zip({{"a.nrrd", kNrrd}, {"b.nrrd", kNrrd}})), "holds 2 scans"));
-  EXPECT_TRUE(contains(refusal(write_zip({{"readme", "hello"}})), "scan.zip: holds no DICOM slices"));
+  EXPECT_TRUE(contains(refusal(write_zip({{"readme", "hello"}})), "scan.zip: holds no scan"));
 }
 
 TEST_F(ZipArchive, WritesNowhereElse) {
