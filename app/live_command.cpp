@@ -189,7 +189,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   warn_of_settings(setup, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const std::shared_ptr<const LabelMap> labels = bone->labels();
-  const MillingEntry entry = place_entry(*bone, options.trial);
+  const MillingEntry entry = place_entry(*bone, loaded.name, options.trial);
   Device& device = tool_source.take_tool(options.trial, setup, entry);
   PreparedMilling prepared = prepare_milling(bone, setup);
   const BoneDensities densities = prepared.session->densities();

@@ -38,7 +38,7 @@ std::vector<RunSetting> recorded(const std::vector<std::string>& words) {
   parse(command, words);
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 5));
-  TrialPlan plan{bone, {"", 0}, {0, 1000}, place_entry(bone, options), trial_settings(options), ""};
+  TrialPlan plan{bone, {"", 0}, {0, 1000}, place_entry(bone, "a ball", options), trial_settings(options), ""};
   std::vector<RunSetting> all;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     plan.settings.algorithm = algorithm;

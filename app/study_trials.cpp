@@ -192,7 +192,7 @@ TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
   for (const auto& text : fields_of<TrialOptions, std::string>()) place += " " + text.get(asked.trial);
   auto entry = bone.entries.find(place);
   if (entry == bone.entries.end())
-    entry = bone.entries.emplace(place, entry_into(bone.volume, asked.trial)).first;
+    entry = bone.entries.emplace(place, entry_into(bone.volume, bone.name, asked.trial)).first;
   const TrialPlan as_set{bone.volume, {bone.name, 0}, bone.densities, entry->second, set, ""};
   TrialPlan plan = asked.draw_hand ? with_seed(as_set, asked.trial.milling.seed) : as_set;
   plan.grip = asked.grip;

@@ -69,12 +69,13 @@ TrialSettings trial_settings(const TrialOptions& options) {
   return trial;
 }
 
-MillingEntry entry_into(const Volume& bone, const TrialOptions& options) {
-  return osteomill::place_entry(bone, options.milling.setup.tool, options.entry_W_mm, options.direction_W);
+MillingEntry entry_into(const Volume& bone, const std::string& scan, const TrialOptions& options) {
+  return osteomill::place_entry(bone, options.milling.setup.tool, options.entry_W_mm, options.direction_W,
+                                scan);
 }
 
-MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {
-  const MillingEntry entry = entry_into(bone, options);
+MillingEntry place_entry(const Volume& bone, const std::string& scan, const TrialOptions& options) {
+  const MillingEntry entry = entry_into(bone, scan, options);
   for (const std::string& warning : entry_warnings(bone, options.milling.setup.tool, entry)) warn(warning);
   return entry;
 }
@@ -88,7 +89,7 @@ TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const 
   return {bone.volume,
           {bone.name, fingerprint_of(bone.volume.grid())},
           estimate_densities(bone.volume),
-          place_entry(bone.volume, options),
+          place_entry(bone.volume, bone.name, options),
           trial_settings(options),
           command_line};
 }

@@ -39,12 +39,12 @@ void add_trial_options(CLI::App& command, TrialOptions& options);
 
 TrialSettings trial_settings(const TrialOptions& options);
 
-/// Returns where the tool enters this bone. Throws InputError if it cannot.
-MillingEntry entry_into(const Volume& bone, const TrialOptions& options);
+/// Returns where the tool enters the bone of the scan of this name. Throws InputError if it cannot.
+MillingEntry entry_into(const Volume& bone, const std::string& scan, const TrialOptions& options);
 
 /// Returns the same place as entry_into, and warns on standard error if it is unlikely to be what the user
 /// wants.
-MillingEntry place_entry(const Volume& bone, const TrialOptions& options);
+MillingEntry place_entry(const Volume& bone, const std::string& scan, const TrialOptions& options);
 
 /// Warns of settings that are poor in a scan of this grid (setting_warnings), and throws as that does.
 void warn_of_settings(const MillingSetup& setup, const GridGeometry& scan);

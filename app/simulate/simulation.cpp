@@ -78,7 +78,7 @@ Device& Simulation::take_tool(const MillingSetup& setup, const Volume& bone, con
   if (tool_source.is_pointer()) return hand;
   OperatorSettings settings;
   settings.handle = handle_settings(setup);
-  return simulated.emplace(settings, setup.tool, place_entry(bone, setup.tool));
+  return simulated.emplace(settings, setup.tool, place_entry(bone, setup.tool, {}, {}, scan.name));
 }
 
 RunDescription Simulation::describe() const {

@@ -201,7 +201,15 @@ struct BoneTop {
   Vec3 middle_W = Vec3::Zero();
 };
 
-BoneTop top_of_bone(const Volume& volume, const Vec3& direction_W) {
+InputError no_bone(const Volume& volume, std::string_view scan) {
+  float greatest = volume.grid().outside_density();
+  for_each_density(volume.grid(), [&](float density) { greatest = std::max(greatest, density); });
+  return {scan, fmt::format("has no bone to mill: no voxel is denser than the isovalue, {:.6g}, and the "
+                            "densest has {:.6g}",
+                            volume.isovalue(), greatest)};
+}
+
+BoneTop top_of_bone(const Volume& volume, const Vec3& direction_W, std::string_view scan) {
   double min_depth_mm = std::numeric_limits<double>::infinity();
   BoneTop top;
   for_each_bone_voxel(volume, [&](const VoxelIndex& v) {
@@ -212,9 +220,7 @@ BoneTop top_of_bone(const Volume& volume, const Vec3& direction_W) {
       top.highest_W = p;
     }
   });
-  if (!std::isfinite(min_depth_mm)) {
-    throw InputError("scan", "no voxel is denser than the isovalue, so there is no bone to mill");
-  }
+  if (!std::isfinite(min_depth_mm)) throw no_bone(volume, scan);
   Vec3 sum_mm = Vec3::Zero();
   double count = 0;
   for_each_bone_voxel(volume, [&](const VoxelIndex& v) {
@@ -377,10 +383,10 @@ Pose pose_above(const MillingEntry& entry, const MillingTool& tool, double above
 }
 
 MillingEntry place_entry(const Volume& volume, const MillingTool& tool, const std::optional<Vec3>& entry,
-                         const std::optional<Vec3>& direction) {
+                         const std::optional<Vec3>& direction, std::string_view scan) {
   require_valid(tool);
   const Vec3 direction_W = unit_direction(direction);
-  const BoneTop top = top_of_bone(volume, direction_W);
+  const BoneTop top = top_of_bone(volume, direction_W, scan);
   MillingEntry placed = entry ? given_entry(volume, tool, *entry, direction_W)
                               : default_entry(volume, tool, top, direction_W, direction.has_value());
   placed.lateral_W = towards_highest_rim(volume, tool, placed);

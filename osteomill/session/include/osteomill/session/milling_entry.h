@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "osteomill/haptics/milling_tool.h"
@@ -32,12 +33,12 @@ struct MillingEntry {
 /// thin edge), it is the highest place where it could; and if no direction was given either, seen from
 /// another side if need be.
 ///
-/// Throws InputError: no bone in the scan; an entry or direction that is not finite, a direction without
-/// length; a line from a given entry that misses the bone; bone in the way of the tool above a given entry.
-/// Not for the tick: it goes through every voxel.
+/// Throws InputError: no bone in the scan, which the message calls `scan`; an entry or direction that is not
+/// finite, a direction without length; a line from a given entry that misses the bone; bone in the way of the
+/// tool above a given entry. Not for the tick: it goes through every voxel.
 MillingEntry place_entry(const Volume& volume, const MillingTool& tool,
                          const std::optional<Vec3>& entry = std::nullopt,
-                         const std::optional<Vec3>& direction = std::nullopt);
+                         const std::optional<Vec3>& direction = std::nullopt, std::string_view scan = "scan");
 
 /// Returns a sentence if the scan is too coarse for the burr, as it is if its slices lie further apart than
 /// the burr's radius.
