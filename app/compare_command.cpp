@@ -62,7 +62,7 @@ std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone
   plan.settings.hand_and_device.script.until_leant = true;
   std::vector<TrialPlan> trials;
   for (const AlgorithmDescription& algorithm : options.algorithms) {
-    trials.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);
+    trials.push_back(options.seeds > 1 ? with_seed(plan, options.trial.seed) : plan);
     trials.back().settings.algorithm = algorithm;
     warn_of_settings(trials.back().settings, bone.volume.geometry());
   }
@@ -119,7 +119,7 @@ std::vector<TrialPlan> other_hands(const CompareOptions& options, const std::vec
   }
   for (int n = 1; n < options.seeds; ++n) {
     for (const TrialPlan& trial : trials) {
-      const TrialPlan other = with_seed(trial, options.trial.milling.seed + static_cast<std::uint64_t>(n));
+      const TrialPlan other = with_seed(trial, options.trial.seed + static_cast<std::uint64_t>(n));
       others.push_back(other);
       add_other_grips(others, other);
     }
@@ -146,7 +146,7 @@ std::vector<MeasuredRun> hold_in_one_hole(const CompareOptions& options, const s
   std::vector<TrialPlan> hands{miller};
   hands.reserve(static_cast<std::size_t>(options.seeds));
   for (int n = 1; n < options.seeds; ++n)
-    hands.push_back(with_seed(miller, options.trial.milling.seed + static_cast<std::uint64_t>(n)));
+    hands.push_back(with_seed(miller, options.trial.seed + static_cast<std::uint64_t>(n)));
   std::vector<MeasuredRun> runs;
   for (const std::vector<MeasuredRun>& of_hand :
        run_trials(hands, "one hole", static_cast<std::size_t>(options.threads), events,
@@ -276,6 +276,8 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
             "program may use: taskset, cgroup v2)");
   add_match_stiffness(*command, *options);
   add_trial_options(*command, options->trial);
+  command->get_option("--seed")->description(
+      "Seed of the simulated hand's tremor, and the first of the seeds of --seeds");
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -160,12 +159,6 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
   command.option_defaults()->group("Limits of the device");
   add_fields(command, setup, kOfTheLimits);
   command.option_defaults()->group("Options");
-  command
-      .add_option("--seed", options.seed,
-                  "Seed of the hand's tremor, and first seed of the hands that --seeds draws")
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-      ->type_name("NUMBER")
-      ->capture_default_str();
   add_config_option(command);
 }
 

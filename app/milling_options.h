@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,6 @@ namespace osteomill::app {
 /// The options that every command that mills has.
 struct MillingOptions {
   MillingSetup setup;
-  std::uint64_t seed = 1;
 };
 
 /// Copies from `given` into `setup` those of its fields whose options stand on the command line, and no
@@ -30,7 +28,7 @@ void set_shared(HapticSettings& haptics, const std::string& option, double value
 /// Returns these options, without dashes.
 std::vector<std::string> shared_options();
 
-/// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
+/// Adds the tool, the algorithms' settings, milling, limits and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);
 
 /// Takes the law of constant energy if only its options were given. Throws CLI::ValidationError if one of

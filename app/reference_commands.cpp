@@ -58,8 +58,7 @@ void add_settings_command(CLI::App& program) {
     fmt::print(
         "# Settings of the algorithms\n\n"
         "Written by `osteomill settings`; a test compares this page with it. Set one with `--set "
-        "ALGORITHM.SETTING=VALUE`, or as\na key of the table `[ALGORITHM]` in a file for `--config`. Numbers "
-        "in brackets are the paper's equations; "
+        "ALGORITHM.SETTING=VALUE`, or as\na key of the table `[ALGORITHM]` in a file for `--config`. "
         "[algorithms.md](algorithms.md) tells what each is for.\n");
     for (const AlgorithmDescription& algorithm : all_algorithms()) print_settings(algorithm);
   });

@@ -242,7 +242,6 @@ void refuse_what_is_recorded(const ReplayOptions& options) {
   for (const Field<MillingSetup>& setting : fields_of<MillingSetup>()) {
     if (setting.has(kOfTheRecording)) refuse("--" + setting.option);
   }
-  refuse("--seed");
 }
 
 }  // namespace
@@ -257,7 +256,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
       ->add_option("input", options->input, "A recording, or CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
       ->required()
       ->type_name("TRAJECTORY|RECORDING");
-  add_scan_options(*command, options->scan);
+  add_scan_options(*command, options->scan, "the recording's scan, or for a trajectory the built-in tooth");
   add_exercise_options(*command, options->exercise);
   command->option_defaults()->group("The replay");
   command->add_flag("--verify", options->verify,

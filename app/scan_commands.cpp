@@ -59,7 +59,7 @@ struct WriteOptions {
 
 void add_write_options(CLI::App& command, WriteOptions& options, const std::string& out_text) {
   command.group("Scans");
-  add_scan_source(command, options.scan);
+  add_scan_source(command, options.scan, "that of --after, else the built-in tooth");
   command.add_option("--out", options.out, "The file to write, " + out_text)->required()->type_name("FILE");
   command
       .add_option("--after", options.recording,

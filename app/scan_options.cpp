@@ -111,12 +111,12 @@ void add_bone_options(CLI::App& command, ScanOptions& options) {
   add_texts(command, options, kBoneChoiceField);
 }
 
-void add_scan_source(CLI::App& command, ScanOptions& options) {
+void add_scan_source(CLI::App& command, ScanOptions& options, const std::string& without_one) {
   command
       .add_option("scan", options.scan,
                   "DICOM folder or file, NRRD, MetaImage, NIfTI, a folder of PNG or TIFF slices, or one of "
-                  "them in a zip file, or builtin:tooth, builtin:layers or builtin:mastoid; without one, the "
-                  "built-in tooth")
+                  "them in a zip file, or builtin:tooth, builtin:layers or builtin:mastoid; without one, " +
+                      without_one)
       ->check(not_empty());
   add_texts(command, options, kSourceField);
   command
@@ -131,9 +131,9 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
       ->type_name("GB");
 }
 
-void add_scan_options(CLI::App& command, ScanOptions& options) {
+void add_scan_options(CLI::App& command, ScanOptions& options, const std::string& without_one) {
   command.option_defaults()->group("Scan");
-  add_scan_source(command, options);
+  add_scan_source(command, options, without_one);
   add_bone_options(command, options);
   add_texts(command, options, kNoGoField);
 }

@@ -64,15 +64,17 @@ inline constexpr const char* kBuiltinTooth = "built-in tooth";
 bool is_builtin(const std::string& scan);
 
 /// Adds SCAN and what it takes to read it: --series, --as, --max-memory.
-void add_scan_source(CLI::App& command, ScanOptions& options);
+/// `without_one` says in the help which scan is taken if none is named.
+void add_scan_source(CLI::App& command, ScanOptions& options,
+                     const std::string& without_one = "the built-in tooth");
 
 /// Adds the options for which part of it is bone and for its labels: --iso, --keep-largest, --min-piece,
-/// --labels,
-/// --label-table.
+/// --labels, --label-table.
 void add_bone_options(CLI::App& command, ScanOptions& options);
 
 /// All of these and --no-go.
-void add_scan_options(CLI::App& command, ScanOptions& options);
+void add_scan_options(CLI::App& command, ScanOptions& options,
+                      const std::string& without_one = "the built-in tooth");
 
 /// Reads the scan, or makes the built-in tooth. If it is taken for labels, the first of its warnings says so.
 /// Throws InputError as `read_scan` does.

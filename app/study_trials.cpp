@@ -77,7 +77,7 @@ std::vector<Field<TrialSpec>> trial_numbers() {
       field<A>({"", "", NumberRange::on_or_off(), "The seed draws the hand", 0, "draw-hand"}, &A::draw_hand),
       field<A>(
           {"", "", {0, kMaxSeed, true}, "Seed of the hand's tremor", 0, "seed"},
-          [](auto& a) -> auto& { return a.trial.milling.seed; })};
+          [](auto& a) -> auto& { return a.trial.seed; })};
   std::vector<Field<A>> all =
       joined<A>({fields_within<A>(&A::scan, fields_of<ScanOptions>()), own,
                  fields_within<A>(
@@ -194,7 +194,7 @@ TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
   if (entry == bone.entries.end())
     entry = bone.entries.emplace(place, entry_into(bone.volume, bone.name, asked.trial)).first;
   const TrialPlan as_set{bone.volume, {bone.name, 0}, bone.densities, entry->second, set, ""};
-  TrialPlan plan = asked.draw_hand ? with_seed(as_set, asked.trial.milling.seed) : as_set;
+  TrialPlan plan = asked.draw_hand ? with_seed(as_set, asked.trial.seed) : as_set;
   plan.grip = asked.grip;
   HandSettings& hand = plan.settings.hand_and_device.hand;
   hand = gripping(hand, asked.grip);

@@ -1,5 +1,6 @@
 #include "app/trial_options.h"
 
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 
@@ -59,13 +60,17 @@ void add_trial_options(CLI::App& command, TrialOptions& options) {
   command.option_defaults()->group("The hand and its device");
   add_texts(command, options);
   add_fields(command, options.hand);
+  command.add_option("--seed", options.seed, "Seed of the simulated hand's tremor")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->type_name("NUMBER")
+      ->capture_default_str();
   add_milling_options(command, options.milling);
 }
 
 TrialSettings trial_settings(const TrialOptions& options) {
   TrialSettings trial(options.milling.setup, options.hand);
   trial.hand_and_device.handle.limits = trial.guard.limits;
-  trial.hand_and_device.seed = options.milling.seed;
+  trial.hand_and_device.seed = options.seed;
   return trial;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ namespace osteomill::app {
 struct TrialOptions {
   MillingOptions milling;
   OperatorSettings hand;
+  std::uint64_t seed = 1;
   std::optional<Vec3> entry_W_mm;
   std::optional<Vec3> direction_W;
 };
@@ -34,7 +36,8 @@ const std::vector<Field<app::TrialOptions, std::string>>& fields_of<app::TrialOp
 
 namespace osteomill::app {
 
-/// Adds --seconds, --push, --entry, --direction, the settings of hand and device, and all milling options.
+/// Adds --seconds, --push, --seed, --entry, --direction, the settings of hand and device, and all milling
+/// options.
 void add_trial_options(CLI::App& command, TrialOptions& options);
 
 TrialSettings trial_settings(const TrialOptions& options);

@@ -20,12 +20,13 @@ const Fields& fields() {
                        .doc = "Number of vertices on the tool's centreline, including the burr's centre",
                        .option = "vertices"},
                       &Settings::vertices),
-      field<Settings>({.name = "stiffness",
-                       .unit = "N/mm",
-                       .range = kStiffness,
-                       .doc = "Spring constant k of (6) and (10)",
-                       .option = "stiffness"},
-                      &Settings::stiffness_N_per_mm),
+      field<Settings>(
+          {.name = "stiffness",
+           .unit = "N/mm",
+           .range = kStiffness,
+           .doc = "Stiffness of the spring between the proxy and the tool; k in (6) and (10) of the paper",
+           .option = "stiffness"},
+          &Settings::stiffness_N_per_mm),
   };
   return all;
 }

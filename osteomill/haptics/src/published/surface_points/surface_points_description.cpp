@@ -19,7 +19,8 @@ const Fields& fields() {
       field<Settings>({.name = "stiffness",
                        .unit = "N/mm",
                        .range = kStiffness,
-                       .doc = "Spring constant k of (14), of a sphere or slice of which all vertices collide",
+                       .doc = "Stiffness with which a sphere or slice is pushed out when all of its vertices "
+                              "are in bone; k in (14) of the paper",
                        .option = "stiffness"},
                       &Settings::stiffness_N_per_mm),
       field<Settings>({.name = "slices",
