@@ -53,6 +53,15 @@ void add_pose(Fields& fields, const std::string& name, Place place, const char* 
   }
 }
 
+FieldDescription fault_column() {
+  constexpr int kLast = static_cast<int>(WrenchFault::held_back);
+  FieldDescription column{
+      .name = "fault", .range = NumberRange::count(0, kLast), .doc = "what was done to the wrench (codes)"};
+  for (int code = 0; code <= kLast; ++code)
+    column.choices.emplace_back(name_of(static_cast<WrenchFault>(code)));
+  return column;
+}
+
 Fields record_fields() {
   using R = TickRecord;
   Fields all;
@@ -82,9 +91,7 @@ Fields record_fields() {
       "force of the burr on the bone, frame W");
   add_real(all, "dt_s", "s", &R::dt_s, "how long the tick was taken to be");
   add_switch(all, "spindle", &R::spindle_on, "1 if the burr could cut");
-  all.push_back(field<R>({"fault", "", NumberRange::count(0, static_cast<int>(WrenchFault::held_back)),
-                          "what was done to the wrench (codes)"},
-                         &R::fault));
+  all.push_back(field<R>(fault_column(), &R::fault));
   add_real(all, "energy_given_Nmm", "N mm", &R::energy_given_Nmm,
            "energy given to the hand less what it gave, since the session began", kInLog);
   add_switch(all, "paused", &R::paused, "1 in a pause: zero is sent and nothing computed");

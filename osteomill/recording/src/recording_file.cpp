@@ -41,10 +41,14 @@ constexpr const char* kConventions =
     "w, x, y, z. Wrenches act on the hand, in W's axes, about the burr's centre. Voxel (i, j, k) lies at "
     "origin_mm + i spacing_mm[0] axis_i + j spacing_mm[1] axis_j + k spacing_mm[2] axis_k. osteomill: "
     "docs/formats.md.";
-constexpr const char* kFaultCodes =
-    "0 none, 1 force clamped, 2 torque clamped, 3 both clamped, 4 the algorithm's wrench was not finite, 5 "
-    "the "
-    "device's pose was not finite, 6 the device jumped, 7 the tick was late, 8 eased, 9 held back";
+
+// "0 none, 1 force clamped, ..."
+std::string codes_of(const FieldDescription& column) {
+  std::string codes;
+  for (std::size_t code = 0; code < column.choices.size(); ++code)
+    codes += fmt::format("{}{} {}", code == 0 ? "" : ", ", code, column.choices[code]);
+  return codes;
+}
 
 hid_t file_type(const NumberRange& range) {
   if (!range.whole) return H5T_IEEE_F64LE;
@@ -183,7 +187,7 @@ void RecordingFile::create_columns() {
                                      column.unit.c_str(), 1, kChunkRows));
     const Attributes write(path_, columns_.back().dataset.get());
     write.put("meaning", column.doc);
-    if (column.name == "fault") write.put("codes", kFaultCodes);
+    if (!column.choices.empty()) write.put("codes", codes_of(column));
   }
   const Hdf5Handle hashes = create_group(file_.get(), "bone_hash");
   for (const char* name : {"row", "hash"})

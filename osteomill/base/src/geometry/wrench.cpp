@@ -22,6 +22,33 @@ Vec3 towards(const Vec3& from, const Vec3& to, double rate, double dt_s) {
 
 }  // namespace
 
+std::string_view name_of(WrenchFault fault) noexcept {
+  using enum WrenchFault;
+  switch (fault) {
+    case none:
+      return "none";
+    case force_clamped:
+      return "force clamped";
+    case torque_clamped:
+      return "torque clamped";
+    case force_and_torque_clamped:
+      return "force and torque clamped";
+    case not_finite:
+      return "wrench not finite";
+    case pose_not_finite:
+      return "pose not finite";
+    case pose_jumped:
+      return "pose jumped";
+    case tick_late:
+      return "tick late";
+    case rate_limited:
+      return "rate limited";
+    case held_back:
+      return "held back";
+  }
+  return "unknown";
+}
+
 SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) noexcept {
   // A norm that overflows is caught here too: components near the largest double cannot be scaled.
   if (!std::isfinite(wrench.force_N.norm()) || !std::isfinite(wrench.torque_Nmm.norm())) {

@@ -1,6 +1,7 @@
 #include "osteomill/base/wrench.h"
 
 #include <limits>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,16 @@ TEST(SafeWrench, WhatIsNotFiniteBecomesZero) {
     EXPECT_EQ(safe.wrench.force_N, Vec3::Zero());
     EXPECT_EQ(safe.wrench.torque_Nmm, Vec3::Zero());
   }
+}
+
+TEST(WrenchFault, HasANameOfItsOwnForEachCode) {
+  std::set<std::string_view> names;
+  for (int code = 0; code <= static_cast<int>(WrenchFault::held_back); ++code)
+    names.insert(name_of(static_cast<WrenchFault>(code)));
+  EXPECT_EQ(names.size(), 10u);
+  EXPECT_FALSE(names.contains("unknown"));
+  EXPECT_EQ(name_of(WrenchFault::pose_jumped), "pose jumped");
+  EXPECT_EQ(name_of(static_cast<WrenchFault>(200)), "unknown");
 }
 
 }  // namespace

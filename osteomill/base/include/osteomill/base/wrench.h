@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <string_view>
 
 #include "osteomill/base/pose.h"
 
@@ -47,6 +48,9 @@ enum class WrenchFault : unsigned char {
   /// bone when it began to and has not left it yet.
   held_back = 9,
 };
+
+/// Returns the fault in words: "none", "force clamped", "pose not finite". Recordings name their codes so.
+std::string_view name_of(WrenchFault fault) noexcept;
 
 /// A wrench that may be sent, and why it is not the one that was asked for.
 struct SafeWrench {
