@@ -33,7 +33,7 @@ int main() {
   const osteomill::MillingSetup setup;
   osteomill::MillingSession session(bone, estimate_densities(*bone), setup);
   OwnDevice device(pose_above(place_entry(*bone, setup.tool), setup.tool, 0.5));
-  std::puts(osteomill::request_real_time().c_str());  // what the system refuses
+  if (const auto refused = osteomill::request_real_time()) std::puts(refused->c_str());
   double time_s = 0;
   osteomill::NextDeadline next{osteomill::monotonic_now_ns(), 1};
   while (time_s < 2) {

@@ -30,7 +30,7 @@ void HapticThread::start() {
   try {
     thread_ = std::jthread([this, &ready](const std::stop_token& stop) {
       CrashStop::install_signal_stack();
-      refused_real_time_ = request_real_time();
+      refused_real_time_ = request_real_time().value_or("");
       ready.store(true, std::memory_order_release);
       run(stop);
     });

@@ -16,7 +16,7 @@ constexpr int kPriority = 40;
 
 }  // namespace
 
-std::string request_real_time() {
+std::optional<std::string> request_real_time() {
   std::string refused;
   sched_param priority{};
   priority.sched_priority = kPriority;
@@ -29,6 +29,7 @@ std::string request_real_time() {
   if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0) {
     refused += std::string(refused.empty() ? "" : "; ") + "memory not locked (" + std::strerror(errno) + ")";
   }
+  if (refused.empty()) return std::nullopt;
   return refused;
 }
 
