@@ -75,8 +75,8 @@ void HapticThread::set_paused(bool paused) {
   run_between_ticks([&] { paused_ = paused; });
 }
 
-void HapticThread::freeze_bone(bool held) {
-  run_between_ticks([&] { bone_frozen_ = held; });
+void HapticThread::freeze_bone(bool frozen) {
+  run_between_ticks([&] { bone_frozen_ = frozen; });
 }
 
 SessionHandover HapticThread::replace(std::unique_ptr<MillingSession> session) {

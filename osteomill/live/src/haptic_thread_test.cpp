@@ -167,15 +167,15 @@ TEST_F(HapticThreadTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > 0; }));
   live_.freeze_bone(true);
   const double removed_mm3 = live_.state().record.removed_mm3;
-  const CopyOnWriteFloats held = bone_->grid().densities();
-  EXPECT_NE(held, half_space().grid().densities());
+  const CopyOnWriteFloats frozen = bone_->grid().densities();
+  EXPECT_NE(frozen, half_space().grid().densities());
   std::this_thread::sleep_for(50ms);
-  EXPECT_EQ(bone_->grid().densities(), held);
+  EXPECT_EQ(bone_->grid().densities(), frozen);
   EXPECT_TRUE(live_.state().spindle_on);
   live_.freeze_bone(false);
   EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > removed_mm3; }));
   live_.stop();
-  EXPECT_NE(bone_->grid().densities(), held);
+  EXPECT_NE(bone_->grid().densities(), frozen);
 }
 
 TEST_F(HapticThreadTest, APauseSendsZeroAndKeepsTheTool) {

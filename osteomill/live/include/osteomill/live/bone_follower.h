@@ -68,7 +68,7 @@ class BoneFollower {
   std::vector<double> drops_by_label() const;
 
   /// Puts what has arrived into the copy. Returns true if nothing is left to come, so that the copy is the
-  /// bone, provided that the bone is held (HapticThread::freeze_bone).
+  /// bone, provided that the bone is frozen (HapticThread::freeze_bone).
   bool catch_up();
 
   /// The copy, made ready to become the bone.
@@ -80,7 +80,7 @@ class BoneFollower {
     std::optional<BoneDensities> densities;
   };
   /// Returns the copy with the last cut taken back. Call this, and each of the next two, while the bone is
-  /// held and the copy is caught up; from then until `swap` or `discard_next` no thread writes into either.
+  /// frozen and the copy is caught up; from then until `swap` or `discard_next` no thread writes into either.
   /// The surface shows the change at once; the cut is gone with `swap`.
   NextBone without_last_cut();
   /// Returns the copy as the bone was at the beginning.

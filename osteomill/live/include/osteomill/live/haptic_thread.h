@@ -58,7 +58,7 @@ class HapticThread {
   void set_paused(bool paused);
   /// Freezes or unfreezes the bone. While frozen, nothing is milled, though everything is felt, and other
   /// threads may read the volume.
-  void freeze_bone(bool held);
+  void freeze_bone(bool frozen);
   /// Goes on with another algorithm, tool, setting or bone, prepared beforehand. Returns the state in which
   /// that began.
   SessionHandover replace(std::unique_ptr<MillingSession> session);
@@ -84,7 +84,7 @@ class HapticThread {
   /// signal ended it. For the commanding thread.
   std::exception_ptr failure() const { return is_running() ? nullptr : failure_; }
 
-  /// Returns the session now in use. Its volume's densities may be read only while held, or while not
+  /// Returns the session now in use. Its volume's densities may be read only while frozen, or while not
   /// running.
   const MillingSession& session() const { return *session_; }
   /// Returns how many sessions were replaced before the one in use.
