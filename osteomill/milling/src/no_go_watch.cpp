@@ -31,7 +31,7 @@ void NoGoWatch::tally_contacts(const Vec3& burr_centre_W, LabelTally& tally) con
   }
   for (const Vec3& point_mm : points_mm_) {
     const LabelMap::LabelIndex label = labels_->nearest_to(burr_centre_W + point_mm);
-    if (label != 0 && labels_->label(label).no_go) tally.add(label, 0);
+    if (label != 0 && labels_->label(label).no_go) tally.add_contact(label);
   }
 }
 

@@ -25,12 +25,14 @@ class LabelTally {
  public:
   /// Adds to the sum of a label; does nothing for no label.
   void add(LabelMap::LabelIndex label, double removed_mm3) noexcept {
-    if (label == 0) return;
-    if (!waits_[label]) {
-      waits_[label] = true;
-      waiting_[count_++] = label;
-    }
-    removed_mm3_[label] += removed_mm3;
+    add_contact(label);
+    if (label != 0) removed_mm3_[label] += removed_mm3;
+  }
+  /// Notes that a label was touched, though nothing was taken of it; does nothing for no label.
+  void add_contact(LabelMap::LabelIndex label) noexcept {
+    if (label == 0 || waits_[label]) return;
+    waits_[label] = true;
+    waiting_[count_++] = label;
   }
 
   /// Takes out the labels that have waited longest.
