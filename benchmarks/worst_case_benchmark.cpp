@@ -28,7 +28,7 @@ void sleeved(benchmark::State& state, std::string_view algorithm, double spacing
   const MillingTool tool;
   const Volume block = sleeve_block(spacing_mm, tool, kOverlap_mm);
   const Pose pose = pose_in_sleeve(block, tool);
-  const auto haptics = make_algorithm(algorithm, HapticSettings{});
+  const auto haptics = make_algorithm(algorithm_named(algorithm), {});
   haptics->prepare({&block, tool});
   for ([[maybe_unused]] auto _ : state) {
     haptics->reset();

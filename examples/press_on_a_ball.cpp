@@ -32,16 +32,16 @@ osteomill::Volume ball_of_bone() {
 
 int main() {
   const osteomill::Volume bone = ball_of_bone();
-  for (const std::string& id : osteomill::algorithm_names()) {
-    const auto algorithm = osteomill::make_algorithm(id, {});
+  for (const osteomill::AlgorithmDescription& description : osteomill::all_algorithms()) {
+    const auto algorithm = osteomill::make_algorithm(description, {});
     algorithm->prepare({&bone, osteomill::MillingTool{}});
     osteomill::HapticStep step;
     for (double height_mm = 10.5; height_mm > 7.9; height_mm -= 0.01) {
       step = algorithm->step({{0, 0, height_mm}, osteomill::Quat::Identity()}, 1e-3);
     }
     const osteomill::Vec3& force_N = step.wrench.force_N;
-    std::printf("%-14s force %6.3f %6.3f %6.3f N, %d contacts\n", id.c_str(), force_N.x(), force_N.y(),
-                force_N.z(), step.contacts);
+    std::printf("%-14s force %6.3f %6.3f %6.3f N, %d contacts\n", description.id.name.c_str(), force_N.x(),
+                force_N.y(), force_N.z(), step.contacts);
     if (!(force_N.z() > 0)) return 1;
   }
   return 0;

@@ -23,7 +23,7 @@ std::unique_ptr<HapticAlgorithm> prepared(std::string_view algorithm, const Volu
   HapticSettings settings;
   settings.named = std::move(named);
   settings.set_option("stiffness", stiffness_N_per_mm);
-  auto made = make_algorithm(algorithm, settings);
+  auto made = make_algorithm(algorithm_named(algorithm), settings);
   made->prepare({&volume, tool});
   return made;
 }

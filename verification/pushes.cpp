@@ -77,7 +77,7 @@ std::vector<PushOutcome> push_outcomes(std::string_view algorithm, const Volume&
                                        const BoneSurface& surface, const PushKind& kind, int count) {
   std::vector<PushOutcome> all(static_cast<std::size_t>(count));
   in_parallel((all.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
-    const auto made = make_algorithm(algorithm, HapticSettings{});
+    const auto made = make_algorithm(algorithm_named(algorithm), {});
     made->prepare({&bone, kind.tool});
     SeededRandom random(100 + batch);
     for (std::size_t n = batch * kBatch; n < std::min(all.size(), (batch + 1) * kBatch); ++n) {

@@ -79,10 +79,11 @@ Section thin_bone() {
   const MillingTool tool;
   for (const double thick_mm : {0.5, 0.25, 0.15}) {
     const Volume bone = sheet(thick_mm);
-    for (const std::string& id : algorithm_names()) {
+    for (const AlgorithmDescription& description : all_algorithms()) {
+      const std::string& id = description.id.name;
       std::vector<int> through(std::size(kWays));
       in_parallel(through.size(), [&](std::size_t n) {
-        const auto algorithm = make_algorithm(id, HapticSettings{});
+        const auto algorithm = make_algorithm(description, {});
         algorithm->prepare({&bone, tool});
         SeededRandom random(7 + n);
         for (int push = 0; push < kPushesAWay; ++push) {
@@ -112,7 +113,7 @@ Section spongy_bone(const Bones& bones) {
   const BoneSurface surface(*bones.spongy);
   PushKind kind;
   kind.tool = {0.5, 0.35, 25};
-  for (const std::string& id : algorithm_names()) {
+  for (const AlgorithmDescription& description : all_algorithms()) {
     const std::vector<PushOutcome> all = push_outcomes(id, *bones.spongy, surface, kind, kPushes);
     const std::size_t ever = count_deeper(all, &PushOutcome::tool, &Depth::ever_mm, kDeepest_mm);
     double deepest = -1;

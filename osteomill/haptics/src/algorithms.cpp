@@ -44,8 +44,4 @@ const AlgorithmDescription& default_algorithm() {
   return algorithm_named("barrier-shell");
 }
 
-std::unique_ptr<HapticAlgorithm> make_algorithm(std::string_view name, const HapticSettings& settings) {
-  return make_algorithm(algorithm_named(name), settings);
-}
-
 }  // namespace osteomill

@@ -79,7 +79,7 @@ TEST(BarrierShell, HoldsTheShaftsEndAtAnySpeed) {
 
 TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
   const auto refused = [](std::string_view algorithm, const HapticSettings& settings) {
-    EXPECT_THROW(make_algorithm(algorithm, settings), std::invalid_argument);
+    EXPECT_THROW(make_algorithm(algorithm_named(algorithm), settings), std::invalid_argument);
   };
   HapticSettings settings;
   settings.set_option("vertices", 1);
@@ -97,8 +97,9 @@ TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
 }
 
 TEST(MakeAlgorithm, NoneTakesASceneWithoutAVolume) {
-  for (const std::string& name : algorithm_names()) {
-    EXPECT_THROW(make_algorithm(name, {})->prepare({nullptr, MillingTool{}}), std::invalid_argument) << name;
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    EXPECT_THROW(make_algorithm(algorithm, {})->prepare({nullptr, MillingTool{}}), std::invalid_argument)
+        << algorithm.id.name;
   }
 }
 
@@ -106,7 +107,7 @@ TEST(MakeAlgorithm, EachCountsItsSamplePoints) {
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(24, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 2.0));
   const auto count = [&](std::string_view algorithm) {
-    const auto made = make_algorithm(algorithm, {.named = {{"", "shell-scale", 1}}});
+    const auto made = make_algorithm(algorithm_named(algorithm), {.named = {{"", "shell-scale", 1}}});
     made->prepare({&bone, MillingTool{}});
     return made->sample_point_count();
   };

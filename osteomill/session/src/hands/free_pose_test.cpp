@@ -61,7 +61,7 @@ TEST(FreePose, NoAlgorithmFeelsAnythingThere) {
   const Volume bone = shape_volume(centred_cube(41, 0.5), testing_support::ball(Vec3::Zero(), 6));
   const Pose X_WT = free_pose_before(bone, {}, {0, -6, 0}, -Vec3::UnitY(), Vec3::UnitZ());
   for (const AlgorithmDescription& description : all_algorithms()) {
-    const auto algorithm = make_algorithm(description.id.name, {});
+    const auto algorithm = make_algorithm(description, {});
     algorithm->prepare({&bone, {}});
     EXPECT_EQ(algorithm->step(X_WT, 1e-3).wrench.force_N.norm(), 0) << description.id.name;
   }

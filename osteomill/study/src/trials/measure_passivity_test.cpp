@@ -181,7 +181,7 @@ TEST(Passivity, TheWallIsWhereTheHandleIsPressed) {
   const Volume wall = flat_wall(tool);
   HapticSettings settings;
   settings.set_option("stiffness", 1);
-  const auto algorithm = make_algorithm("line-proxy", settings);
+  const auto algorithm = make_algorithm(algorithm_named("line-proxy"), settings);
   algorithm->prepare({&wall, tool});
   const WallPressResult result = press_on_wall(*algorithm, tool.burr_radius_mm, device(0.02, 0));
   EXPECT_EQ(result.motion, WallMotion::dies_out);

@@ -51,10 +51,11 @@ Vec3 force_N(HapticAlgorithm& algorithm, bool circle, const Pose& X_WD) {
 }
 
 VertexSearchRow press(bool circle, int vertices, const Volume& wall) {
-  const auto algorithm = make_algorithm(
-      "surface-points", {.named = {{"surface-points", "slices", 1},
-                                   {"surface-points", circle ? "circle-vertices" : "sphere-vertices",
-                                    static_cast<double>(vertices)}}});
+  const auto algorithm =
+      make_algorithm(algorithm_named("surface-points"),
+                     {.named = {{"surface-points", "slices", 1},
+                                {"surface-points", circle ? "circle-vertices" : "sphere-vertices",
+                                 static_cast<double>(vertices)}}});
   algorithm->prepare({&wall, kTool});
   VertexSearchRow row{.part = circle ? "circle" : "sphere", .vertices = vertices};
   std::vector<double> off_deg, sizes_N;

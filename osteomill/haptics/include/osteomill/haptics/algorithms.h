@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,8 +23,5 @@ const AlgorithmDescription& algorithm_named(std::string_view name);
 
 /// Returns the algorithm that is used if the user does not choose: barrier-shell.
 const AlgorithmDescription& default_algorithm();
-
-/// Makes the algorithm of that name (make_algorithm of its description).
-std::unique_ptr<HapticAlgorithm> make_algorithm(std::string_view name, const HapticSettings& settings);
 
 }  // namespace osteomill
