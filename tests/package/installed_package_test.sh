@@ -39,6 +39,8 @@ disabled=("${disabled[@]/%/=ON}")
 user haptics -DCOMPONENTS=haptics "${disabled[@]}" || { cat haptics.log; fail "haptics alone wants ${absent[*]}"; }
 cmake --build haptics >/dev/null && haptics/user >felt
 ! user recording -DCOMPONENTS=recording "${disabled[@]}" || fail "recording was found without HDF5"
+! user session -DCOMPONENTS=session -DCMAKE_FIND_ROOT_PATH=/nowhere -DCMAKE_FIND_ROOT_PATH_MODE_LIBRARY=ONLY &&
+  grep -q 'component session needs the library spnav' session.log || fail "session was found without libspnav"
 ! user misspelt -DCOMPONENTS=haptix && grep -q 'no component haptix' misspelt.log || fail "haptix was found"
 
 # Everything, as CMake and as pkg-config say it; with all of every library, so that nothing can be missing.

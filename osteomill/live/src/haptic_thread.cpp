@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "osteomill/base/real_time.h"
+#include "osteomill/base/spsc_queue.h"
 
 namespace osteomill {
 
@@ -15,11 +17,19 @@ using namespace std::chrono_literals;
 
 // However late a tick comes, no more time than this is simulated in it.
 constexpr double kMaxTick_s = 0.02;
+// Records that wait for the commanding thread: 4 s.
+constexpr std::size_t kMaxRecords = 4096;
 
 }  // namespace
 
 HapticThread::HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock)
-    : clock_(std::move(clock)), device_(device), driven_(device), session_(std::move(session)) {}
+    : clock_(std::move(clock)),
+      device_(device),
+      driven_(device),
+      session_(std::move(session)),
+      records_(std::make_unique<SpscQueue<TickRecord>>(kMaxRecords)) {}
+
+HapticThread::~HapticThread() = default;
 
 void HapticThread::start() {
   if (is_running()) return;
@@ -141,7 +151,7 @@ void HapticThread::tick_until(const std::stop_token& stop) {
 
 std::optional<TickRecord> HapticThread::next_record() {
   TickRecord record;
-  if (!records_.try_pop(record)) return std::nullopt;
+  if (!records_->try_pop(record)) return std::nullopt;
   return record;
 }
 
@@ -166,7 +176,7 @@ TickRecord HapticThread::tick(double late_s) {
   if (listener_) listener_(record, session_->volume(), session_->last_change());
   state_.write({record, spindle_on, session_->intersection_W()});
   if (record.placed) placing_.store(false, std::memory_order_release);
-  records_.try_push(record);
+  records_->try_push(record);
   return record;
 }
 

@@ -1,5 +1,6 @@
 #include "osteomill/study/metric_table.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -123,6 +124,10 @@ const std::vector<Field<MeasuredRun>>& fields_of<MeasuredRun>() {
 const Field<RunMetrics>& metric(std::string_view column) {
   if (const Field<RunMetrics>* found = find_field(fields_of<RunMetrics>(), column)) return *found;
   throw std::invalid_argument(fmt::format("a run has no figure {}", column));
+}
+
+std::string csv_value(double value) {
+  return std::isnan(value) ? "," : fmt::format(",{}", value);
 }
 
 std::string with_unit(const std::string& text, const std::string& unit) {

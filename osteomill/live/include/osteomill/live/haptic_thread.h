@@ -11,12 +11,14 @@
 #include <thread>
 
 #include "osteomill/base/latest_value.h"
-#include "osteomill/base/spsc_queue.h"
 #include "osteomill/live/crash_stop.h"
 #include "osteomill/live/live_timing.h"
 #include "osteomill/session/milling_session.h"
 
 namespace osteomill {
+
+template <typename T>
+class SpscQueue;
 
 /// A function that the haptic thread calls in every tick, after the wrench has gone out: with its record, the
 /// bone, and where it changed. Must keep to the rules of the tick: no allocation, lock, log, exception or
@@ -43,6 +45,9 @@ class HapticThread {
  public:
   /// Takes the session over. `device` outlives this object. Does not start yet.
   HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {});
+  ~HapticThread();
+  HapticThread(const HapticThread&) = delete;
+  HapticThread& operator=(const HapticThread&) = delete;
 
   /// Starts the haptic thread and returns when it runs; does nothing if it runs already. Throws
   /// std::system_error if the system gives no thread: the session is then not running, and can be started
@@ -120,7 +125,7 @@ class HapticThread {
   // Set by the commanding thread, which waits until the haptic one has done it and made it null.
   std::atomic<const std::function<void()>*> command_{nullptr};
 
-  SpscQueue<TickRecord> records_{4096};
+  std::unique_ptr<SpscQueue<TickRecord>> records_;
   LatestValue<LiveState> state_;
   LiveTiming timing_;
   // Last, so that it ends before all that it uses.

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "osteomill/study/metrics.h"
 #include "osteomill/study/page.h"
 
@@ -30,15 +28,13 @@ std::string csv_names(const std::vector<Field<Struct>>& fields) {
   for (const Field<Struct>& metric : fields) names += "," + metric.name;
   return names;
 }
-/// Returns the values of the fields of `s` as a part of a row of that file, each behind a comma; one that is
-/// not a number is empty.
+/// Returns a number as a field of that file, behind a comma; one that is not a number is empty.
+std::string csv_value(double value);
+/// Returns the values of the fields of `s` as a part of a row of that file, each as `csv_value`.
 template <typename Struct>
 std::string csv_values(const std::vector<Field<Struct>>& fields, const Struct& s) {
   std::string values;
-  for (const Field<Struct>& metric : fields) {
-    const double value = metric.get(s);
-    values += std::isnan(value) ? "," : fmt::format(",{}", value);
-  }
+  for (const Field<Struct>& metric : fields) values += csv_value(metric.get(s));
   return values;
 }
 
