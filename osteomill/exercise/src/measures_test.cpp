@@ -43,8 +43,9 @@ class MeasuresOfABox : public ::testing::Test {
   Attempt with_ticks(const std::vector<AttemptTick>& ticks) const {
     Attempt attempt = removing({{-1, -1, 5}, {1, 1, 6}});
     attempt.ticks = ticks;
+    const StructureDistance& nerve = placed_.structures.front().distance;
     for (const AttemptTick& tick : ticks)
-      attempt.distances_mm.push_back(no_go_distance_mm(placed_, tick.burr_W, tick.burr_radius_mm));
+      attempt.distances_mm.push_back(nerve.from(tick.burr_W) - tick.burr_radius_mm);
     return attempt;
   }
 

@@ -91,14 +91,6 @@ PlacedExercise place_exercise(const Exercise& exercise, const Volume& scan) {
   return placed;
 }
 
-double no_go_distance_mm(const PlacedExercise& placed, const Vec3& burr_centre_W,
-                         double burr_radius_mm) noexcept {
-  double least_mm = std::numeric_limits<double>::quiet_NaN();
-  for (const PlacedStructure& structure : placed.structures)
-    least_mm = std::fmin(least_mm, structure.distance.from(burr_centre_W) - burr_radius_mm);
-  return least_mm;
-}
-
 std::vector<std::string> describe(const PlacedExercise& placed) {
   const Exercise& exercise = placed.exercise;
   const auto volume = [&](const VoxelSet& voxels) {

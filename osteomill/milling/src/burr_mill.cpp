@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "osteomill/base/positive.h"
-#include "osteomill/haptics/burr_presses.h"
 #include "osteomill/haptics/sample_points.h"
 #include "osteomill/milling/cut_voxels.h"
+#include "osteomill/milling/pressing_reach.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill {
@@ -35,6 +35,9 @@ constexpr double kMaxUneven_voxels = 0.6;
 // And never more, even in the first ticks, before it is known how many there are.
 constexpr std::size_t kRoomForPieces = 2 * kMaxPiecesOfTick;
 constexpr unsigned kMaxShares = 64;
+// Time for which an unspent budget is kept: a burr may swing on the bone that it presses on, and lose it for
+// some ticks.
+constexpr double kBudgetKept_s = 0.01;
 // Time over which the cut bone is measured; shorter, and a rate follows single voxels.
 constexpr double kMeasured_s = 0.005;
 // Directions in which the bone's density is looked at, half of them ahead.
@@ -137,7 +140,7 @@ MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N
   done.rate_mm3_s = paid_mm3_s;
   if (settings_.chips) measure_contact(lines * advance.slope_per_mm, dt_s);
   // Below zero by a rounding error if floats were rounded in the burr's favour; the next step pays for it.
-  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kPressingKept_s * paid_mm3_s);
+  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kBudgetKept_s * paid_mm3_s);
   return done;
 }
 

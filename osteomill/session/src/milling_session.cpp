@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "osteomill/haptics/burr_presses.h"
 #include "osteomill/haptics/sample_points.h"
+#include "osteomill/milling/pressing_reach.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill {

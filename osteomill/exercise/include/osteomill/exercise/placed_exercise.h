@@ -45,11 +45,6 @@ struct PlacedExercise {
 /// is empty. Long work.
 PlacedExercise place_exercise(const Exercise& exercise, const Volume& scan);
 
-/// Returns the distance of a burr's surface from the nearest structure, mm: negative if the burr reaches into
-/// one, not a number if the exercise has none. Safe in the haptic tick.
-double no_go_distance_mm(const PlacedExercise& placed, const Vec3& burr_centre_W,
-                         double burr_radius_mm) noexcept;
-
 /// Returns lines for people: the target and its volume, structures and distances, steps and items.
 std::vector<std::string> describe(const PlacedExercise& placed);
 
