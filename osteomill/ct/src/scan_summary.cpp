@@ -154,8 +154,11 @@ std::string to_text(const ScanSummary& summary) {
   text += given ? fmt::format("isovalue    {:.6g} given ({})\n", summary.isovalue, suggested)
                 : fmt::format("isovalue    {}\n", suggested);
   for (const Boundary& of : summary.suggested_iso.boundaries)
-    text += fmt::format("boundary    {:.4g}, with {:.4g} below and {:.4g} above\n", of.density, of.below,
-                        of.above);
+    text += fmt::format(
+        "boundary    {:.4g}, with {:.4g} below and {:.4g} above{}\n", of.density, of.below, of.above,
+        of.is_suggested
+            ? fmt::format("; the suggested isovalue lies on this boundary, sharpest at {:.4g}", of.density)
+            : "");
   text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
   if (!summary.pieces_mm3.empty()) text += pieces_text(summary.pieces_mm3);
   for (const std::string& series : summary.scan.series)

@@ -51,10 +51,12 @@ TEST(ScanSummary, VoxelsWithoutADensityAreCountedAndEnterNothingElse) {
 }
 
 TEST(ScanSummary, TextSaysTheSame) {
-  const std::string text = to_text(summarise(some_scan(), {10.0, "halfway", {{12, 3, 25}}}, 20.0));
+  const std::string text =
+      to_text(summarise(some_scan(), {10.0, "halfway", {{12, 3, 25, true}, {30, 25, 35}}}, 20.0));
   for (const char* part :
        {"some.nrrd (NRRD)", "3 x 1 x 2", "0.5 x 0.25 x 2 mm", "-5 to 35, mean 15", "10 suggested, halfway",
-        "12, with 3 below and 25 above", "2 voxels above 20", "warning: one", "j runs along 0, 0, 1"}) {
+        "12, with 3 below and 25 above; the suggested isovalue lies on this boundary, sharpest at 12\n",
+        "30, with 25 below and 35 above\n", "2 voxels above 20", "warning: one", "j runs along 0, 0, 1"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
 }

@@ -340,8 +340,9 @@ SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_u
   std::sort(samples.begin(), samples.end(), is_less_dense);
   Choice chosen = isovalue_of_bone(samples, in_hounsfield_units);
   std::string others;
-  for (const Boundary& boundary : boundaries) {
-    if (!lies_on(chosen, boundary))
+  for (Boundary& boundary : boundaries) {
+    boundary.is_suggested = lies_on(chosen, boundary);
+    if (!boundary.is_suggested)
       others += fmt::format("{}{:.4g}", others.empty() ? "" : " and ", boundary.density);
   }
   if (!others.empty()) chosen.how += fmt::format("; a guess, with other boundaries at {}", others);

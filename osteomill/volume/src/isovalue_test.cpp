@@ -124,7 +124,11 @@ TEST(SuggestIsovalue, IsSaidToBeAGuessWhereThereIsAnotherBoundary) {
   std::vector<float> both = every_nth_density(outer.grid(), 1);
   const std::vector<float> within = every_nth_density(inner.grid(), 1);
   for (std::size_t n = 0; n < both.size(); ++n) both[n] += 1.5f * within[n];
-  EXPECT_TRUE(is_guess(DensityGrid(outer.geometry(), both)));
+  const DensityGrid two(outer.geometry(), both);
+  EXPECT_TRUE(is_guess(two));
+  const SuggestedIsovalue suggested = suggest_isovalue(two);
+  ASSERT_EQ(suggested.boundaries.size(), 2u);
+  EXPECT_NE(suggested.boundaries[0].is_suggested, suggested.boundaries[1].is_suggested);
 }
 
 // A specimen in air of which nothing lies near 260 HU: halfway is more than that, and right.

@@ -15,6 +15,9 @@ struct Boundary {
   /// The densities of the materials on either side, taken at voxels that differ least from their neighbours.
   double below = 0;
   double above = 0;
+  /// True if the suggested isovalue lies on this boundary (suggest_isovalue), though rarely at the density at
+  /// which it is sharpest.
+  bool is_suggested = false;
 };
 
 /// Returns the boundaries between materials, by density: the local maxima of the mean gradient along the
