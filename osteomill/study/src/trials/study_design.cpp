@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/base/parse_number.h"
 #include "osteomill/session/hand.h"
 
 namespace osteomill {
@@ -42,15 +43,25 @@ double StudyRange::at(double share) const {
   return logarithmic ? from * std::pow(to / from, share) : from + share * (to - from);
 }
 
+namespace {
+
+// Rounds off the error of the last bits in a number that people read: 4, not 3.9999999999999996.
+double without_last_digits(double value) {
+  if (value == std::floor(value)) return value;
+  return parsed_number<double>(fmt::format("{:.12g}", value)).value_or(value);
+}
+
+}  // namespace
+
 std::vector<double> steps_of(const StudyRange& range, std::size_t steps) {
   if (steps == 0) throw std::invalid_argument("has no values");
   std::vector<double> values{range.from};
   const auto last = static_cast<double>(steps - 1);
-  for (double n = 1; n <= last; ++n) {
-    // Whole numbers stay whole.
-    values.push_back(range.logarithmic ? range.at(n / last)
-                                       : range.from + (range.to - range.from) * n / last);
+  for (double n = 1; n < last; ++n) {
+    values.push_back(without_last_digits(
+        range.logarithmic ? range.at(n / last) : range.from + (range.to - range.from) * n / last));
   }
+  if (steps > 1) values.push_back(range.to);
   return values;
 }
 

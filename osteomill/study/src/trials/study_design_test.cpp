@@ -80,6 +80,8 @@ TEST(StudyDesign, StepsEndWhereTheRangeDoes) {
   EXPECT_EQ(steps_of({2, 3, false}, 1), (std::vector<double>{2}));
   const std::vector<double> seeds = steps_of({1, 10000, false}, 10000);
   for (std::size_t n = 0; n < seeds.size(); ++n) ASSERT_EQ(seeds[n], static_cast<double>(n + 1));
+  EXPECT_EQ(steps_of({0.25, 16, true}, 7), (std::vector<double>{0.25, 0.5, 1, 2, 4, 8, 16}));
+  EXPECT_EQ(steps_of({0.1, 0.7, false}, 7), (std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}));
   const std::vector<double> decades = steps_of({0.01, 100, true}, 5);
   EXPECT_NEAR(decades[2], 1, 1e-12);
   EXPECT_EQ(decades.back(), 100);
