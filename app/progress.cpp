@@ -22,13 +22,7 @@ bool is_on_terminal() {
   return terminal;
 }
 
-struct Work {
-  std::string what;
-  Clock::time_point start;
-  double fraction_done = 0;
-  int tenths_printed = 0;
-};
-Work work;
+ProgressText progress;
 
 std::string time_text(double seconds) {
   const long whole = std::lround(seconds);
@@ -47,26 +41,44 @@ void add_quiet_option(CLI::App& command) {
       ->group("Options");
 }
 
-void show_progress(std::string_view what, double fraction_done) {
+std::string ProgressText::at(std::string_view what, double fraction_done, double now_s) {
   constexpr double kSilent_s = 1;
+  if (what != what_ || fraction_done < fraction_done_) {
+    *this = {};
+    what_ = what;
+    start_s_ = line_s_ = now_s;
+  }
+  fraction_done_ = fraction_done;
+  now_s_ = now_s;
+  const double passed_s = now_s - start_s_;
+  if (!(fraction_done > 0) || passed_s < kSilent_s) return {};
+  return fmt::format("{} {:3.0f} %, {} left", what, 100 * fraction_done,
+                     time_text(passed_s * (1 - fraction_done) / fraction_done));
+}
+
+bool ProgressText::take_line() {
+  constexpr double kMaxSilence_s = 60;
+  const int tenths = static_cast<int>(10 * fraction_done_ + 1e-9);
+  if (tenths <= tenths_written_ && now_s_ - line_s_ < kMaxSilence_s) return false;
+  tenths_written_ = tenths;
+  line_s_ = now_s_;
+  return true;
+}
+
+void show_progress(std::string_view what, double fraction_done) {
   if (quiet) return;
-  const Clock::time_point now = Clock::now();
-  if (what != work.what || fraction_done < work.fraction_done) work = {std::string(what), now, 0, 0};
-  work.fraction_done = fraction_done;
-  const double passed_s = std::chrono::duration<double>(now - work.start).count();
-  if (!(fraction_done > 0) || passed_s < kSilent_s) return;
-  const std::string line = fmt::format("{} {:3.0f} %, {} left", what, 100 * fraction_done,
-                                       time_text(passed_s * (1 - fraction_done) / fraction_done));
+  const double now_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  const std::string text = progress.at(what, fraction_done, now_s);
+  if (text.empty()) return;
   if (is_on_terminal()) {
-    print_error("\r\033[K" + line);
-  } else if (const int tenths = static_cast<int>(10 * fraction_done + 1e-9); tenths > work.tenths_printed) {
-    work.tenths_printed = tenths;
-    print_error(line + "\n");
+    print_error("\r\033[K" + text);
+  } else if (progress.take_line()) {
+    print_error(text + "\n");
   }
 }
 
 void end_progress() {
-  work = {};
+  progress = {};
   if (quiet || !is_on_terminal()) return;
   print_error("\r\033[K");
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,9 +14,28 @@ namespace osteomill::app {
 /// Adds --quiet: nothing but errors and no-go contacts on standard error.
 void add_quiet_option(CLI::App& command);
 
+/// Words how far a piece of work is, and decides when that is worth a line.
+class ProgressText {
+ public:
+  /// Notes that the work `what` is so far at a time of a clock in s. Less than before, or another work,
+  /// begins again. Returns "compare  40 %, 12 s left"; empty in the work's first second.
+  std::string at(std::string_view what, double fraction_done, double now_s);
+  /// Returns whether the text last returned is worth a line that stays: at each tenth, and after a minute
+  /// without one. Then counts it as written.
+  bool take_line();
+
+ private:
+  std::string what_;
+  double start_s_ = 0;
+  double now_s_ = 0;
+  double fraction_done_ = 0;
+  double line_s_ = 0;
+  int tenths_written_ = 0;
+};
+
 /// Says on standard error how far the work `what` is and how long it still takes: on a terminal in one line
-/// that is written over, else in a line each tenth. Silent in the work's first second. From one thread at a
-/// time.
+/// that is written over, else in a line each tenth and at least each minute. Silent in the work's first
+/// second. From one thread at a time.
 void show_progress(std::string_view what, double fraction_done);
 /// Clears the line on a terminal when the work is done.
 void end_progress();

@@ -1,0 +1,44 @@
+#include "app/progress.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace osteomill::app {
+namespace {
+
+// Returns the lines of work that goes on evenly, told each second.
+std::vector<std::string> lines_of(double seconds, double fraction_per_s) {
+  ProgressText progress;
+  std::vector<std::string> lines;
+  for (int n = 0; n <= seconds; ++n) {
+    const std::string text = progress.at("compare", fraction_per_s * n, 1e5 + n);
+    if (!text.empty() && progress.take_line()) lines.push_back(text);
+  }
+  return lines;
+}
+
+TEST(ProgressText, HasALineEachTenthOfQuickWork) {
+  const std::vector<std::string> lines = lines_of(100, 0.01);
+  ASSERT_EQ(lines.size(), 10u);
+  EXPECT_EQ(lines[0], "compare  10 %, 1 min 30 s left");
+  EXPECT_EQ(lines[9], "compare 100 %, 0 s left");
+}
+
+TEST(ProgressText, HasALineEachMinuteOfSlowWork) {
+  const std::vector<std::string> lines = lines_of(300, 1e-4);
+  ASSERT_EQ(lines.size(), 5u);
+  EXPECT_EQ(lines[0], "compare   1 %, 2 h 45 min left");
+}
+
+TEST(ProgressText, BeginsAgainWithOtherWorkAndIsSilentForASecond) {
+  ProgressText progress;
+  EXPECT_EQ(progress.at("a", 0.5, 10), "");
+  EXPECT_EQ(progress.at("a", 0.5, 20), "a  50 %, 10 s left");
+  EXPECT_EQ(progress.at("b", 0.5, 21), "");
+  EXPECT_EQ(progress.at("b", 0.5, 23), "b  50 %, 2 s left");
+  EXPECT_EQ(progress.at("b", 0.25, 24), "") << "the same work once more";
+}
+
+}  // namespace
+}  // namespace osteomill::app
