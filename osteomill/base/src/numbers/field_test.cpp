@@ -29,6 +29,14 @@ std::vector<Field<Part>> part_fields() {
           field<Part>({"on", "", NumberRange::on_or_off(), "Whether it is on"}, &Part::on)};
 }
 
+TEST(Field, NamesTheValuesOfChoicesAndSwitches) {
+  const FieldDescription law{.range = NumberRange::count(0, 1), .choices = {"constant-energy", "chips"}};
+  EXPECT_EQ(law.name_of_value(1), "chips") << "two choices have the range of a switch";
+  EXPECT_EQ(law.name_of_value(2), std::nullopt);
+  EXPECT_EQ((FieldDescription{.range = NumberRange::on_or_off()}.name_of_value(0)), "off");
+  EXPECT_EQ((FieldDescription{.range = NumberRange::count(0)}.name_of_value(1)), std::nullopt);
+}
+
 TEST(Field, NotANumberIsAllowedByNoRange) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -241,6 +241,16 @@ std::string text_of(const Value& value) {
     return fmt::format("{}, {}, {}", value[0], value[1], value[2]);
 }
 
+// Returns the value in words if it is a choice of a session's or a switch.
+std::string text_of(const RunSetting& setting) {
+  const double* number = std::get_if<double>(&setting.value);
+  const Field<SessionSettings>* field = find_field(fields_of<SessionSettings>(), setting.key);
+  if (number != nullptr && field != nullptr) {
+    if (auto name = field->name_of_value(*number)) return *std::move(name);
+  }
+  return std::visit([](const auto& value) { return text_of(value); }, setting.value);
+}
+
 // The description's own fields and the further settings, alike.
 std::vector<RunSetting> all_settings(const RunDescription& d) {
   std::vector<RunSetting> settings;
@@ -252,7 +262,7 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
   for (const RunSetting& setting : d.settings) {
     if (setting.key == kCommandLineKey || setting.key == kNotReachedKey) continue;
     settings.push_back(setting);
-    settings.back().value = std::visit([](const auto& value) { return text_of(value); }, setting.value);
+    settings.back().value = text_of(setting);
     if (setting.key == kSamplePointsKey && std::get<std::string>(settings.back().value) == "0")
       settings.back().value = "made as the tool comes near";
   }

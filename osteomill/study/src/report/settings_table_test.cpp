@@ -22,6 +22,10 @@ TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
   runs[3].description.settings.push_back({"only_here", std::string("<x>"), ""});
   for (Recording& run : runs) {
     run.description.settings.push_back({"felt", 26.057583387520594, ""});
+    run.description.settings.push_back({"milling.law", 1.0, ""});
+    run.description.settings.push_back({"spindle.handpiece", 0.0, ""});
+    run.description.settings.push_back({"milling.drag", 0.0, ""});
+    run.description.settings.push_back({"milling.wear", 1.0, ""});
     run.description.settings.push_back({"most", std::numeric_limits<double>::infinity(), ""});
   }
   std::vector<const Recording*> recordings;
@@ -33,6 +37,10 @@ TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
   EXPECT_EQ(value_of(table, "command_line"), "(none)");
   EXPECT_EQ(value_of(table, "felt"), "26.0576");
   EXPECT_EQ(value_of(table, "most"), "no limit");
+  EXPECT_EQ(value_of(table, "milling.law"), "chips");
+  EXPECT_EQ(value_of(table, "spindle.handpiece"), "none");
+  EXPECT_EQ(value_of(table, "milling.drag"), "off");
+  EXPECT_EQ(value_of(table, "milling.wear"), "1");
 }
 
 std::vector<std::string> differing(std::vector<Recording>& runs) {

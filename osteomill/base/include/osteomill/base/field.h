@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -66,6 +67,12 @@ struct FieldDescription {
   std::vector<std::string> choices = {};
 
   bool has(unsigned flag) const { return (flags & flag) != 0; }
+  /// Returns the name of a value of a choice, or "on" or "off" of a switch; nothing for any other number.
+  std::optional<std::string> name_of_value(double value) const {
+    if (choices.empty() && range == NumberRange::on_or_off()) return value == 0 ? "off" : "on";
+    if (!(value >= 0 && value < static_cast<double>(choices.size()))) return std::nullopt;
+    return choices[static_cast<std::size_t>(value)];
+  }
 };
 
 /// A flag of any struct's fields: a file may lack it, and it then keeps its default.
