@@ -96,7 +96,7 @@ TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
   refused_value("point-shell", "torsional-stiffness", std::nan(""));
 }
 
-TEST(MakeAlgorithm, NoneTakesASceneWithoutAVolume) {
+TEST(MakeAlgorithm, NoneTakesInputsWithoutAVolume) {
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     EXPECT_THROW(make_algorithm(algorithm, {})->prepare({nullptr, MillingTool{}}), std::invalid_argument)
         << algorithm.id.name;

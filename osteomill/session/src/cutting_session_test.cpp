@@ -17,7 +17,7 @@ class PressingAlgorithm : public HapticAlgorithm {
  public:
   HapticStep next;
 
-  void prepare(const Scene&) override {}
+  void prepare(const AlgorithmInputs&) override {}
   HapticStep step(const Pose& X_WD, double) noexcept override {
     next.X_WT = X_WD;
     return next;

@@ -44,7 +44,7 @@ class ScriptedAlgorithm : public HapticAlgorithm {
   int resets = 0;
   std::vector<VolumeChange> changes;
 
-  void prepare(const Scene&) override {}
+  void prepare(const AlgorithmInputs&) override {}
   std::vector<Pose> steps;
   HapticStep step(const Pose& X_WD, double) noexcept override {
     steps.push_back(X_WD);

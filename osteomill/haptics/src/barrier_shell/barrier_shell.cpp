@@ -151,19 +151,19 @@ BarrierShell::BarrierShell(const Settings& settings)
     : settings_(settings),
       coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad} {}
 
-void BarrierShell::prepare(const Scene& scene) {
-  if (scene.volume == nullptr) throw std::invalid_argument("barrier-shell: the scene has no volume");
-  require_valid(scene.tool);
-  volume_ = scene.volume;
-  tool_ = scene.tool;
-  barrier_ = skin_of(scene.tool, settings_);
-  centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
+void BarrierShell::prepare(const AlgorithmInputs& inputs) {
+  if (inputs.volume == nullptr) throw std::invalid_argument("barrier-shell: there is no volume");
+  require_valid(inputs.tool);
+  volume_ = inputs.volume;
+  tool_ = inputs.tool;
+  barrier_ = skin_of(inputs.tool, settings_);
+  centreline_T_ = centreline_vertices(inputs.tool, kCentrelinePoints);
   core_inset_mm_ = 0;
   const Cores whole = cores();
   const double at_shaft_mm = widest_spacing_mm(whole.cylinder_radius_mm);
   const double spacing_mm =
       std::min({settings_.point_spacing_mm, widest_spacing_mm(whole.ball_radius_mm), at_shaft_mm});
-  bricks_ = BoneBricks(*scene.volume, spacing_mm);
+  bricks_ = BoneBricks(*inputs.volume, spacing_mm);
   near_ = NearBone(kNearPoints, 2 * spacing_mm > at_shaft_mm);
   measured_ = MeasuredBone(kNearPoints);
   reset();

@@ -40,7 +40,7 @@ class BarrierShell final : public HapticAlgorithm {
   /// Settings within their ranges.
   explicit BarrierShell(const Settings& settings);
 
-  void prepare(const Scene& scene) override;
+  void prepare(const AlgorithmInputs& inputs) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   void volume_changed(const VolumeChange& change) noexcept override;
   void reset() noexcept override;

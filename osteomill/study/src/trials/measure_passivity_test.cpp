@@ -19,7 +19,7 @@ class IdealWall final : public HapticAlgorithm {
   explicit IdealWall(double stiffness_N_per_mm, double damping_Ns_per_mm = 0)
       : stiffness_(stiffness_N_per_mm), damping_(damping_Ns_per_mm) {}
 
-  void prepare(const Scene& /*scene*/) override {}
+  void prepare(const AlgorithmInputs& /*inputs*/) override {}
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override {
     HapticStep step;
     const double depth_mm = kRadius_mm - X_WD.position_mm.z();
@@ -110,7 +110,7 @@ TEST(Passivity, AnOverdampedDeviceThatCreepsToRestIsPassive) {
 // A force that jumps at the surface keeps the handle swinging without growing: that is not passive either.
 class Relay final : public HapticAlgorithm {
  public:
-  void prepare(const Scene& /*scene*/) override {}
+  void prepare(const AlgorithmInputs& /*inputs*/) override {}
   HapticStep step(const Pose& X_WD, double /*dt_s*/) noexcept override {
     HapticStep step;
     const double depth_mm = kRadius_mm - X_WD.position_mm.z();
@@ -130,7 +130,7 @@ TEST(Passivity, WhatNeitherGrowsNorDiesIsNotCalledPassive) {
 TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
   class Broken final : public HapticAlgorithm {
    public:
-    void prepare(const Scene& /*scene*/) override {}
+    void prepare(const AlgorithmInputs& /*inputs*/) override {}
     HapticStep step(const Pose& X_WD, double /*dt_s*/) noexcept override {
       HapticStep step;
       const double depth_mm = kRadius_mm - X_WD.position_mm.z();

@@ -23,7 +23,7 @@ class Cushion final : public HapticAlgorithm {
  public:
   Cushion(double stiffness_N_per_mm, double height_mm)
       : stiffness_N_per_mm_(stiffness_N_per_mm), height_mm_(height_mm) {}
-  void prepare(const Scene&) override {}
+  void prepare(const AlgorithmInputs&) override {}
   HapticStep step(const Pose& X_WD, double) noexcept override {
     HapticStep step;
     step.X_WT = X_WD;

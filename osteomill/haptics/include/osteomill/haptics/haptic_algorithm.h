@@ -14,7 +14,7 @@ namespace osteomill {
 
 /// The surroundings that an algorithm is prepared for: the bone, and the tool that mills it. The volume
 /// outlives the algorithm that was prepared with it.
-struct Scene {
+struct AlgorithmInputs {
   const Volume* volume = nullptr;
   MillingTool tool;
   /// The loop's nominal period: stiffness that a slower loop cannot hold follows it, never the length of one
@@ -57,7 +57,7 @@ class HapticAlgorithm {
   }
   /// Makes the algorithm ready for this bone and tool. Throws std::invalid_argument if a setting or the tool
   /// is out of range.
-  virtual void prepare(const Scene& scene) = 0;
+  virtual void prepare(const AlgorithmInputs& inputs) = 0;
   /// Computes one tick. `X_WD` is the device's pose as a tool pose in W (finite); `dt_s` is the time since
   /// the last step.
   virtual HapticStep step(const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING = 0;

@@ -33,11 +33,11 @@ std::vector<std::string> LineProxy::setting_warnings(const MillingTool&, const G
   return warnings;
 }
 
-void LineProxy::prepare(const Scene& scene) {
-  if (scene.volume == nullptr) throw std::invalid_argument("line-proxy: no volume");
-  require_valid(scene.tool);
-  scene_ = scene;
-  vertices_T_ = centreline_vertices(scene.tool, settings_.vertices);
+void LineProxy::prepare(const AlgorithmInputs& inputs) {
+  if (inputs.volume == nullptr) throw std::invalid_argument("line-proxy: no volume");
+  require_valid(inputs.tool);
+  inputs_ = inputs;
+  vertices_T_ = centreline_vertices(inputs.tool, settings_.vertices);
   reset();
 }
 
@@ -54,7 +54,7 @@ HapticStep LineProxy::step(const Pose& X_WD, double) noexcept {
   result.wrench.torque_Nmm = state_.arm_W.cross(state_.reaction_N);                   // eq. 11
   if (state_.tip_proxy_W) result.burr_force_W_N = -result.wrench.force_N;
   const int on_shaft =
-      state_.intersection_W ? std::max(1, count_in_bone(*scene_.volume, shaft_vertices(), X_WL)) : 0;
+      state_.intersection_W ? std::max(1, count_in_bone(*inputs_.volume, shaft_vertices(), X_WL)) : 0;
   result.contacts = (state_.tip_proxy_W ? 1 : 0) + on_shaft;
   reset_if_not_finite();
   result.intersection_W = state_.intersection_W;
@@ -63,7 +63,7 @@ HapticStep LineProxy::step(const Pose& X_WD, double) noexcept {
 }
 
 void LineProxy::follow_with_tip_proxy(const Vec3& tip_W) {
-  const Volume& volume = *scene_.volume;
+  const Volume& volume = *inputs_.volume;
   if (!is_bone_at(volume, tip_W)) {
     state_.tip_proxy_W.reset();
     return;
@@ -75,7 +75,7 @@ void LineProxy::follow_with_tip_proxy(const Vec3& tip_W) {
 }
 
 std::optional<Vec3> LineProxy::first_tip_proxy(const Vec3& tip_W) const {
-  const Volume& volume = *scene_.volume;
+  const Volume& volume = *inputs_.volume;
   if (state_.device_tip_W && !is_bone_at(volume, *state_.device_tip_W)) {
     return first_crossing(volume, *state_.device_tip_W, tip_W);
   }
@@ -85,7 +85,7 @@ std::optional<Vec3> LineProxy::first_tip_proxy(const Vec3& tip_W) const {
 void LineProxy::follow_with_intersection(const Pose& X_WL) {
   if (state_.intersection_W) {
     state_.intersection_W = next_intersection(X_WL);
-  } else if (count_in_bone(*scene_.volume, shaft_vertices(), X_WL) > 0) {
+  } else if (count_in_bone(*inputs_.volume, shaft_vertices(), X_WL) > 0) {
     state_.intersection_W = first_intersection(X_WL);
   }
 }
@@ -93,7 +93,7 @@ void LineProxy::follow_with_intersection(const Pose& X_WL) {
 // Finds the first intersection point: no collision at t-1, but one at t.
 std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
   if (!state_.X_WL) return std::nullopt;  // the first tick has no path to walk
-  const auto hit = walk_to_collision(*scene_.volume, shaft_vertices(), *state_.X_WL, X_WL, kWalk);
+  const auto hit = walk_to_collision(*inputs_.volume, shaft_vertices(), *state_.X_WL, X_WL, kWalk);
   if (!hit) return std::nullopt;
   return hit->intersection_W();
 }
@@ -101,7 +101,7 @@ std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
 // Collision at t-1 already. The point-proxy rule takes IP from where it was toward the densest point; nothing
 // if the shaft is free.
 std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) const {
-  const Volume& volume = *scene_.volume;
+  const Volume& volume = *inputs_.volume;
   const ShaftProbe probe = densest_point(volume, shaft_vertices(), X_WL, *state_.intersection_W);
   if (!(probe.density > volume.isovalue())) return std::nullopt;
   return move_point_proxy(volume, *state_.intersection_W, probe.point_W);
@@ -119,17 +119,17 @@ void LineProxy::turn_reaction(const Pose& X_WL) {
 
 // A burr's radius out from the tip's proxy, the shaft along (13).
 Pose LineProxy::drawn_tool(const Pose& X_WL) const {
-  const Volume& volume = *scene_.volume;
+  const Volume& volume = *inputs_.volume;
   Pose X_WT = X_WL;
   if (state_.tip_proxy_W) {
     const auto u = surface_normal(volume, *state_.tip_proxy_W);
-    if (u) X_WT.position_mm += *u * scene_.tool.burr_radius_mm;
+    if (u) X_WT.position_mm += *u * inputs_.tool.burr_radius_mm;
   }
   if (!state_.intersection_W) return X_WT;
   const auto u = surface_normal(volume, *state_.intersection_W);
   if (!u) return X_WT;
-  const Vec3 offset_W = *state_.intersection_W + *u * scene_.tool.shaft_radius_mm;  // eq. 12
-  const Vec3 shaft_W = offset_W - X_WT.position_mm;                                 // eq. 13
+  const Vec3 offset_W = *state_.intersection_W + *u * inputs_.tool.shaft_radius_mm;  // eq. 12
+  const Vec3 shaft_W = offset_W - X_WT.position_mm;                                  // eq. 13
   if (!(shaft_W.norm() > 1e-6)) return X_WT;
   X_WT.orientation = (smallest_rotation(shaft_direction(X_WL), shaft_W) * X_WL.orientation).normalized();
   return X_WT;

@@ -32,7 +32,7 @@ class LineProxy final : public HapticAlgorithm {
   explicit LineProxy(const Settings& settings) : settings_(settings) {}
 
   std::vector<std::string> setting_warnings(const MillingTool& tool, const GridGeometry& scan) const override;
-  void prepare(const Scene& scene) override;
+  void prepare(const AlgorithmInputs& inputs) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   /// Does nothing: every step reads the volume itself.
   void volume_changed(const VolumeChange&) noexcept override {}
@@ -62,7 +62,7 @@ class LineProxy final : public HapticAlgorithm {
   Pose drawn_tool(const Pose& X_WL) const;
 
   Settings settings_;
-  Scene scene_;
+  AlgorithmInputs inputs_;
   std::vector<Vec3> vertices_T_;
   ContactState state_;
 };

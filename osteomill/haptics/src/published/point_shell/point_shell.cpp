@@ -51,15 +51,15 @@ std::vector<std::string> PointShell::setting_warnings(const MillingTool& tool,
   return warnings;
 }
 
-void PointShell::prepare(const Scene& scene) {
-  if (scene.volume == nullptr) throw std::invalid_argument("point-shell: the scene has no volume");
-  require_valid(scene.tool);
-  milling_tool_ = scene.tool;
+void PointShell::prepare(const AlgorithmInputs& inputs) {
+  if (inputs.volume == nullptr) throw std::invalid_argument("point-shell: there is no volume");
+  require_valid(inputs.tool);
+  milling_tool_ = inputs.tool;
   coupling_ = {settings_.translational_stiffness_N_per_mm, settings_.torsional_stiffness_Nmm_per_rad,
-               settings_.damping_time_s / scene.tick_period_s};
-  stiffness_N_per_mm3_ = contact_stiffness_N_per_mm3(scene.tool);
-  shell_ = VoxelShell(*scene.volume, settings_.scale);
-  tool_.emplace(scene.tool, SampledDistanceField::suitable_spacing_mm(scene.tool));
+               settings_.damping_time_s / inputs.tick_period_s};
+  stiffness_N_per_mm3_ = contact_stiffness_N_per_mm3(inputs.tool);
+  shell_ = VoxelShell(*inputs.volume, settings_.scale);
+  tool_.emplace(inputs.tool, SampledDistanceField::suitable_spacing_mm(inputs.tool));
   reset();
 }
 

@@ -44,7 +44,7 @@ class PointShell final : public HapticAlgorithm {
   explicit PointShell(const Settings& settings) : settings_(settings) {}
 
   std::vector<std::string> setting_warnings(const MillingTool& tool, const GridGeometry& scan) const override;
-  void prepare(const Scene& scene) override;
+  void prepare(const AlgorithmInputs& inputs) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   void volume_changed(const VolumeChange& change) noexcept override { shell_.refresh(change.voxels); }
   void reset() noexcept override;

@@ -35,13 +35,13 @@ std::vector<std::string> SurfacePoints::setting_warnings(const MillingTool& tool
   return warnings;
 }
 
-void SurfacePoints::prepare(const Scene& scene) {
-  if (scene.volume == nullptr) throw std::invalid_argument("surface-points: a scene without a volume");
-  require_valid(scene.tool);
-  volume_ = scene.volume;
-  sphere_.vertex_offsets_T = sphere_vertices(scene.tool, settings_.sphere_vertices);
+void SurfacePoints::prepare(const AlgorithmInputs& inputs) {
+  if (inputs.volume == nullptr) throw std::invalid_argument("surface-points: there is no volume");
+  require_valid(inputs.tool);
+  volume_ = inputs.volume;
+  sphere_.vertex_offsets_T = sphere_vertices(inputs.tool, settings_.sphere_vertices);
   slices_.clear();
-  for (const ShaftSlice& slice : slice_vertices(scene.tool, settings_.slices, settings_.circle_vertices)) {
+  for (const ShaftSlice& slice : slice_vertices(inputs.tool, settings_.slices, settings_.circle_vertices)) {
     VertexRing& ring = slices_.emplace_back(VertexRing{.centre_T = slice.centre_T});
     for (const Vec3& vertex : slice.vertices_T) ring.vertex_offsets_T.emplace_back(vertex - slice.centre_T);
   }

@@ -41,7 +41,7 @@ class SurfacePoints final : public HapticAlgorithm {
   explicit SurfacePoints(const Settings& settings) : settings_(settings) {}
 
   std::vector<std::string> setting_warnings(const MillingTool& tool, const GridGeometry& scan) const override;
-  void prepare(const Scene& scene) override;
+  void prepare(const AlgorithmInputs& inputs) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   /// Does nothing: every step reads the volume itself.
   void volume_changed(const VolumeChange&) noexcept override {}
