@@ -37,7 +37,7 @@ struct Published {
 struct Tool {
   double radius_mm = 1.5;
   double speed_rpm = 40000;
-  ChipLaw law = chip_law(BurrKind::cutting);
+  ChipLaw law = chip_law(BurrEdge::cutting);
 };
 
 struct Cut {
@@ -97,7 +97,7 @@ Cut at_push(const Tool& tool, double force_N, double seconds) {
 }
 
 // A twist drill of two lips, as the law has it.
-Tool drill(double radius_mm, double speed_rpm, ChipLaw law = chip_law(BurrKind::cutting)) {
+Tool drill(double radius_mm, double speed_rpm, ChipLaw law = chip_law(BurrEdge::cutting)) {
   law.edges = 2;
   return {radius_mm, speed_rpm, law};
 }
@@ -110,7 +110,7 @@ ChipLaw law_through(double torque_a_Nmm, double torque_c_Nmm) {
            (std::numbers::pi * kRadius_mm * kRadius_mm * kFeed_mm_s);
   };
   const double a = energy(torque_a_Nmm, kSpeedA_rpm), c = energy(torque_c_Nmm, kSpeedC_rpm);
-  ChipLaw law = chip_law(BurrKind::cutting);
+  ChipLaw law = chip_law(BurrEdge::cutting);
   law.edge = law.sharp = {a, kFeed_mm_s / (2 * kSpeedA_rpm / 60),
                           std::log(c / a) / std::log(kSpeedC_rpm / kSpeedA_rpm)};
   return law;
@@ -160,7 +160,7 @@ void add_drills(Section& section) {
   const auto torque = [](double rpm, const ChipLaw& law) {
     return at_feed(drill(1.6, rpm, law), 2).torque_Nmm;
   };
-  const ChipLaw bone = chip_law(BurrKind::cutting);
+  const ChipLaw bone = chip_law(BurrEdge::cutting);
   add(section, {"D1a", "human femur, drill at 1000 rpm, torque, N mm", 186.3, 186.3, 16.9, Use::fit, kDrill},
       torque(1000, bone));
   add(section, {"D1b", "at 1250 rpm", 157.8, 157.8, 16.1, Use::held_out, kDrill}, torque(1250, bone));
@@ -208,7 +208,7 @@ void add_burrs(Section& section) {
       {"B12", "diamond, tangential over normal force", 0.40, 0.60, 0, Use::fit,
        "leucite glass ceramic, abstract"},
       any.torque_Nmm / tool.radius_mm / any.force_N);
-  const Tool fast{1.5, 80000}, diamond{1.5, 40000, chip_law(BurrKind::diamond)};
+  const Tool fast{1.5, 80000}, diamond{1.5, 40000, chip_law(BurrEdge::diamond)};
   const double usual_N = any.force_N;
   const char* kSkull = "Babbar 2020, 10.1177/0954411920911499";
   add_sign(section, "B2, speed", "force, N, at twice the speed: falls", usual_N, at_feed(fast, 0.2).force_N,

@@ -472,7 +472,7 @@ class Simulator {
   void set_sound() {
     const TickRecord& record = simulation_->milling.state().record;
     const MillingSetup& setup = simulation_->milling.setup();
-    const bool is_abrasive = setup.law == CuttingLaw::chips && setup.burr == BurrKind::diamond;
+    const bool is_abrasive = setup.law == CuttingLaw::chips && setup.burr == BurrEdge::diamond;
     heard_ = {view_.sound ? std::max(record.spindle_rpm, 0.0) : 0, sound_load(record.cutting_power_W),
               std::max(record.cut_density, 0.0), is_abrasive};
     sound_.set(heard_);

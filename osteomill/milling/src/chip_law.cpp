@@ -70,7 +70,7 @@ double chip_energy_Nmm_per_mm3(double density) noexcept {
                        above->energy_Nmm_per_mm3.value);
 }
 
-ChipLaw chip_law(BurrKind burr, double earlier_cuts) {
+ChipLaw chip_law(BurrEdge burr, double earlier_cuts) {
   constexpr double kShareAfter20 = 0.8;  // -20 % after 20 cuts in ceramic (J Prosthodont 2000 9:66).
   const BurrType& type = kBurrs[static_cast<std::size_t>(burr)];
   ChipLaw law;

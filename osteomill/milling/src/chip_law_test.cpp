@@ -24,7 +24,7 @@ double rate(const ChipLaw& law, const ChipContact& contact) {
 }
 
 TEST(ChipLaw, PowerPaysForChipsAsThickAsItMakesThem) {
-  const ChipLaw law = chip_law(BurrKind::cutting);
+  const ChipLaw law = chip_law(BurrEdge::cutting);
   for (const double force_N : {0.1, 1.0, 10.0}) {
     ChipContact contact = kContact;
     contact.force_N = force_N;
@@ -44,7 +44,7 @@ TEST(ChipLaw, WithoutAnExponentTheRateIsPowerOverEnergy) {
 }
 
 TEST(ChipLaw, AFirmPushPaysMoreThanItCosts) {
-  const ChipLaw law = chip_law(BurrKind::cutting);
+  const ChipLaw law = chip_law(BurrEdge::cutting);
   ChipContact firm = kContact;
   firm.force_N *= 2;
   EXPECT_NEAR(rate(law, firm) / rate(law, kContact), std::pow(2.0, 1 / 0.7), 1e-9);
@@ -54,13 +54,13 @@ TEST(ChipLaw, ADiamondNeverCutsFasterThanACuttingBurr) {
   for (double force_N = 0.25; force_N < 30; force_N *= 2) {
     ChipContact contact = kContact;
     contact.force_N = force_N;
-    EXPECT_LE(rate(chip_law(BurrKind::diamond), contact), rate(chip_law(BurrKind::cutting), contact));
+    EXPECT_LE(rate(chip_law(BurrEdge::diamond), contact), rate(chip_law(BurrEdge::cutting), contact));
   }
-  EXPECT_LT(rate(chip_law(BurrKind::diamond), kContact), 0.5 * rate(chip_law(BurrKind::cutting), kContact));
+  EXPECT_LT(rate(chip_law(BurrEdge::diamond), kContact), 0.5 * rate(chip_law(BurrEdge::cutting), kContact));
 }
 
 TEST(ChipLaw, TwentyCutsTakeAFifthOfTheRate) {
-  for (const BurrKind burr : {BurrKind::cutting, BurrKind::diamond}) {
+  for (const BurrEdge burr : {BurrEdge::cutting, BurrEdge::diamond}) {
     EXPECT_NEAR(rate(chip_law(burr, 20), kContact), 0.8 * rate(chip_law(burr), kContact), 1e-12);
   }
 }
@@ -92,7 +92,7 @@ TEST(ChipLaw, EveryCellOfTheTablesNamesItsSource) {
 }
 
 TEST(ChipLaw, WhatDoesNotTurnPressOrTouchCutsNothing) {
-  const ChipLaw law = chip_law(BurrKind::cutting);
+  const ChipLaw law = chip_law(BurrEdge::cutting);
   EXPECT_EQ(rate(law, {0, kBurr_mm, 40000, 3, 1}), 0);
   EXPECT_EQ(rate(law, {2, kBurr_mm, 0, 3, 1}), 0);
   EXPECT_EQ(rate(law, {2, kBurr_mm, 40000, 0, 1}), 0);
@@ -115,7 +115,7 @@ Plunge plunge(double force_N, double spacing_mm, double density) {
   Volume bone = testing_support::shape_volume(
       testing_support::centred_cube(static_cast<int>(7 / spacing_mm), spacing_mm), bowl);
   MillingSettings settings;
-  settings.chips = chip_law(BurrKind::cutting);
+  settings.chips = chip_law(BurrEdge::cutting);
   BurrMill mill(bone, kBurr_mm, {0, 1000 / density}, settings);
   constexpr double kTick_s = 1e-3;
   constexpr int kTicks = 1500;
@@ -135,7 +135,7 @@ Plunge plunge(double force_N, double spacing_mm, double density) {
 }
 
 TEST(ChipMill, APlungeGoesAsFastAsTheClosedFormSays) {
-  const ChipLaw law = chip_law(BurrKind::cutting);
+  const ChipLaw law = chip_law(BurrEdge::cutting);
   for (const double density : {0.7, 1.0, 1.4}) {
     const Plunge cut = plunge(5, 0.125, density);
     const double expected_mm_s = rate(law, {5, kBurr_mm, 40000, kArea_mm2, density}) / kArea_mm2;
@@ -154,7 +154,7 @@ TEST(ChipMill, TheHoleDoesNotDependOnTheVoxels) {
 
 TEST(ChipMill, ThePoleAlwaysPaysWithLessThanTheEquator) {
   MillingSettings settings;
-  settings.chips = chip_law(BurrKind::cutting);
+  settings.chips = chip_law(BurrEdge::cutting);
   EXPECT_NEAR(paying_force_W_N(settings, {}, {2, 0, 0}, true).norm(), 1.5, 1e-12);
   EXPECT_NEAR(paying_force_W_N(settings, {}, {0, 0, -2}, true).norm(), 1.0, 1e-12);
 }

@@ -19,7 +19,7 @@ namespace osteomill {
 namespace {
 
 const SessionSettings kSettings{{.law = CuttingLaw::chips,
-                                 .burr = BurrKind::cutting,
+                                 .burr = BurrEdge::cutting,
                                  .wear_cuts = 7,
                                  .handpiece = Handpiece::surgical,
                                  .cutting_reaction = true,

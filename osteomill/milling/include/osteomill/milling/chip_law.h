@@ -8,7 +8,8 @@ namespace osteomill {
 /// (`CuttingSettings`), or an energy that grows as chips get thinner (`ChipLaw`).
 enum class CuttingLaw { constant_energy, chips };
 
-enum class BurrKind { cutting, diamond };
+/// The edge of a burr: fluted steel or carbide, or diamond grains. Its shape is always a sphere.
+enum class BurrEdge { cutting, diamond };
 
 /// A number of a table with where it comes from: a publication, or "assumed" with the reason.
 struct Sourced {
@@ -38,7 +39,7 @@ struct BurrType {
 
 /// Returns the materials in the order of their densities.
 std::span<const Material> materials();
-/// Returns the kinds of burrs in the order of `BurrKind`.
+/// Returns the kinds of burrs in the order of `BurrEdge`.
 std::span<const BurrType> burr_types();
 
 /// Returns the work for 1 mm^3 in chips of 48 um with a sharp edge, N mm/mm^3, for a density above 0 relative
@@ -64,7 +65,7 @@ struct ChipLaw {
 };
 
 /// Returns the law of a burr that has made `earlier_cuts` cuts. Every 20 cuts take 20 % of the rate.
-ChipLaw chip_law(BurrKind burr, double earlier_cuts = 0);
+ChipLaw chip_law(BurrEdge burr, double earlier_cuts = 0);
 
 /// The burr as it cuts in a tick.
 struct ChipContact {

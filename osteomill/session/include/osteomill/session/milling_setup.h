@@ -30,7 +30,7 @@ struct MillingSetup {
   CuttingSettings cutting;
   CuttingLaw law = CuttingLaw::constant_energy;
   /// For the law of chips: the kind of burr, and the cuts that it has made before.
-  BurrKind burr = BurrKind::cutting;
+  BurrEdge burr = BurrEdge::cutting;
   double wear_cuts = 0;
   /// The drive, whose free speed is `cutting.spindle_speed_rpm`.
   Handpiece handpiece = Handpiece::none;
