@@ -252,6 +252,15 @@ std::string shown_time(double seconds) {
   return fmt::format("{:.3g} h", seconds / kHour);
 }
 
+std::string in_words(const std::vector<std::string>& all) {
+  if (all.size() < 2) return fmt::format("{}", fmt::join(all, ""));
+  return fmt::format("{} and {}", fmt::join(all.begin(), all.end() - 1, ", "), all.back());
+}
+
+std::string in_two_digits(double value) {
+  return std::abs(value) < 99.5 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+}
+
 std::string shown(double value) {
   if (std::isnan(value)) return "–";
   return std::abs(value) < 1000 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);

@@ -14,8 +14,11 @@
 #include "osteomill/study/write_report.h"
 
 #include "report/report_parts.h"
+#include "trials/findings_section.h"
+#include "trials/hands_section.h"
 #include "trials/passivity_section.h"
-#include "trials/study_section.h"
+#include "trials/study_answers.h"
+#include "trials/study_figure.h"
 
 namespace osteomill {
 
@@ -108,7 +111,7 @@ Section opening(const Study& study, const std::vector<Recording>& recordings) {
 
 Section opening_of_a_mix(const RunGroup& group, const char* why) {
   return {.paragraphs = {fmt::format("Recordings of {}. Nothing is concluded from them here, because {}.",
-                                     in_words(labels_of(group.algorithms())), why)}};
+                                     labels_in_words(group.algorithms()), why)}};
 }
 
 bool belong_together(const std::vector<Recording>& recordings) {
@@ -133,16 +136,6 @@ Study study_of(const RunGroup& group, const ReportExtras& extras) {
   // A report is of one bone in one hand, whatever their seeds.
   for (MeasuredRun& row : rows) row.seed = rows.front().seed;
   return Study(std::move(rows));
-}
-
-Section hands_section(const Study& study, const fs::path& figures) {
-  std::vector<CaptionedFigure> drawn;
-  for (const std::string_view phase : study.phases())
-    drawn.push_back(
-        {draw_study_figure(study, phase, figures).svg,
-         "Every hand of the study, by algorithm. Each panel has a scale of its own, logarithmic if "
-         "values lie far apart."});
-  return study_section(study, drawn);
 }
 
 }  // namespace
@@ -178,7 +171,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
     PageText text{.title = study.algorithms().size() > 1 ? kTitle : kTitleOfOne,
                   .opening = came,
                   .sections = {findings_section(study)}};
-    if (study.seeds().size() > 1) text.sections.push_back(hands_section(study, figures));
+    if (study.seeds().size() > 1) text.sections.push_back(hands_section(study, draw_hands(study, figures)));
     if (!extras.in_one_hole.empty()) text.sections.push_back(one_hole_section(Study(extras.in_one_hole)));
     if (!extras.passivity.empty()) {
       text.sections.push_back(

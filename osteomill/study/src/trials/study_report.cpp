@@ -12,8 +12,10 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/study/metric_table.h"
 
+#include "trials/findings_section.h"
+#include "trials/study_answers.h"
+#include "trials/study_figure.h"
 #include "trials/study_maps.h"
-#include "trials/study_section.h"
 
 namespace osteomill {
 
@@ -80,10 +82,8 @@ std::vector<Section> findings_sections(const StudyDesign& design, const std::vec
                     .tables = conclusions(study),
                     .parts = {findings_section(study)}};
     const fs::path folder = figures / fmt::format("{}", sections.size());
-    for (const std::string_view phase : study.phases()) {
-      create_folder(folder);
-      section.figures.push_back({draw_study_figure(study, phase, folder).svg, "Every hand."});
-    }
+    create_folder(folder);
+    section.figures = draw_hands(study, folder);
     sections.push_back(std::move(section));
   }
   return sections;

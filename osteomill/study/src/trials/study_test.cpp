@@ -14,8 +14,9 @@
 #include "osteomill/study/study_findings.h"
 
 #include "tests/support/study_samples.h"
+#include "trials/hands_section.h"
+#include "trials/paired_comparison.h"
 #include "trials/statistics.h"
-#include "trials/study_section.h"
 
 namespace osteomill {
 namespace {
@@ -131,13 +132,13 @@ TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
 }
 
 TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
-  const std::string three = html(study_section(Study(sample_rows(3)), {}));
+  const std::string three = html(hands_section(Study(sample_rows(3)), {}));
   EXPECT_NE(three.find("3 hands can give is 0.25, after the correction 0.75, so that no difference"),
             std::string::npos);
   EXPECT_NE(three.find("the range of all values: 3 hands are too few"), std::string::npos);
   EXPECT_NE(three.find("100 to 300 N/m"), std::string::npos);
   EXPECT_EQ(three.find("\"strong\">2 is "), std::string::npos);
-  const std::string ten = html(study_section(Study(sample_rows(10)), {}));
+  const std::string ten = html(hands_section(Study(sample_rows(10)), {}));
   EXPECT_NE(ten.find("covers the median with 97.9 %"), std::string::npos);
   EXPECT_NE(ten.find("\"strong\">2 is 10 times 1<"), std::string::npos);
   // Zero throughout.

@@ -90,6 +90,12 @@ std::string valid_utf8(std::string_view text);
 /// Returns a time as people say it: "11 s", "4.2 min", "3.1 h".
 std::string shown_time(double seconds);
 
+/// Returns "this", "this and that" or "this, that and those".
+std::string in_words(const std::vector<std::string>& all);
+
+/// Returns a number of two significant digits, or all of those before the point.
+std::string in_two_digits(double value);
+
 /// Returns a number of four significant digits, or all of its digits before the point; "–" for none.
 std::string shown(double value);
 

@@ -1,3 +1,5 @@
+#include "trials/study_answers.h"
+
 #include <limits>
 
 #include <fmt/format.h>
@@ -6,7 +8,7 @@
 #include "osteomill/study/study_findings.h"
 
 #include "tests/support/study_samples.h"
-#include "trials/study_section.h"
+#include "trials/hands_section.h"
 
 namespace osteomill {
 namespace {
@@ -31,7 +33,7 @@ std::string row_of(const Table& table, const std::string& name) {
 
 // A row of the section's table of milling.
 std::string force_row(const std::vector<MeasuredRun>& rows) {
-  return row_of(study_section(Study(rows), {}).parts.back().tables.front(), "force above 20 Hz, rms (N)");
+  return row_of(hands_section(Study(rows), {}).parts.back().tables.front(), "force above 20 Hz, rms (N)");
 }
 
 // A row of the table that answers.
@@ -62,12 +64,10 @@ TEST(Conclusions, RankAlgorithmsByWhatTheHandsSettle) {
   EXPECT_TRUE(answer_row(rows, "2 surface-points").starts_with("2 surface-points|52 %\n3rd|20 %\n2nd|"));
   EXPECT_TRUE(answer_row(rows, "3 point-shell")
                   .starts_with("3 point-shell|5.2 %\nnot settled\nagainst 1|10 %\n1st|"));
-  EXPECT_EQ(
-      which_to_take(study),
-      "Take 3 point-shell for calm torque while milling (10 %, the next 20 %) and calm torque while holding "
-      "(10 %, the next 20 %). Not settled: calm force while milling, calm force while holding and a shaft "
-      "that "
-      "follows the handle while milling.");
+  EXPECT_EQ(which_to_take(study),
+            "Take 3 point-shell for calm torque while milling (10 %, the next 20 %) and calm torque while "
+            "holding (10 %, the next 20 %). Not settled: calm force while milling, calm force while holding "
+            "and a shaft that follows the handle while milling.");
   EXPECT_EQ(tables[1].header.front(), "7 of the paper's findings on force, torque and shaft")
       << "without the one on grips";
   EXPECT_EQ(row_of(tables[1], "agrees"), "agrees|4||");
@@ -151,7 +151,7 @@ TEST(Conclusions, SayWhatTremorAloneGives) {
       // The median of the differences 0.01, 0.02 and 0.03.
       expect_says(force_row(rows), "|1.04 [1.01, 1.08]\ntremor 0.02|");
       expect_says(force_row(rows), "2 is 10 times 1, p = 0.023\n");
-      expect_says(html(study_section(study, {})), "that of seed 1, has another tremor");
+      expect_says(html(hands_section(study, {})), "that of seed 1, has another tremor");
     }
   }
   EXPECT_EQ(force_row(sample_rows(8)).find("tremor"), std::string::npos);
@@ -226,7 +226,7 @@ TEST(Conclusions, WhatWasNotReachedIsSaidWithTheHandsInWhichItWasNot) {
       r.not_reached = r.seed == 1 ? "the tool was lost; the burr moved" : "the tool was lost";
   }
   const Study study(rows);
-  expect_says(html(study_section(study, {})),
+  expect_says(html(hands_section(study, {})),
               "the burr moved (1 of 8 hands); the tool was lost (3 of 8 hands)</span></td>");
   expect_says(check_study_findings(study)[1].of_medians.measured,
               "(not all reached: 2 surface-points, holding)");

@@ -1,0 +1,102 @@
+#include "trials/findings_section.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "osteomill/study/study_findings.h"
+
+#include "trials/statistics.h"
+
+namespace osteomill {
+
+namespace {
+
+// One hand settles nothing: its cell says whether the rule holds in it.
+Cell verdict_cell(const StudyFinding& finding, bool one_hand) {
+  const Verdict verdict = one_hand ? finding.of_medians.verdict : finding.verdict;
+  if (one_hand && verdict == Verdict::agrees) return {"holds in this hand", Look::faint};
+  if (one_hand && verdict == Verdict::does_not_agree) return {"does not hold in this hand", Look::faint};
+  return {std::string(name_of(verdict)), verdict == Verdict::agrees           ? Look::agrees
+                                         : verdict == Verdict::does_not_agree ? Look::differs
+                                                                              : Look::faint};
+}
+
+// Returns the findings of which there is what they need.
+std::vector<StudyFinding> recorded_findings(const Study& study) {
+  std::vector<StudyFinding> findings = check_study_findings(study);
+  std::erase_if(findings, [](const StudyFinding& finding) {
+    return finding.of_medians.verdict == Verdict::not_recorded;
+  });
+  return findings;
+}
+
+Table findings_table(const Study& study, const std::vector<StudyFinding>& findings) {
+  const bool one = study.seeds().size() == 1;
+  Table table{{"The paper found", one ? "Measured here" : "Medians over the hands",
+               one ? "In one hand, which settles nothing" : "Verdict", "Rule"},
+              {}};
+  if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
+  for (const StudyFinding& f : findings) {
+    std::vector<Cell> row{f.of_medians.paper_says, f.of_medians.measured, verdict_cell(f, one)};
+    if (!one) row.insert(row.end(), {fmt::format("{} of {}", f.agreeing, f.tested), p_text(f.p)});
+    row.emplace_back((one ? "holds if " : "agrees if ") + f.of_medians.rule);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
+// Returns a table of the number of findings with each verdict, and of those that do not agree.
+Table verdicts_table(const Study& study) {
+  const bool one = study.seeds().size() == 1;
+  struct Findings {
+    Cell verdict;
+    std::vector<std::string> which;
+  };
+  std::map<Verdict, Findings> findings;
+  std::size_t all = 0;
+  for (const StudyFinding& f : recorded_findings(study)) {
+    if (f.of_medians.of_the_machine) continue;
+    ++all;
+    Findings& alike = findings[one ? f.of_medians.verdict : f.verdict];
+    alike.verdict = verdict_cell(f, one);
+    alike.which.push_back(f.of_medians.paper_says);
+    if (!one && is_tested(f.verdict))
+      alike.which.back() += fmt::format(", in {} of {} hands", f.agreeing, f.tested);
+  }
+  Table table{
+      {fmt::format("{} of the paper's findings on force, torque and shaft", all), "How many", "Which"}, {}};
+  for (const auto& [verdict, alike] : findings) {
+    table.rows.push_back(
+        {alike.verdict, fmt::format("{}", alike.which.size()),
+         verdict == Verdict::agrees ? "" : fmt::format("{}", fmt::join(alike.which, ";\n"))});
+  }
+  return table;
+}
+
+Section findings_section(const Study& study) {
+  const std::vector<StudyFinding> findings = recorded_findings(study);
+  if (findings.empty()) return {};
+  Section section{.title = "The paper's findings",
+                  .paragraphs = {"What section 8.2 of the paper says it found, each held against what was "
+                                 "measured by a rule of this project. The paper does not give its hand, push "
+                                 "and bone, so a finding that does not hold here may hold there."}};
+  if (const std::size_t missing = check_study_findings(study).size() - findings.size(); missing > 0) {
+    section.paragraphs.push_back(
+        fmt::format("{} further finding{} to algorithms, phases or grips that were not tried here.", missing,
+                    missing == 1 ? " belongs" : "s belong"));
+  }
+  if (study.seeds().size() > 1) {
+    section.paragraphs.push_back(
+        "Hands agree with the paper, or do not, if more than half do, and tossing a coin would give as many "
+        "in one of twenty tries at most, which takes five hands; else it is not settled. p is the chance "
+        "that as many or more would agree by the toss.");
+  }
+  section.tables = {findings_table(study, findings)};
+  return section;
+}
+
+}  // namespace osteomill

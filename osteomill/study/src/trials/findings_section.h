@@ -1,0 +1,16 @@
+#pragma once
+
+#include "osteomill/study/page.h"
+#include "osteomill/study/study.h"
+
+namespace osteomill {
+
+/// Returns a table of the number of the paper's findings with each verdict, and of those that do not agree;
+/// without rows if the study has nothing that a finding needs.
+Table verdicts_table(const Study& study);
+
+/// Returns the report's section on what the paper says it found, each held against the study; empty if the
+/// study has nothing that a finding needs.
+Section findings_section(const Study& study);
+
+}  // namespace osteomill
