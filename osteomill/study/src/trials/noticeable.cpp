@@ -1,34 +1,60 @@
 #include "osteomill/study/noticeable.h"
 
 #include <cmath>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
 
 namespace osteomill {
 
 namespace {
 
-// Weber fractions, and the angle of a wrist (degrees); their sources are in the header.
-constexpr double kForce = 0.07, kTorque = 0.13, kTremble = 0.20, kWrist_deg = 2;
+// A published threshold: the least difference that is noticed, as a share of the value or as it is.
+struct Threshold {
+  bool (*is_of)(const FieldDescription& figure);
+  double share;
+  double difference;
+  const char* of;
+  const char* source;
+};
+
+bool begins_with(const FieldDescription& figure, std::string_view word) {
+  return figure.name.starts_with(word);
+}
+
+// The first that fits a figure counts.
+constexpr Threshold kThresholds[] = {
+    {[](const auto& figure) { return figure.name.find("_hp_") != std::string::npos; }, 0.20, 0,
+     "what trembles above 20 Hz", "Forta, Griffin and Morioka 2012"},
+    {[](const auto& figure) { return begins_with(figure, "force_"); }, 0.07, 0, "a force",
+     "Pang, Tan and Durlach 1991"},
+    {[](const auto& figure) { return begins_with(figure, "torque_"); }, 0.13, 0, "a torque",
+     "Jandura and Srinivasan 1994"},
+    {[](const auto& figure) { return begins_with(figure, "shaft_") && figure.unit == "degrees"; }, 0, 2,
+     "the shaft's direction",
+     "the wrist's, Tan, Srinivasan, Eberman and Cheng 1994; an eye on the tool sees less"}};
 
 }  // namespace
 
 double least_noticeable(const FieldDescription& figure, double value) {
-  const std::string& name = figure.name;
-  if (name.find("_hp_") != std::string::npos) return kTremble * std::abs(value);
-  if (name.starts_with("force_")) return kForce * std::abs(value);
-  if (name.starts_with("torque_")) return kTorque * std::abs(value);
-  if (name.starts_with("shaft_") && figure.unit == "degrees") return kWrist_deg;
+  for (const Threshold& threshold : kThresholds)
+    if (threshold.is_of(figure)) return threshold.share * std::abs(value) + threshold.difference;
   return 0;
 }
 
 std::string about_noticeable() {
-  return "A difference counts as the same for a hand if it is less than a hand notices: 7 % of a force "
-         "(Pang, Tan and Durlach 1991), 13 % of a torque (Jandura and Srinivasan 1994), 20 % of what "
-         "trembles "
-         "above 20 Hz (Forta, Griffin and Morioka 2012), 2 degrees of the shaft's direction (the wrist's, "
-         "Tan et "
-         "al. 1994; an eye on the tool sees less). They were measured with the attention on one thing; a "
-         "hand "
-         "that mills notices less.";
+  std::string list;
+  for (const Threshold& threshold : kThresholds) {
+    list += fmt::format("{}{} of {} ({})", list.empty() ? "" : ", ",
+                        threshold.share > 0 ? fmt::format("{:g} %", 100 * threshold.share)
+                                            : fmt::format("{:g} degrees", threshold.difference),
+                        threshold.of, threshold.source);
+  }
+  return fmt::format(
+      "A difference counts as the same for a hand if it is less than a hand notices: {}. They were measured "
+      "with the attention on one thing; a hand that mills notices less.",
+      list);
 }
 
 }  // namespace osteomill
