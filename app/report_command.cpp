@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,7 +42,7 @@ void write_into(const std::filesystem::path& folder, const ReportOptions& option
   end_progress();
   if (are_of_comparison(recordings)) {
     std::vector<Table> came_out;
-    write_comparison_report(recordings, folder, {}, &came_out);
+    write_comparison_report(recordings, folder, std::nullopt, &came_out);
     print_tables(came_out);
   } else {
     write_report(recordings, folder);

@@ -40,6 +40,8 @@ diff <(untimed a/summary.csv) <(untimed e/summary.csv) || fault "the same seed g
 "$osteomill" compare --seconds 1 --seed 2 --algorithm point-shell --out d >d.out
 [ "$(wc -l <d/stability.csv)" -eq 13 ] && [ -s d/figures/stability.svg ] || fault "stability.csv should have a head and 12 rows"
 [ "$(wc -l <d/summary.csv)" -eq 3 ] || fault "one algorithm, two phases"
+"$osteomill" report d/*.h5 --quiet --out h >h.out
+for file in report.html stability.csv; do cmp d/$file h/$file || fault "the report made again has another $file"; done
 diff <(untimed a/summary.csv | grep point-shell) <(untimed d/summary.csv | grep point-shell) >/dev/null &&
   fault "another seed gave the same numbers"
 "$osteomill" compare --seconds 0.3 --match-stiffness --no-stability --out f >f.out 2>f.err

@@ -27,7 +27,7 @@ diff <(cut -d, -f1-3 a/study.csv | sort -u) <(cut -d, -f1-3 a/one-hole.csv | sor
 
 "$osteomill" report a/*.h5 --out again >again.out
 cmp a/summary.csv again/summary.csv || fault "the report made again says something else"
-diff <(cut -d, -f1,4- a/study.csv) <(cut -d, -f1,4- again/study.csv) || fault "the report made again has another study"
+for file in report.html study.csv one-hole.csv; do cmp a/$file again/$file || fault "the report made again has another $file"; done
 
 "$osteomill" compare --algorithm point-shell --seconds 2 --seeds 2 --seed 5 --no-stability --threads 1 --out b >b.out
 for seed in 5 6; do

@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kStudyCsv = "study.csv";
+constexpr const char* kOneHoleCsv = "one-hole.csv";
+constexpr const char* kStabilityCsv = "stability.csv";
 constexpr const char* kTitle = "6-DOF haptic algorithms compared while milling bone";
 // Titles of one algorithm and of a mix, in which nothing is compared.
 constexpr const char* kTitleOfOne = "A 6-DOF haptic algorithm while milling bone";
@@ -125,17 +127,17 @@ bool have_the_same_phases(const RunGroup& group) {
   return group.runs.size() == group.phases().size() * group.algorithms().size();
 }
 
-Study study_of(const RunGroup& group, const ReportExtras& extras) {
-  std::vector<MeasuredRun> rows = group.runs;
-  if (extras.others) {
-    rows.insert(rows.end(), extras.others->begin(), extras.others->end());
-    return Study(std::move(rows));
-  }
+// Returns what the tables beside the recordings have, if they are of the same comparison: a folder holds
+// one.
+ReportExtras extras_beside(const RunGroup& group) {
   const fs::path folder = group.runs.front().recording->path.parent_path();
-  if (auto whole = read_study_csv(folder / kStudyCsv, rows)) return *std::move(whole);
-  // A report is of one bone in one hand, whatever their seeds.
-  for (MeasuredRun& row : rows) row.seed = rows.front().seed;
-  return Study(std::move(rows));
+  ReportExtras extras{.others = read_study_csv(folder / kStudyCsv, group.runs)};
+  if (!has_runs(extras.others, group.runs)) return {};
+  const std::uint64_t recorded = group.runs.front().seed;
+  std::erase_if(extras.others, [&](const MeasuredRun& row) { return row.is_own() && row.seed == recorded; });
+  extras.passivity = read_passivity_csv(folder / kStabilityCsv, group.algorithms());
+  extras.in_one_hole = read_study_csv(folder / kOneHoleCsv, group.runs);
+  return extras;
 }
 
 }  // namespace
@@ -147,7 +149,7 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 }
 
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
-                                 const ReportExtras& extras, std::vector<Table>* came_out) {
+                                 const std::optional<ReportExtras>& measured, std::vector<Table>* came_out) {
   const RunGroup group = group_runs(recordings, measured_phase);
   const bool belong = belong_together(recordings);
   if (!belong || !have_the_same_phases(group)) {
@@ -158,13 +160,16 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
                                         : "they differ in more than the algorithm")};
     });
   }
-  const Study study = study_of(group, extras);
+  const ReportExtras extras = measured ? *measured : extras_beside(group);
+  std::vector<MeasuredRun> rows = group.runs;
+  rows.insert(rows.end(), extras.others.begin(), extras.others.end());
+  const Study study(std::move(rows));
   // Measured beside the recordings and kept nowhere else: they stay if no figure can be drawn.
-  const bool has_further_rows = study.rows().size() + study.rows_beside().size() > recordings.size();
-  if (has_further_rows || !extras.passivity.empty() || !extras.in_one_hole.empty()) create_folder(out_dir);
-  if (has_further_rows) write_study_csv(out_dir / kStudyCsv, study);
-  if (!extras.passivity.empty()) write_passivity_csv(out_dir / "stability.csv", extras.passivity);
-  if (!extras.in_one_hole.empty()) write_study_csv(out_dir / "one-hole.csv", Study(extras.in_one_hole));
+  if (!extras.others.empty() || !extras.passivity.empty() || !extras.in_one_hole.empty())
+    create_folder(out_dir);
+  if (!extras.others.empty()) write_study_csv(out_dir / kStudyCsv, study);
+  if (!extras.passivity.empty()) write_passivity_csv(out_dir / kStabilityCsv, extras.passivity);
+  if (!extras.in_one_hole.empty()) write_study_csv(out_dir / kOneHoleCsv, Study(extras.in_one_hole));
   const Section came = opening(study, recordings);
   if (came_out != nullptr) *came_out = came.tables;
   return write_report(group, out_dir, [&](const fs::path& figures) {

@@ -10,6 +10,9 @@
 #include <fmt/format.h>
 
 #include "osteomill/base/atomic_file.h"
+#include "osteomill/base/parse_number.h"
+
+#include "trials/csv_table.h"
 
 namespace osteomill {
 
@@ -97,13 +100,15 @@ std::string in_words(std::span<const PassivityRow> rows) {
 
 constexpr const char* kWhatWasDone =
     "The device alone, without a hand, is pressed on a flat wall of bone by 0.5 N along a guide, and then "
-    "given "
-    "a small speed. The greatest --stiffness is sought at which its swings die out: at which the wall, the "
-    "device's delay and the tick together do not put more energy into a swing than the device's own damping "
-    "takes. An ideal wall of stiffness K, sampled every T = 1 ms and felt with a delay τ, should stay so up "
-    "to K = 2 b / (T + 2 τ) on a device with damping b. What is felt of an algorithm's setting is the slope "
-    "of its force over the depth at 0.5 N; that is what the rule speaks of. Bisection finds one limit; an "
-    "algorithm that buzzes by itself may have others.";
+    "given a small speed. The greatest --stiffness is sought at which its swings die out: at which the wall, "
+    "the device's delay and the tick together do not put more energy into a swing than the device's own "
+    "damping takes. An ideal wall of stiffness K, sampled every T = 1 ms and felt with a delay τ, should "
+    "stay so up to K = 2 b / (T + 2 τ) on a device with damping b. What is felt of an algorithm's setting is "
+    "the slope of its force over the depth at 0.5 N; that is what the rule speaks of. Bisection finds one "
+    "limit; an algorithm that buzzes by itself may have others.";
+
+constexpr const char* kColumns =
+    "algorithm,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_per_mm,rule_N_per_mm";
 
 constexpr const char* kCaption =
     "The stiffness felt when the wall is only just passive, against the device's damping. A triangle: "
@@ -224,9 +229,28 @@ Section passivity_section(std::span<const PassivityRow> rows, const Figure& figu
 }
 
 void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows) {
+std::vector<PassivityRow> read_passivity_csv(const std::filesystem::path& path,
+                                             const std::vector<AlgorithmId>& algorithms) {
+  std::vector<PassivityRow> rows;
+  for (const std::vector<std::string>& cells : read_csv_table(path, kColumns)) {
+    const auto algorithm =
+        std::ranges::find_if(algorithms, [&](const AlgorithmId& id) { return cells[0] == id.name; });
+    if (cells.size() != 7 || algorithm == algorithms.end()) continue;
+    PassivityRow& row = rows.emplace_back(PassivityRow{.algorithm = *algorithm});
+    for (const Kind kind : {Kind::found, Kind::above_all, Kind::below_all})
+      if (cells[3] == name_of_kind(kind)) row.limit.kind = kind;
+    const auto number = [&](std::size_t n) { return parsed_number<double>(cells[n]).value_or(0); };
+    row.damping_Ns_per_mm = 1e-3 * number(1);
+    row.delay_s = number(2);
+    row.limit.stiffness_N_per_mm = number(4);
+    row.limit.felt_N_per_mm = number(5);
+    row.rule_N_per_mm = number(6);
+  }
+  return rows;
+}
+
   write_text_atomically(path, [&](std::ostream& out) {
-    out << "algorithm,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_per_mm,"
-           "rule_N_per_mm\n";
+    out << kColumns << '\n';
     for (const PassivityRow& row : rows) {
       out << fmt::format("{},{},{},{},{},{},{}\n", name_of(row.algorithm), damping_Ns_per_m(row), row.delay_s,
                          name_of_kind(row.limit.kind), row.limit.stiffness_N_per_mm, row.limit.felt_N_per_mm,

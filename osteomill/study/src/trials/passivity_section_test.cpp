@@ -106,8 +106,9 @@ TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
 }
 
 TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
-  ReportExtras extras{std::vector<MeasuredRun>(), sample_rows()};
-  const auto runs = testing_support::sample_runs(500);
+  ReportExtras extras{.passivity = sample_rows()};
+  auto runs = testing_support::sample_runs(500);
+  for (Recording& run : runs) run.path = out_ / run.path;
   // Beside the recorded hand.
   const std::uint64_t first = runs.front().description.seed;
   for (std::uint64_t seed = first + 1; seed < first + 8; ++seed) {
@@ -117,7 +118,7 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
       row.hand_stiffness_N_per_m = 1000 * random_hand(seed).stiffness_N_per_mm;
       for (double* unrest : {&row.metrics.force_N.hp_rms, &row.metrics.force_N.hp_share})
         *unrest *= 1 + 0.01 * static_cast<double>(seed);
-      extras.others->push_back(row);
+      extras.others.push_back(row);
       if (row.phase == kHolding) extras.in_one_hole.push_back(row);
     }
   }
@@ -137,6 +138,10 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
     place = found;
   }
   for (const char* link : {"http", "<script", "url("}) EXPECT_EQ(html.find(link), std::string::npos) << link;
+  EXPECT_EQ(bytes_of(write_comparison_report(runs, out_ / "again")), html)
+      << "a report of the recordings finds the tables beside them";
+  for (const char* file : {"study.csv", "one-hole.csv", "stability.csv"})
+    EXPECT_EQ(bytes_of(out_ / "again" / file), bytes_of(out_ / file)) << file;
 }
 
 }  // namespace

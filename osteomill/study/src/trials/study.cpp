@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <ostream>
 #include <stdexcept>
@@ -12,12 +11,11 @@
 #include <fmt/format.h>
 
 #include "osteomill/base/atomic_file.h"
-#include "osteomill/base/csv_field.h"
 #include "osteomill/base/parse_number.h"
-#include "osteomill/base/read_line.h"
 #include "osteomill/study/metric_table.h"
 #include "osteomill/study/paper.h"
 
+#include "trials/csv_table.h"
 #include "trials/statistics.h"
 
 namespace osteomill {
@@ -35,20 +33,10 @@ auto place(const MeasuredRun& run) {
   return std::tuple(phase_number(run.phase), run.algorithm);
 }
 
-// A line that is too long ends it: no study has one.
-bool next_line(std::istream& in, std::string& line) {
-  constexpr std::size_t kMaxLine = 16384;
-  try {
-    return read_line(in, line, kMaxLine);
-  } catch (const LineTooLong&) {
-    return false;
-  }
-}
-
 // Returns the run of a row; nothing unless it has an algorithm and phase of these rows and their number of
 // columns.
-std::optional<MeasuredRun> read_row(std::string_view line, const std::vector<MeasuredRun>& rows) {
-  const std::vector<std::string_view> cells = csv_fields(line);
+std::optional<MeasuredRun> read_row(const std::vector<std::string>& cells,
+                                    const std::vector<MeasuredRun>& rows) {
   const auto& of_hand = fields_of<MeasuredRun>();
   const auto& figures = fields_of<M>();
   const std::size_t algorithm = 1 + of_hand.size(), first = algorithm + 2;
@@ -61,7 +49,7 @@ std::optional<MeasuredRun> read_row(std::string_view line, const std::vector<Mea
   MeasuredRun row{.algorithm = of->algorithm,
                   .phase = of->phase,
                   .metrics = {},
-                  .not_reached = std::string(cells.back()),
+                  .not_reached = cells.back(),
                   .seed = parsed_number<std::uint64_t>(cells[0]).value_or(0)};
   for (std::size_t n = 0; n < of_hand.size(); ++n) of_hand[n].set(row, number(1 + n));
   for (std::size_t n = 0; n < figures.size(); ++n) figures[n].set(row.metrics, number(first + n));
@@ -234,22 +222,20 @@ void write_study_csv(const std::filesystem::path& path, const Study& study) {
   });
 }
 
-std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<MeasuredRun>& rows) {
-  std::ifstream in(path);
-  std::string line;
-  if (!next_line(in, line) || line != columns()) return std::nullopt;
-  std::vector<MeasuredRun> all;
-  std::size_t found = 0;
-  while (next_line(in, line)) {
-    std::optional<MeasuredRun> row = read_row(line, rows);
-    if (!row) continue;
-    found += row->is_own() && std::any_of(rows.begin(), rows.end(), [&](const MeasuredRun& one) {
-               return one.seed == row->seed && place(one) == place(*row) && same_figures(one, *row);
-             });
-    all.push_back(*std::move(row));
-  }
-  if (found != rows.size()) return std::nullopt;
-  return Study(std::move(all));
+std::vector<MeasuredRun> read_study_csv(const std::filesystem::path& path,
+                                        const std::vector<MeasuredRun>& like) {
+  std::vector<MeasuredRun> rows;
+  for (const std::vector<std::string>& cells : read_csv_table(path, columns()))
+    if (std::optional<MeasuredRun> row = read_row(cells, like)) rows.push_back(*std::move(row));
+  return rows;
+}
+
+bool has_runs(const std::vector<MeasuredRun>& rows, const std::vector<MeasuredRun>& runs) {
+  return std::ranges::all_of(runs, [&](const MeasuredRun& run) {
+    return std::ranges::any_of(rows, [&](const MeasuredRun& row) {
+      return row.is_own() && row.seed == run.seed && place(row) == place(run) && same_figures(row, run);
+    });
+  });
 }
 
 }  // namespace osteomill

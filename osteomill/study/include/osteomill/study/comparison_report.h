@@ -13,9 +13,8 @@ namespace osteomill {
 
 /// Measurements beside the recordings.
 struct ReportExtras {
-  /// Runs in other hands and grips than the recordings'. If not given, they are read from the study.csv
-  /// beside the recordings, if that belongs to them.
-  std::optional<std::vector<MeasuredRun>> others;
+  /// Runs in other hands, grips and tremors than the recordings'.
+  std::vector<MeasuredRun> others;
   std::vector<PassivityRow> passivity;
   /// Holdings of all algorithms in the same hole, of each hand (hold_in_one_hole).
   std::vector<MeasuredRun> in_one_hole;
@@ -25,14 +24,15 @@ struct ReportExtras {
 bool are_of_comparison(const std::vector<Recording>& recordings);
 
 /// Writes the report of any session (write_report) with what the test of section 8.2 adds: what was compared
-/// and the verdict ahead of all, the paper's findings held against it, and if there are extras, a section on
-/// each. The extras' numbers go into study.csv, stability.csv and one-hole.csv, which are written even if the
-/// report fails. Draws no conclusions from recordings that differ in more than the algorithm
-/// (differences_table). Returns the page's path, and puts the results, the tables at its top, into
-/// `came_out`. Throws as write_report does.
+/// and the verdict ahead of all, the paper's findings held against it, and a section on each of the extras.
+/// Their numbers go into study.csv, stability.csv and one-hole.csv, which are written even if the report
+/// fails. If no extras are `measured`, these tables are read where they stand beside the recordings and are
+/// of the same comparison, so that the page is the one that the comparison had. Draws no conclusions from
+/// recordings that differ in more than the algorithm (differences_table). Returns the page's path, and puts
+/// the results, the tables at its top, into `came_out`. Throws as write_report does.
 std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
                                               const std::filesystem::path& out_dir,
-                                              const ReportExtras& extras = {},
+                                              const std::optional<ReportExtras>& measured = {},
                                               std::vector<Table>* came_out = nullptr);
 
 }  // namespace osteomill

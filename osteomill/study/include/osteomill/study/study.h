@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -81,8 +80,12 @@ class Study {
 /// not at all. Throws InputError if it cannot be written.
 void write_study_csv(const std::filesystem::path& path, const Study& study);
 
-/// Returns the study of these rows, of one seed, with the other hands, grips and tremors that `path` has of
-/// it; nothing if there is no such file, or if it does not have these rows' figures.
-std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<MeasuredRun>& rows);
+/// Returns the rows of a table that `write_study_csv` wrote, those of the algorithms and phases that `like`
+/// has; none if there is no such table.
+std::vector<MeasuredRun> read_study_csv(const std::filesystem::path& path,
+                                        const std::vector<MeasuredRun>& like);
+
+/// Returns whether each of these runs is among the rows, with the same figures, times left aside.
+bool has_runs(const std::vector<MeasuredRun>& rows, const std::vector<MeasuredRun>& runs);
 
 }  // namespace osteomill
