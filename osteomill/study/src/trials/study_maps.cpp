@@ -317,7 +317,7 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
   return CaptionedFigure{
       figure.svg,
       fmt::format("{}: {} of the trials in a cell, by {} and {}; all panels share the colours. What is "
-                  "white was not tried, or could not be measured.{}",
+                  "white has no trial here that could be measured.{}",
                   colour.label, map.statistic, shown_x.label, shown_y.label,
                   is_hatched ? " In hatched cells a trial did not do all of this part of its test; "
                                "grey ones have none that could be measured."

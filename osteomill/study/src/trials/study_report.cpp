@@ -77,14 +77,17 @@ std::vector<Section> findings_sections(const StudyDesign& design, const std::vec
   std::vector<Section> sections;
   for (const auto& [group, rows] : groups) {
     const Study study(of_whole_hands(rows));
-    Section section{.title = group.empty() ? "Over the hands" : "Over the hands: " + group,
-                    .paragraphs = {what_was_compared(study, group.empty() ? "the same bone" : group)},
-                    .tables = conclusions(study),
-                    .parts = {findings_section(study)}};
     const fs::path folder = figures / fmt::format("{}", sections.size());
     create_folder(folder);
-    section.figures = draw_hands(study, folder);
-    sections.push_back(std::move(section));
+    Section& section =
+        sections.emplace_back(Section{.title = group.empty() ? "Over the hands" : "Over the hands: " + group,
+                                      .figures = draw_hands(study, folder),
+                                      .tables = conclusions(study),
+                                      .parts = {findings_section(study)}});
+    if (const std::string few = too_few_hands(study); !few.empty()) section.notices = {few};
+    for (const std::string& text :
+         {which_to_take(study), what_was_compared(study, group), about_the_table(study)})
+      if (!text.empty()) section.paragraphs.push_back(text);
   }
   return sections;
 }
@@ -133,12 +136,11 @@ std::set<std::size_t> unreached_trials(const std::vector<TrialRow>& rows) {
 // Empty if all trials did all of their test.
 std::string unreached_words(std::size_t short_of, std::size_t done, Unreached unreached) {
   if (short_of == 0) return "";
-  return fmt::format(" {} of the {} trials did not do all of their test ({}); {}.", short_of, done,
-                     "not_reached in trials.csv",
+  return fmt::format(" {} of the {} trials did not do all of their test; {}.", short_of, done,
                      unreached == Unreached::dropped
                          ? "they are left out of everything here"
-                         : "they count below, and are hatched in the maps of the part "
-                           "that they did not do");
+                         : "they count below (not_reached in trials.csv says which), and are hatched in "
+                           "every map of the part that they did not do");
 }
 
 std::string share_text(std::size_t done, std::size_t all) {
