@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/base/csv_field.h"
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/parse_number.h"
+#include "osteomill/session/milling_setup.h"
 #include "osteomill/session/tick_counts.h"
 #include "osteomill/study/metric_table.h"
 #include "osteomill/visual/image.h"
@@ -278,11 +280,21 @@ std::string raised(std::string unit) {
 }
 
 // Returns a number with fewer digits than a recording needs of it, or any other text as it is.
-std::string rounded(const std::string& text) {
+std::string rounded_number(const std::string& text) {
   const auto number = parsed_number<double>(text);
-  if (!number || text.find('.') == std::string::npos)
+  if (!number || (*number != 0 && text.find('.') == std::string::npos))
     return number && std::isinf(*number) ? "no limit" : text;
-  return fmt::format("{:.6g}", *number);
+  return *number == 0 ? "0" : fmt::format("{:.6g}", *number);
+}
+
+// Does the same for numbers between commas.
+std::string rounded(const std::string& text) {
+  std::vector<std::string> numbers;
+  for (const std::string_view number : csv_fields(text)) {
+    if (!parsed_number<double>(number)) return text;
+    numbers.push_back(rounded_number(std::string(number)));
+  }
+  return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
 struct SettingLine {

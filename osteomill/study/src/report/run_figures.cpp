@@ -44,7 +44,7 @@ Curve write_curve(const Shown& shown, const MeasuredRun& run, std::size_t bins, 
   for (std::size_t n = 1; n < values.size(); ++n) curve.restlessness += std::abs(values[n] - values[n - 1]);
   std::string data;
   for (const std::size_t n : thin_out_curve(values, bins)) {
-    data += fmt::format("{:.4f} {:.5g}\n", time_s(run, records[n]), values[n]);
+    data += fmt::format("{:.4f} {:.7g}\n", time_s(run, records[n]), values[n]);
   }
   curve.file = figure.data(data);
   return curve;
@@ -323,7 +323,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
   for (const MeasuredRun& run : group.runs) {
     last_s = std::max(last_s, time_s(run, run.recording->records.back()));
   }
-  // Square panels, and the colours' scale on the right.
+  // Square panels, and the colours' scale on their right.
   constexpr double kLeft_px = 84, kRight_px = 12, kAbove_px = 60, kBelow_px = 64, kBar_px = 128;
   const double wide_px = std::min(380.0, (PanelGrid::kWidth_px - kBar_px) / static_cast<double>(columns));
   const PanelGrid grid{.height_px = static_cast<double>(phases.size()) *
@@ -341,7 +341,8 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
           "set palette defined (0 '#440154', 0.27 '#3b528b', 0.54 '#21918c', 0.8 '#5ec962', 1 "
           "'#c2df23')\nset cbrange [0:{:.6g}]\nset cblabel 'Time (s)'\n"
           "set colorbox vertical user origin screen {:.4f},screen 0.2 size screen {:.4f},screen 0.6\n",
-          last_s, 1 - (kBar_px - 36) / PanelGrid::kWidth_px, 16 / PanelGrid::kWidth_px);
+          last_s, (static_cast<double>(columns) * wide_px + 36) / PanelGrid::kWidth_px,
+          16 / PanelGrid::kWidth_px);
   for (std::size_t row = 0; row < phases.size(); ++row) {
     const auto runs = group.runs_of(phases[row]);
     for (std::size_t c = 0; c < runs.size(); ++c) {

@@ -27,6 +27,7 @@ TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
     run.description.settings.push_back({"milling.drag", 0.0, ""});
     run.description.settings.push_back({"milling.wear", 1.0, ""});
     run.description.settings.push_back({"most", std::numeric_limits<double>::infinity(), ""});
+    run.description.settings.push_back({"place", std::string("-0.0817525862,1,-0"), "mm"});
   }
   std::vector<const Recording*> recordings;
   for (const Recording& run : runs) recordings.push_back(&run);
@@ -41,6 +42,7 @@ TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
   EXPECT_EQ(value_of(table, "spindle.handpiece"), "none");
   EXPECT_EQ(value_of(table, "milling.drag"), "off");
   EXPECT_EQ(value_of(table, "milling.wear"), "1");
+  EXPECT_EQ(value_of(table, "place"), "-0.0817526, 1, 0");
 }
 
 std::vector<std::string> differing(std::vector<Recording>& runs) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -116,8 +117,10 @@ struct Topic {
 const Topic kFelt[] = {
     {"Force",
      {{"force", draw_force_figure,
-       "Magnitude of the force sent to the hand. The panels of a row have one scale. Each pixel's least and "
-       "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables, "
+       "Magnitude of the force sent to the hand. The panels of a row have one scale, which need not begin at "
+       "0. Each "
+       "pixel's least and greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not "
+       "counted in the tables, "
        "nor is what is felt without contact."}},
      {"force_mean_N", "force_max_N", "force_hp_rms_N", "force_hp_share", "force_step_max_N"}},
     {"Torque",
@@ -176,8 +179,11 @@ Table metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines)
   // The goals that were not reached stand before everything that is compared.
   if (std::ranges::all_of(group.runs, &std::string::empty, &MeasuredRun::not_reached)) table.rows.clear();
   for (const MetricLine& line : lines) {
-    table.rows.push_back({line.label});
-    for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
+    std::vector<Cell> row{line.label};
+    for (const MeasuredRun& run : group.runs) row.push_back(line.cell(run));
+    // The paper says nothing of some algorithms.
+    if (std::ranges::any_of(std::span(row).subspan(1), [](const Cell& cell) { return !cell.text().empty(); }))
+      table.rows.push_back(std::move(row));
   }
   return table;
 }

@@ -86,6 +86,11 @@ std::map<std::string, Probe> probes_in(const std::vector<Recording>& recordings)
   return probes;
 }
 
+constexpr const char* kWhatWasProbed =
+    "Two of the columns were measured apart, where the right answer is known: the burr pressed on a flat "
+    "wall, for the stiffness felt at 0.5 N, and the shaft pressed across a sharp edge, where the torque must "
+    "be lever times force.";
+
 // Empty if the study has no such algorithm.
 std::string about_line_proxy(const Study& study, const MillingTool& tool) {
   for (const AlgorithmId& algorithm : study.algorithms()) {
@@ -101,12 +106,15 @@ std::string about_line_proxy(const Study& study, const MillingTool& tool) {
 
 // Says what was compared, whether that can show anything, and what it shows.
 Section opening(const Study& study, const std::vector<Recording>& recordings) {
-  Section section{.tables = conclusions(study, probes_in(recordings))};
-  if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};
+  const std::map<std::string, Probe> probes = probes_in(recordings);
+  Section section{.tables = conclusions(study, probes)};
+  if (const std::string few = too_few_hands(study); !few.empty())
+    section.notices = {few + fmt::format(" For as many: --seeds {}.", study.seeds_needed())};
   for (const std::string& text :
        {which_to_take(study), what_was_compared(study, recordings.front().description.scan_name),
         study.algorithms().size() > 1 ? about_stiffness(recordings) : "", about_cutting(recordings.front()),
-        about_line_proxy(study, recordings.front().description.tool), about_the_table(study)})
+        about_line_proxy(study, recordings.front().description.tool), about_the_table(study),
+        probes.empty() ? "" : kWhatWasProbed})
     if (!text.empty()) section.paragraphs.push_back(text);
   return section;
 }

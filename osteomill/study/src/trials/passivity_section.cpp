@@ -113,7 +113,7 @@ constexpr const char* kColumns =
 constexpr const char* kCaption =
     "The stiffness felt when the wall is only just passive, against the device's damping. A triangle: "
     "passive up to the stiffest setting tried, 200 N/mm, of which this is felt. A missing point: passive at "
-    "no setting. Points stand a little aside of each other.";
+    "no setting. Several algorithms stand a little aside of each other.";
 
 double damping_Ns_per_m(const PassivityRow& row) {
   return 1e3 * row.damping_Ns_per_mm;
@@ -169,7 +169,8 @@ std::string panel(std::span<const PassivityRow> rows, std::size_t column, const 
   std::string curves, rule;
   for (std::size_t n = 0; n < axes.algorithms.size(); ++n) {
     const AlgorithmId& algorithm = axes.algorithms[n];
-    const double aside = std::pow(1.05, static_cast<double>(n) - 1);
+    const double aside =
+        std::pow(1.05, static_cast<double>(n) - 0.5 * static_cast<double>(axes.algorithms.size() - 1));
     const std::string file = figure.data(curve_data(rows, algorithm, aside, axes.delays_s[column]));
     // The rule is equal for every algorithm.
     rule = fmt::format(", {} using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
@@ -228,7 +229,6 @@ Section passivity_section(std::span<const PassivityRow> rows, const Figure& figu
                      .tables = {devices_table(rows)}}}};
 }
 
-void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows) {
 std::vector<PassivityRow> read_passivity_csv(const std::filesystem::path& path,
                                              const std::vector<AlgorithmId>& algorithms) {
   std::vector<PassivityRow> rows;
@@ -249,6 +249,7 @@ std::vector<PassivityRow> read_passivity_csv(const std::filesystem::path& path,
   return rows;
 }
 
+void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << kColumns << '\n';
     for (const PassivityRow& row : rows) {
