@@ -114,7 +114,7 @@ Section opening(const Study& study, const std::vector<Recording>& recordings) {
        {which_to_take(study), what_was_compared(study, recordings.front().description.scan_name),
         study.algorithms().size() > 1 ? about_stiffness(recordings) : "", about_cutting(recordings.front()),
         about_line_proxy(study, recordings.front().description.tool), about_the_table(study),
-        probes.empty() ? "" : kWhatWasProbed})
+        std::string(probes.empty() ? "" : kWhatWasProbed)})
     if (!text.empty()) section.paragraphs.push_back(text);
   return section;
 }

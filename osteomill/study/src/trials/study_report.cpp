@@ -103,7 +103,7 @@ Table options_table(const StudyDesign& design, const std::vector<TrialRow>& rows
         values.push_back(value);
     }
   }
-  Table table{{"Option", "What was tried"}, {}};
+  Table table{{"Option", "In these trials"}, {}};
   for (auto& [key, values] : tried) {
     const bool has_others = values.size() > kFewValues;
     if (has_others) values.pop_back();
@@ -186,7 +186,7 @@ fs::path write_study_report(const StudyDesign& design, const StudyFolder& study,
                                            unreached_words(short_of.size(), status.trials_done, unreached))},
                 .tables = {options_table(design, rows)}}}};
     if (status.trials_done < study.record.trials)
-      page.sections.front().notices = {fmt::format("This is a part of the study: {}.", share)};
+      page.sections.front().notices = {"This is a part of the study, which is not done yet."};
     if (!design.maps.empty()) page.sections.push_back(maps_section(design, rows, figures));
     if (design.findings)
       std::ranges::move(findings_sections(design, rows, figures), std::back_inserter(page.sections));
