@@ -72,11 +72,12 @@ RunMetrics phase_metrics(const Recording& recording);
 inline constexpr double kHeldContact = 0.9;
 /// The least share of the time of a hold with the shaft against the wall.
 inline constexpr double kHeldShaft = 0.5;
-/// The furthest that the shaft may turn from its mean direction in a hold. Hands that hold still keep to 1
-/// degree with burrs of 0.5 to 3 mm and pushes of 1 to 5 N.
+/// The furthest that the shaft may turn from its mean direction in a hold. In 16 hands (docs/questions.md) it
+/// turned by at most 2.3 degrees or by 4.8 and more.
 inline constexpr double kHeldTurn_deg = 3;
-/// The furthest that the burr may go from its mean place in a hold. Hands that hold still keep to 0.2 mm even
-/// if they buzz. A buzz in one place is held: how calm that is, is what a holding measures.
+/// The furthest that the burr may go from its mean place in a hold. In 16 hands it went by at most 0.4 mm,
+/// with a buzz too, or by 0.8 and more. A buzz in one place is held: how calm that is, is what a holding
+/// measures.
 inline constexpr double kHeldBurr_mm = 0.5;
 
 /// Returns which of these a holding of section 8.2 broke: "the tool touched for less than 90 % of the
