@@ -152,7 +152,8 @@ ContactShares contact_shares(std::span<const TickRecord> records) {
 
 std::string contact_words(const ContactShares& contact) {
   const auto share_of_time = [](double share) {
-    return fmt::format("for {:.0f} % of the time", 100 * share);
+    return share < 0.005 ? "for less than 1 % of the time"
+                         : fmt::format("for {:.0f} % of the time", 100 * share);
   };
   if (contact.any == 0) return contact.lost_while_milling ? "lost while milling" : "never touched";
   if (contact.is_lost() && contact.lost_while_milling)
@@ -251,6 +252,7 @@ RunMetrics run_metrics(const Recording& recording, std::size_t first) {
     metrics.shaft_from_handle_deg = spread_deg < kRounding_deg ? 0 : spread_deg;
   }
   metrics.turns = shaft_turns(records, touches, rate_hz);
+  if (!is_enough_contact(contact.torque)) metrics.turns.at_torque_step_deg = kNotMeasured;
   metrics.torque_follows_force = torque_following_force(torque_Nmm, force_N, shaft_touches, rate_hz);
   if (is_enough_contact(contact.any)) {
     metrics.contacts_mean = contacts / static_cast<double>(shaft_W.size());

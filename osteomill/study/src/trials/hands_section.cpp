@@ -28,19 +28,21 @@ std::string size_text(const PairedComparison& pair) {
 }
 
 // A sentence for each pair: "2 is 3.2 times 1, p = 0.012" with the order strong if a hand notices it, "2 is 2
-// % more than 1: same for a hand, p = 0.02", and "1 and 2: not settled, p = 0.3".
+// % more than 1 in 7 hands: same for a hand, p = 0.02", and "1 and 2: not settled, p = 0.3".
 Cell differences(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
   std::vector<Cell::Piece> pieces;
   for (const PairedComparison& pair : compare_algorithms(study, phase, metric)) {
     const std::string first = short_label(pair.first), second = short_label(pair.second);
+    const std::string in_hands =
+        pair.hands == study.seeds().size() ? "" : fmt::format(" in {} hands", pair.hands);
     if (!pieces.empty()) pieces.push_back({"\n"});
     if (!pair.is_settled()) {
-      pieces.push_back(
-          {fmt::format("{} and {}: not settled, {}", first, second, p_text(pair.p)), Look::faint});
+      pieces.push_back({fmt::format("{} and {}{}: not settled, {}", first, second, in_hands, p_text(pair.p)),
+                        Look::faint});
       continue;
     }
-    pieces.push_back({fmt::format("{} is {} {}", pair.second_is_greater ? second : first, size_text(pair),
-                                  pair.second_is_greater ? first : second),
+    pieces.push_back({fmt::format("{} is {} {}{}", pair.second_is_greater ? second : first, size_text(pair),
+                                  pair.second_is_greater ? first : second, in_hands),
                       pair.is_noticeable ? Look::strong : Look::faint});
     pieces.push_back(
         {fmt::format("{}{}, {}", pair.is_noticeable ? "" : ": same for a hand",
@@ -61,7 +63,7 @@ Cell values_cell(const Study& study, const AlgorithmId& algorithm, std::string_v
       hands == 1 ? fmt::format("{:.3g}", values.front()) : interval_text(median_interval(values));
   if (values.size() != hands) text += fmt::format(" in {} of {} hands", values.size(), hands);
   const double by_tremor = given_by_tremor(study, algorithm, phase, metric);
-  if (std::isnan(by_tremor) || metric.has(kOfTheMachine)) return text;
+  if (std::isnan(by_tremor)) return text;
   return std::vector<Cell::Piece>{{std::move(text)},
                                   {fmt::format("\ntremor {:.2g}", by_tremor), Look::faint}};
 }
@@ -124,9 +126,13 @@ std::vector<std::string> how_to_read(const Study& study) {
           ? fmt::format("In brackets stands the range of all values: {} hands are too few for a 95 % "
                         "interval of the median, which takes 6 (the range covers it with {:.3g} %).",
                         n, 100 * interval.coverage)
-          : fmt::format("In brackets stands a confidence interval of the median between two order "
-                        "statistics, by the binomial distribution; it covers the median with {:.3g} %.",
-                        100 * interval.coverage));
+          : fmt::format(
+                "In brackets stands a confidence interval of the median between two order "
+                "statistics, by the binomial distribution; it covers the median with {:.3g} %. Of fewer "
+                "hands, "
+                "which the cell then names, it covers it with 95 % or more, and below six of them it is "
+                "their range.",
+                100 * interval.coverage));
   paragraphs.push_back(fmt::format(
       "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, corrected "
       "after Holm over what is compared in one row (not over the rows). The size of a difference is its "

@@ -13,7 +13,8 @@ double given_by_tremor(const Study& study, const AlgorithmId& algorithm, std::st
   std::vector<double> differences;
   for (std::size_t a = 0; a < values.size(); ++a)
     for (std::size_t b = 0; b < a; ++b) differences.push_back(std::abs(values[a] - values[b]));
-  return differences.empty() ? kNotMeasured : distribution_of(differences).median;
+  return differences.empty() || figure.has(kOfTheMachine) ? kNotMeasured
+                                                          : distribution_of(differences).median;
 }
 
 bool are_compared(const Study& study) {
@@ -45,13 +46,13 @@ std::vector<PairedComparison> compare_algorithms(const Study& study, std::string
       if (differences.empty()) continue;
       const SignedRank test = signed_rank(differences);
       PairedComparison& pair = comparisons.emplace_back(
-          PairedComparison{algorithms[a], algorithms[b], test.negative > test.positive});
+          PairedComparison{algorithms[a], algorithms[b], test.negative > test.positive, differences.size()});
       const double lesser =
           std::min(std::abs(distribution_of(first).median), std::abs(distribution_of(second).median));
       pair.difference = std::abs(distribution_of(differences).median);
       pair.share = pair.difference / lesser;
       pair.is_noticeable = pair.difference >= least_noticeable(figure, lesser);
-      // False if no hand tried other tremors.
+      // False if nothing is known of other tremors.
       pair.is_less_than_tremor =
           pair.difference < std::fmax(given_by_tremor(study, algorithms[a], phase, figure),
                                       given_by_tremor(study, algorithms[b], phase, figure));

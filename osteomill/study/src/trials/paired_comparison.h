@@ -16,6 +16,8 @@ struct PairedComparison {
   AlgorithmId second;
   /// Decided by the sums of signed ranks; false if neither is.
   bool second_is_greater = false;
+  /// Those in which both could be measured.
+  std::size_t hands = 0;
   /// The size of the median difference, and that against the lesser of the two medians (infinite if that is
   /// 0).
   double difference = 0;
@@ -41,7 +43,8 @@ bool are_compared(const Study& study);
 std::size_t tremors_tried(const Study& study);
 
 /// Returns by how much the figure differs between two runs of one hand that differ in its tremor alone: the
-/// median over the pairs of runs; not a number if no hand tried other tremors.
+/// median over the pairs of runs; not a number if no hand tried other tremors, or the machine decides the
+/// figure.
 double given_by_tremor(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
                        const Field<RunMetrics>& figure);
 

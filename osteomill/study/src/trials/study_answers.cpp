@@ -246,11 +246,11 @@ std::string which_to_take(const Study& study) {
     if (study.are_most(done))
       candidates.push_back(algorithm);
     else
-      left_out.push_back(fmt::format("{} ({} of {} hands did all of the test with it)", algorithm.label, done,
-                                     study.seeds().size()));
+      left_out.push_back(fmt::format("{} ({} of {})", algorithm.label, done, study.seeds().size()));
   }
   if (candidates.size() < 2)
-    return fmt::format("None is recommended, because too few did all of the test: {}.", in_words(left_out));
+    return fmt::format("None is recommended, because too few hands did all of the test: {}.",
+                       in_words(left_out));
   std::map<AlgorithmId, std::vector<std::string>> reasons;
   std::vector<std::string> same, open;
   for (const Question& question : questions_of(study)) {
@@ -270,7 +270,9 @@ std::string which_to_take(const Study& study) {
   if (!same.empty())
     sentences.push_back(fmt::format("The best are the same for a hand in this: {}.", in_words(same)));
   if (!open.empty()) sentences.push_back(fmt::format("Not settled: {}.", in_words(open)));
-  if (!left_out.empty()) sentences.push_back(fmt::format("Not considered: {}.", in_words(left_out)));
+  if (!left_out.empty())
+    sentences.push_back(
+        fmt::format("Not considered, because too few hands did all of the test: {}.", in_words(left_out)));
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
