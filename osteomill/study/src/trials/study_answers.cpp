@@ -252,11 +252,14 @@ std::string which_to_take(const Study& study) {
     return fmt::format("None is recommended, because too few hands did all of the test: {}.",
                        in_words(left_out));
   std::map<AlgorithmId, std::vector<std::string>> reasons;
-  std::vector<std::string> same, open;
+  std::vector<std::string> same, open, unmeasured;
   for (const Question& question : questions_of(study)) {
     std::vector<Rank> first = ranks_of(study, question, candidates);
+    const auto measured = std::ranges::count_if(first, &Rank::is_measured);
     std::erase_if(first, [](const Rank& rank) { return !rank.is_first(); });
-    if (first.empty())
+    if (measured < 2)
+      unmeasured.emplace_back(question.name);
+    else if (first.empty())
       open.emplace_back(question.name);
     else if (first.size() > 1)
       same.emplace_back(question.name);
@@ -270,6 +273,9 @@ std::string which_to_take(const Study& study) {
   if (!same.empty())
     sentences.push_back(fmt::format("The best are the same for a hand in this: {}.", in_words(same)));
   if (!open.empty()) sentences.push_back(fmt::format("Not settled: {}.", in_words(open)));
+  if (!unmeasured.empty())
+    sentences.push_back(
+        fmt::format("Not compared, because most hands felt too little of it: {}.", in_words(unmeasured)));
   if (!left_out.empty())
     sentences.push_back(
         fmt::format("Not considered, because too few hands did all of the test: {}.", in_words(left_out)));

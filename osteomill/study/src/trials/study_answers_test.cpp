@@ -214,6 +214,15 @@ TEST(Conclusions, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
   }
 }
 
+TEST(Conclusions, WhatMostHandsCouldNotMeasureIsNotCompared) {
+  std::vector<MeasuredRun> rows = sample_rows(8);
+  for (MeasuredRun& r : rows)
+    if (r.phase == kMilling && r.algorithm != "point-shell") r.metrics.torque_Nmm.hp_share = kNotMeasured;
+  const std::string take = which_to_take(Study(rows));
+  expect_says(take, "Take 3 point-shell for calm torque while holding (10 %, the next 20 %).");
+  expect_says(take, "Not compared, because most hands felt too little of it: calm torque while milling.");
+}
+
 TEST(Conclusions, WhereNothingIsSignificantNobodyIsGreater) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   std::erase_if(rows, [](const MeasuredRun& r) { return r.algorithm == "surface-points"; });
