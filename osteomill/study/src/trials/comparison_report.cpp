@@ -135,6 +135,12 @@ bool have_the_same_phases(const RunGroup& group) {
   return group.runs.size() == group.phases().size() * group.algorithms().size();
 }
 
+// Tables beside recordings, of which study.csv has other figures of them.
+constexpr const char* kOtherTables =
+    "The study.csv beside the recordings does not have their figures: it is of another comparison, or of "
+    "another version of this program. Its other hands, grips and tremors are left out here, and so are "
+    "one-hole.csv and stability.csv.";
+
 // Returns what the tables beside the recordings have, if they are of the same comparison: a folder holds
 // one.
 ReportExtras extras_beside(const RunGroup& group) {
@@ -169,6 +175,8 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
     });
   }
   const ReportExtras extras = measured ? *measured : extras_beside(group);
+  const bool has_other_tables = !measured && extras.others.empty() &&
+                                fs::exists(group.runs.front().recording->path.parent_path() / kStudyCsv);
   std::vector<MeasuredRun> rows = group.runs;
   rows.insert(rows.end(), extras.others.begin(), extras.others.end());
   const Study study(std::move(rows));
@@ -178,7 +186,8 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   if (!extras.others.empty()) write_study_csv(out_dir / kStudyCsv, study);
   if (!extras.passivity.empty()) write_passivity_csv(out_dir / kStabilityCsv, extras.passivity);
   if (!extras.in_one_hole.empty()) write_study_csv(out_dir / kOneHoleCsv, Study(extras.in_one_hole));
-  const Section came = opening(study, recordings);
+  Section came = opening(study, recordings);
+  if (has_other_tables) came.notices.insert(came.notices.begin(), kOtherTables);
   if (came_out != nullptr) *came_out = came.tables;
   return write_report(group, out_dir, [&](const fs::path& figures) {
     PageText text{.title = study.algorithms().size() > 1 ? kTitle : kTitleOfOne,

@@ -142,6 +142,10 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
       << "a report of the recordings finds the tables beside them";
   for (const char* file : {"study.csv", "one-hole.csv", "stability.csv"})
     EXPECT_EQ(bytes_of(out_ / "again" / file), bytes_of(out_ / file)) << file;
+  for (Recording& run : runs) run.records.back().wrench.force_N *= 2;
+  const std::string other = bytes_of(write_comparison_report(runs, out_ / "other"));
+  EXPECT_NE(other.find("The study.csv beside the recordings does not have their figures"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out_ / "other/study.csv"));
 }
 
 }  // namespace
