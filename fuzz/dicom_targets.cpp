@@ -63,6 +63,12 @@ std::vector<std::string> file_seeds(const fs::path& folder) {
     save(*enhanced(), folder / "a", syntax);
     seeds.push_back(read_bytes(folder / "a"));
   }
+  const std::vector<int> values = stored_values(0);
+  for (const bool is_double : {false, true}) {
+    save(*made_up_float_slice(0, {values.begin(), values.end()}, is_double), folder / "a",
+         EXS_LittleEndianExplicit);
+    seeds.push_back(read_bytes(folder / "a"));
+  }
   return seeds;
 }
 

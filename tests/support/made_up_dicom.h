@@ -105,6 +105,22 @@ inline std::unique_ptr<DcmFileFormat> made_up_slice(const Slice& slice) {
   return file;
 }
 
+/// Slice k with these pixels, as floats of 32 bits or of 64.
+inline std::unique_ptr<DcmFileFormat> made_up_float_slice(int k, const std::vector<Float64>& values,
+                                                          bool is_double) {
+  auto slice = made_up_slice({.k = k});
+  DcmDataset& data = *slice->getDataset();
+  for (const DcmTagKey& tag : {DCM_PixelData, DCM_BitsStored, DCM_HighBit, DCM_PixelRepresentation})
+    data.findAndDeleteElement(tag);
+  data.putAndInsertUint16(DCM_BitsAllocated, is_double ? 64 : 32);
+  const std::vector<Float32> floats(values.begin(), values.end());
+  if (is_double)
+    data.putAndInsertFloat64Array(DCM_DoubleFloatPixelData, values.data(), values.size());
+  else
+    data.putAndInsertFloat32Array(DCM_FloatPixelData, floats.data(), floats.size());
+  return slice;
+}
+
 /// The segment of a made-up segmentation at a voxel; 0 for none. The last slice but one has none at all.
 inline int segment_at(int i, int j, int k) {
   if (k == 2) return 0;

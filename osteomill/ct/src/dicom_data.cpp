@@ -195,37 +195,30 @@ bool ends_in_zeros(const fs::path& path) {
   return in.read(end.data(), static_cast<std::streamsize>(end.size())) && are_zeros(end);
 }
 
-// The element with which the pixels of a file begin.
+// The element that holds the pixels of a file: of floats if one of theirs seems to begin in its head. DCMTK
+// could look for it only by `readUntilTag`, which ends the program on some damaged files. If it is another,
+// DCMTK reads further than it need.
 DcmTagKey pixel_element(const fs::path& path) {
-  DcmInputFileStream stream(path.c_str());
-  DcmFileFormat head;
-  head.transferInit();
-  head.readUntilTag(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes, DCM_FloatPixelData);
-  head.transferEnd();
-  // DCMTK stands somewhere in the head of that element, or behind it.
-  constexpr std::streamoff kHead = 32;
-  std::string head_bytes(kHead + 4, '\0');
+  constexpr std::size_t kHead = 1 << 19;
+  std::string head(kHead, '\0');
   std::ifstream in(path, std::ios::binary);
-  in.seekg(std::max<std::streamoff>(0, static_cast<std::streamoff>(stream.tell()) - kHead));
-  in.read(head_bytes.data(), static_cast<std::streamsize>(head_bytes.size()));
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
   for (const DcmTagKey& floats : {DCM_FloatPixelData, DCM_DoubleFloatPixelData}) {
     const auto element = static_cast<char>(floats.getElement());
-    if (head_bytes.find({'\xE0', '\x7F', element, '\0'}) != std::string::npos ||
-        head_bytes.find({'\x7F', '\xE0', '\0', element}) != std::string::npos)
+    if (head.find({'\xE0', '\x7F', element, '\0'}) != std::string::npos ||
+        head.find({'\x7F', '\xE0', '\0', element}) != std::string::npos)
       return floats;
   }
   return DCM_PixelData;
 }
 
-// Fills `file`; false if it is damaged.
-bool load(const fs::path& path, const MetaGroup& meta, DcmFileFormat& file) {
-  // DCMTK would take the zeros that may follow for elements. The element after which it stops is that of all
-  // threads.
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
-  dcmStopParsingAfterElement.set(ends_in_zeros(path) ? pixel_element(path) : DCM_PixelData);
+// Fills `file` up to the element `last`; false if it is damaged.
+bool parse(const fs::path& path, const MetaGroup& meta, const DcmTagKey& last, DcmFileFormat& file) {
+  dcmStopParsingAfterElement.set(last);
   if (!is_htj2k(meta.syntax))
     return file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
+  file.clear();
   DcmInputFileStream stream(path.c_str());
   file.transferInit();
   file.getMetaInfo()->read(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes);
@@ -233,6 +226,16 @@ bool load(const fs::path& path, const MetaGroup& meta, DcmFileFormat& file) {
   const bool read = file.read(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
   file.transferEnd();
   return read;
+}
+
+// Fills `file`; false if it is damaged.
+bool load(const fs::path& path, const MetaGroup& meta, DcmFileFormat& file) {
+  // The element after which DCMTK stops is that of all threads.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  if (!ends_in_zeros(path) && parse(path, meta, DCM_PixelData, file)) return true;
+  // Float pixels come before that element, and DCMTK would take what follows them for elements too.
+  return parse(path, meta, pixel_element(path), file);
 }
 
 // Returns the offset of the hole with which a sparse file ends: nothing but zeros follow.

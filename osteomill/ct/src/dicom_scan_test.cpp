@@ -142,6 +142,12 @@ TEST_F(DicomSeries, SequencesNestedHoweverDeepAreRefused) {
   }
 }
 
+TEST_F(DicomSeries, AFileOfPixelsThatAreCutShortIsRefused) {
+  const std::string pixels("\xE0\x7F\x10\0OB\0\0\x1C\x51\0\0", 12);
+  const fs::path path = write("short", std::string(128, '\0') + "DICM" + pixels + std::string(100, '\0'));
+  EXPECT_TRUE(contains(refusal(path), "cut short or damaged"));
+}
+
 TEST_F(DicomSeries, ASliceThatIsMissingIsNoticed) {
   write_series();
   fs::remove(folder_ / "f7");
@@ -447,25 +453,22 @@ TEST_F(DicomSeries, PaddingIsNoDensity) {
   }
 }
 
+std::vector<Float64> stored_floats(int k) {
+  const std::vector<int> values = stored_values(k);
+  return {values.begin(), values.end()};
+}
+
 TEST_F(DicomSeries, PixelsMayBeFloats) {
   for (const bool is_double : {false, true}) {
     for (int k = 0; k < 4; ++k) {
-      const auto slice = made_up_slice({.k = k});
+      std::vector<Float64> values = stored_floats(k);
+      if (k == 2) values[2] = -7.5;
+      const auto slice = made_up_float_slice(k, values, is_double);
       DcmDataset& data = *slice->getDataset();
-      for (const DcmTagKey& tag : {DCM_PixelData, DCM_BitsStored, DCM_HighBit, DCM_PixelRepresentation})
-        data.findAndDeleteElement(tag);
-      data.putAndInsertUint16(DCM_BitsAllocated, is_double ? 64 : 32);
-      const std::vector<int> values = stored_values(k);
-      std::vector<Float64> doubles(values.begin(), values.end());
-      if (k == 2) doubles[2] = -7.5;
-      const std::vector<Float32> floats(doubles.begin(), doubles.end());
-      if (is_double) {
-        data.putAndInsertFloat64Array(DCM_DoubleFloatPixelData, doubles.data(), doubles.size());
+      if (is_double)
         data.putAndInsertFloat64(DCM_DoubleFloatPixelPaddingValue, -7.5);
-      } else {
-        data.putAndInsertFloat32Array(DCM_FloatPixelData, floats.data(), floats.size());
+      else
         data.putAndInsertFloat32(DCM_FloatPixelPaddingValue, -7.5F);
-      }
       ASSERT_TRUE(save(*slice, folder_ / ("f" + std::to_string(k)), EXS_LittleEndianExplicit));
     }
     const Scan scan = read_scan(folder_);
@@ -574,6 +577,34 @@ TEST_F(DicomSeries, WhatFollowsThePixelsIsNotRead) {
   // Sparse: only reading all of it would take its time.
   fs::resize_file(folder_ / "f7", 1'000'000'000);
   expect_series(read_scan(folder_));
+}
+
+// Returns how many bytes this process has read from files so far.
+std::uint64_t bytes_read() {
+  std::ifstream io("/proc/self/io");
+  std::string word;
+  std::uint64_t bytes = 0;
+  io >> word >> bytes;
+  EXPECT_EQ(word, "rchar:");
+  return bytes;
+}
+
+TEST_F(DicomSeries, WhatFollowsFloatPixelsIsNotRead) {
+  for (const bool is_double : {false, true}) {
+    for (int k = 0; k < 4; ++k) {
+      const auto slice = made_up_float_slice(k, stored_floats(k), is_double);
+      ASSERT_TRUE(save(*slice, folder_ / ("f" + std::to_string(k)), EXS_LittleEndianExplicit));
+    }
+    // Few enough that no items are counted in them.
+    const std::string zeros(2'000'000, '\0');
+    std::ofstream(folder_ / "f2", std::ios::binary | std::ios::app) << zeros;
+    const std::uint64_t before = bytes_read();
+    expect_series(read_scan(folder_));
+    EXPECT_LT(bytes_read() - before, zeros.size() / 2);
+    // Nor what is no zero, and would be taken for elements that are damaged.
+    std::ofstream(folder_ / "f2", std::ios::binary | std::ios::app) << "no element";
+    expect_series(read_scan(folder_));
+  }
 }
 
 TEST_F(DicomSeries, DensitiesThatNoCtHasAreWarnedOf) {
