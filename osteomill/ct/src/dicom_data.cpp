@@ -29,6 +29,7 @@
 #include "osteomill/base/work_progress.h"
 
 #include "byte_source.h"
+#include "utf8_text.h"
 
 namespace osteomill {
 
@@ -184,7 +185,7 @@ std::string undecodable(const std::string& uid) {
   for (const auto& [later, its_name] : kLaterSyntaxes) {
     if (uid == later) name = its_name;
   }
-  return fmt::format("{} ({})", name, uid);
+  return fmt::format("{} ({})", name, without_controls(is_utf8(uid) ? uid : utf8_of_latin1(uid), '?'));
 }
 
 // Whether a file ends in zeros, as many as would take long to be parsed.

@@ -486,7 +486,7 @@ std::vector<fs::path> listed_files(DcmDataset& data) {
 void describe(DcmDataset& data, DicomHeader& header) {
   header.is_compressed = DcmXfer(data.getOriginalXfer()).isEncapsulated();
   header.pixel_bytes = bytes_of_pixels(data, header.is_compressed);
-  header.series_uid = text_of(data, DCM_SeriesInstanceUID);
+  header.series_uid = shown_text(data, DCM_SeriesInstanceUID);
   header.series_description = shown_text(data, DCM_SeriesDescription);
   header.modality = shown_text(data, DCM_Modality);
   header.photometric = shown_text(data, DCM_PhotometricInterpretation);

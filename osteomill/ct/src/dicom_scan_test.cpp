@@ -509,7 +509,8 @@ TEST_F(DicomSeries, ASyntaxThatIsNotDecodedIsNamed) {
   for (const auto& [uid, name] :
        {std::pair{"1.2.840.10008.1.2.4.92", "(1.2.840.10008.1.2.4.92), which is not"},
         {"1.2.840.113619.5.2", "a private syntax of GE (1.2.840.113619.5.2)"},
-        {"1.2.3.4", "an unknown transfer syntax (1.2.3.4)"}}) {
+        {"1.2.3.4", "an unknown transfer syntax (1.2.3.4)"},
+        {"1.2\xE4\x1B", "an unknown transfer syntax (1.2\xC3\xA4?)"}}) {
     write_series();
     write_slice({.file = "f7", .k = 2, .syntax = EXS_JPEGProcess14SV1});
     say_syntax(folder_ / "f7", uid);
