@@ -214,29 +214,47 @@ DcmTagKey pixel_element(const fs::path& path) {
   return DCM_PixelData;
 }
 
-// Fills `file` up to the element `last`; false if it is damaged.
-bool parse(const fs::path& path, const MetaGroup& meta, const DcmTagKey& last, DcmFileFormat& file) {
+// Fills `file` up to the element `last`; false if it is damaged. `syntax`: the UID of the transfer syntax in
+// which it is read; empty for what it says.
+bool parse(const fs::path& path, const std::string& syntax, const DcmTagKey& last, DcmFileFormat& file) {
   dcmStopParsingAfterElement.set(last);
-  if (!is_htj2k(meta.syntax))
-    return file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
+  if (syntax.empty()) return file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
   file.clear();
   DcmInputFileStream stream(path.c_str());
   file.transferInit();
   file.getMetaInfo()->read(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes);
-  file.getMetaInfo()->putAndInsertString(DCM_TransferSyntaxUID, UID_JPEG2000TransferSyntax);
+  file.getMetaInfo()->putAndInsertString(DCM_TransferSyntaxUID, syntax.c_str());
   const bool read = file.read(stream, EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
   file.transferEnd();
   return read;
 }
 
-// Fills `file`; false if it is damaged.
-bool load(const fs::path& path, const MetaGroup& meta, DcmFileFormat& file) {
+// Whether the elements of compressed pixels' data set are without their kinds, which no such syntax is.
+bool is_compressed_and_implicit(const fs::path& path, const MetaGroup& meta) {
+  if (!is_htj2k(meta.syntax) && !DcmXfer(meta.syntax.c_str()).isEncapsulated()) return false;
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(meta.end);
+  std::array<char, 6> first{};
+  in.read(first.data(), static_cast<std::streamsize>(first.size()));
+  const auto is_letter = [](char c) { return c >= 'A' && c <= 'Z'; };
+  return in && !is_letter(first[4]) && !is_letter(first[5]);
+}
+
+// Fills the file and the syntax of `data`; false if it is damaged.
+bool load(const fs::path& path, const MetaGroup& meta, DicomData& data) {
   // The element after which DCMTK stops is that of all threads.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
-  if (!ends_in_zeros(path) && parse(path, meta, DCM_PixelData, file)) return true;
-  // Float pixels come before that element, and DCMTK would take what follows them for elements too.
-  return parse(path, meta, pixel_element(path), file);
+  const bool is_implicit = is_compressed_and_implicit(path, meta);
+  const std::string of_pixels = is_htj2k(meta.syntax) ? UID_JPEG2000TransferSyntax : meta.syntax;
+  const std::string syntax = is_implicit             ? UID_LittleEndianImplicitTransferSyntax
+                             : is_htj2k(meta.syntax) ? of_pixels
+                                                     : "";
+  // Float pixels come before the usual ones, and DCMTK would take what follows them for elements too.
+  const bool read = (!ends_in_zeros(path) && parse(path, syntax, DCM_PixelData, *data.file)) ||
+                    parse(path, syntax, pixel_element(path), *data.file);
+  data.syntax = is_implicit ? of_pixels : DcmXfer(data.file->getDataset()->getOriginalXfer()).getXferID();
+  return read;
 }
 
 // Returns the offset of the hole with which a sparse file ends: nothing but zeros follow.
@@ -284,7 +302,7 @@ std::optional<DicomData> load_dicom(const fs::path& path, std::uint64_t max_byte
   const MetaGroup meta = read_meta_group(path);
   check_bounds(path, meta);
   DicomData data{std::make_shared<DcmFileFormat>()};
-  data.damaged = !load(path, meta, *data.file);
+  data.damaged = !load(path, meta, data);
   data.undecodable = undecodable(meta.syntax);
   return data;
 }

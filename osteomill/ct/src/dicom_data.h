@@ -16,6 +16,8 @@ struct DicomData {
   std::shared_ptr<DcmFileFormat> file;
   /// The file is cut short or damaged; elements read before that stand.
   bool damaged = false;
+  /// The UID of the transfer syntax in which its pixels are, whatever the file says.
+  std::string syntax{};
   /// The transfer syntax if it is one that nothing here decodes; else empty.
   std::string undecodable{};
 };

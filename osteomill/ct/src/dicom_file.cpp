@@ -484,7 +484,7 @@ std::vector<fs::path> listed_files(DcmDataset& data) {
 }
 
 void describe(DcmDataset& data, DicomHeader& header) {
-  header.is_compressed = DcmXfer(data.getOriginalXfer()).isEncapsulated();
+  header.is_compressed = DcmXfer(header.syntax.c_str()).isEncapsulated();
   header.pixel_bytes = bytes_of_pixels(data, header.is_compressed);
   header.series_uid = shown_text(data, DCM_SeriesInstanceUID);
   header.series_description = shown_text(data, DCM_SeriesDescription);
@@ -511,9 +511,11 @@ std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data) {
   DcmPixelSequence* sequence = nullptr;
   if (data.findAndGetElement(DCM_PixelData, element).bad()) return items;
   auto* pixels = dynamic_cast<DcmPixelData*>(element);
-  if (pixels == nullptr ||
-      pixels->getEncapsulatedRepresentation(data.getOriginalXfer(), nullptr, sequence).bad() ||
-      sequence == nullptr)
+  if (pixels == nullptr) return items;
+  E_TransferSyntax syntax = EXS_Unknown;
+  const DcmRepresentationParameter* parameter = nullptr;
+  pixels->getOriginalRepresentationKey(syntax, parameter);
+  if (pixels->getEncapsulatedRepresentation(syntax, parameter, sequence).bad() || sequence == nullptr)
     return items;
   for (DcmObject* item = nullptr; (item = sequence->nextInContainer(item)) != nullptr;) {
     items.push_back(static_cast<DcmPixelItem*>(item));
@@ -529,6 +531,7 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t
     std::optional<DicomData> loaded = load_dicom(path, max_bytes);
     if (!loaded) return std::nullopt;
     header.data = std::move(loaded->file);
+    header.syntax = std::move(loaded->syntax);
     header.undecodable = std::move(loaded->undecodable);
     DcmDataset& data = *header.data->getDataset();
     describe(data, header);

@@ -85,6 +85,8 @@ struct DicomHeader {
   /// A scout view to plan a scan by, not a part of it.
   bool is_localizer = false;
   bool is_compressed = false;
+  /// The UID of the transfer syntax in which its pixels are.
+  std::string syntax;
   /// The transfer syntax if it is one that nothing here decodes; else empty.
   std::string undecodable;
   /// The size of its pixels as they are stored; 0 if it has none.

@@ -100,7 +100,7 @@ class FrameReader {
 FrameReader::FrameReader(const DicomHeader& header)
     : header_(header),
       data_(*header.data->getDataset()),
-      syntax_(data_.getOriginalXfer()),
+      syntax_(DcmXfer(header.syntax.c_str()).getXfer()),
       size_{header.columns, header.rows, std::max(1, header.slices.front().pixels.bits_allocated / 8)},
       items_(pixel_items_of(data_)),
       values_(size_.bytes() + size_.bytes() % 2) {}

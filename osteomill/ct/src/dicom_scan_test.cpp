@@ -504,6 +504,50 @@ TEST_F(DicomSeries, AnotherPlainSyntaxThanIsSaidIsNoticed) {
   }
 }
 
+// Makes the data set of slice k, a file with compressed pixels, implicit.
+void make_implicit(const fs::path& path, int k) {
+  DcmFileFormat file;
+  ASSERT_TRUE(file.loadFile(path.c_str()).good());
+  DcmDataset& data = *file.getDataset();
+  const DcmXfer syntax(data.getOriginalXfer());
+  DcmPixelItem* item = nullptr;
+  fragments(data, syntax.getXfer())->getItem(item, 1);
+  const std::vector<unsigned char> stream = bytes_of(*item);
+  ASSERT_TRUE(save(*made_up_slice({.k = k}), path, EXS_LittleEndianImplicit));
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  in.close();
+  bytes.resize(bytes.rfind(std::string("\xE0\x7F\x10\0", 4)) + 4);
+  const auto add = [&](const std::string& tag, std::uint32_t length) {
+    bytes += tag;
+    for (int n = 0; n < 4; ++n) bytes += static_cast<char>(length >> 8 * n);
+  };
+  add("", 0xFFFFFFFF);
+  add(std::string("\xFE\xFF\0\xE0", 4), 0);
+  add(std::string("\xFE\xFF\0\xE0", 4), static_cast<std::uint32_t>(stream.size()));
+  bytes.append(stream.begin(), stream.end());
+  add("\xFE\xFF\xDD\xE0", 0);
+  const std::string plain = std::string("\x12\0", 2) + UID_LittleEndianImplicitTransferSyntax;
+  const std::size_t at = bytes.find(plain);
+  ASSERT_NE(at, std::string::npos);
+  std::string uid = syntax.getXferID();
+  if (uid.size() % 2 != 0) uid += '\0';
+  bytes.replace(at, plain.size() + 1, std::string{static_cast<char>(uid.size()), '\0'} + uid);
+  // The length of the meta group.
+  const std::size_t group = bytes.find(std::string("\x02\0\0\0UL\x04\0", 8)) + 8;
+  bytes[group] = static_cast<char>(bytes[group] + static_cast<char>(uid.size()) - 18);
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST_F(DicomSeries, CompressedPixelsAreReadInAnImplicitDataSet) {
+  for (const auto syntax : {EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {
+    SCOPED_TRACE(DcmXfer(syntax).getXferName());
+    write_series(syntax);
+    for (int k = 0; k < 4; ++k) make_implicit(folder_ / ("f" + std::to_string(9 - k)), k);
+    expect_series(read_scan(folder_));
+  }
+}
+
 TEST_F(DicomSeries, ASyntaxThatIsNotDecodedIsNamed) {
   // None longer than what the slice says before.
   for (const auto& [uid, name] :
