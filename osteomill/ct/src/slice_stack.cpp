@@ -220,12 +220,19 @@ bool settle_places(const std::string& subject, std::span<const SlicePlane> slice
   const auto is_same_instance = [&](std::size_t a, std::size_t b) {
     return !slices[a].instance.empty() && slices[a].instance == slices[b].instance;
   };
-  auto others = drop_copies(slices, normal, is_same_instance, stack);
-  const std::vector<double> heights_mm = heights_of(slices, normal, stack);
-  if ((others || !are_even(heights_mm, gaps_between(heights_mm))) &&
-      are_rounded(subject, slices, normal, others.has_value(), stack))
-    return true;
-  if (others && same_pixels) others = drop_copies(slices, normal, same_pixels, stack);
+  std::optional<std::pair<std::size_t, std::size_t>> others;
+  const auto are_on_rounded_grid = [&] {
+    const std::vector<double> heights_mm = heights_of(slices, normal, stack);
+    return (others || !are_even(heights_mm, gaps_between(heights_mm))) &&
+           are_rounded(subject, slices, normal, others.has_value(), stack);
+  };
+  others = drop_copies(slices, normal, is_same_instance, stack);
+  if (are_on_rounded_grid()) return true;
+  // Only now, because two slices without anything in them may be rounded to one place.
+  if (others && same_pixels) {
+    others = drop_copies(slices, normal, same_pixels, stack);
+    if (are_on_rounded_grid()) return true;
+  }
   if (others) {
     throw InputError(subject, fmt::format("{} and {} are different images at one position",
                                           slices[others->first].name, slices[others->second].name));

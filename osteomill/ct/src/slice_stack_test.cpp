@@ -1,6 +1,7 @@
 #include "slice_stack.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -123,6 +124,24 @@ TEST(SliceStack, ACopyIsKnownByItsPixels) {
       stack_slices("folder", slices, [](std::size_t a, std::size_t b) { return a + b == 9; });
   EXPECT_EQ(stack.geometry.dims[2], 6);
   EXPECT_TRUE(contains(stack.warnings.at(0), "1 copy of other slices"));
+}
+
+TEST(SliceStack, CopiesOfSlicesWithRoundedPositionsAreLeftOut) {
+  for (const auto& [distance_mm, decimals] : {std::pair{0.15, 1}, {0.4, 0}}) {
+    std::vector<SlicePlane> slices = rounded_series(distance_mm, decimals);
+    for (const std::size_t k : {3U, 4U, 20U}) {
+      slices.push_back(slices[k]);
+      slices.back().instance = "another";
+    }
+    const std::array<std::size_t, 3> originals{3, 4, 20};
+    const SliceStack stack = stack_slices("folder", slices, [&](std::size_t a, std::size_t b) {
+      return std::max(a, b) >= 24 && originals[std::max(a, b) - 24] == std::min(a, b);
+    });
+    EXPECT_EQ(stack.geometry.dims[2], 24) << distance_mm;
+    EXPECT_NEAR(stack.geometry.spacing_mm.z(), distance_mm, std::pow(0.1, decimals) / 23);
+    ASSERT_EQ(stack.warnings.size(), 2U);
+    EXPECT_TRUE(contains(stack.warnings[0], "3 copies of other slices"));
+  }
 }
 
 TEST(SliceStack, AMissingSliceIsNamedByItsNeighbours) {
