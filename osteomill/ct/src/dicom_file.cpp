@@ -144,6 +144,7 @@ class FileReader {
   SlicePlane plane_of(std::size_t frame) const;
   DicomSlice slice_of(std::size_t frame) const;
   void describe_segments();
+  bool has_frame_places() const;
   // Old multi-frame images, as of cone-beam CT, say where the first frame lies and how far apart they are.
   void place_frames();
   void check_byte_count() const;
@@ -390,11 +391,24 @@ DicomSlice FileReader::slice_of(std::size_t frame) const {
   return slice;
 }
 
+bool FileReader::has_frame_places() const {
+  const auto has_place = [](DcmItem* groups) {
+    DcmItem* place = nullptr;
+    return groups->findAndGetSequenceItem(DCM_PlanePositionSequence, place).good();
+  };
+  return !own_.empty() && (std::any_of(own_.begin(), own_.end(), has_place) ||
+                           std::any_of(shared_.begin(), shared_.end(), has_place));
+}
+
 void FileReader::place_frames() {
-  const InputError nowhere = fault("has several frames and does not say where each of them lies");
-  const std::string along = text_of(data_, DCM_FrameIncrementPointer);
+  DcmElement* pointer = nullptr;
+  DcmTagKey along;
   // Frames of a film follow each other in time.
-  if (!along.empty() && along.find("0018,2005") == std::string::npos) throw nowhere;
+  if (data_.findAndGetElement(DCM_FrameIncrementPointer, pointer).good() &&
+      pointer->getTagVal(along, 0).good() && along != DCM_SliceLocationVector) {
+    throw fault(fmt::format("has several frames, which follow each other by {}, not by known places",
+                            DcmTag(along).getTagName()));
+  }
   if (const auto heights_mm =
           numbers(data_, DCM_SliceLocationVector, header_.frames, "SliceLocationVector")) {
     for (const double height_mm : *heights_mm) offsets_mm_.push_back(height_mm - heights_mm->front());
@@ -403,7 +417,7 @@ void FileReader::place_frames() {
     for (std::size_t frame = 0; frame < header_.frames; ++frame)
       offsets_mm_.push_back(spacing_mm->front() * static_cast<double>(frame));
   } else {
-    throw nowhere;
+    throw fault("has several frames and does not say where each of them lies");
   }
   header_.warning = fmt::format(
       "its frames have no places of their own: they were put along the normal, the second {:.6g} mm from the "
@@ -443,7 +457,7 @@ void FileReader::read_frames() {
     throw fault(fmt::format("is {}, not a scan", header_.no_slice));
   if (data_.tagExists(DCM_ModalityLUTSequence))
     throw fault("needs a modality lookup table, which is not supported");
-  if (header_.frames > 1 && own_.empty()) place_frames();
+  if (header_.frames > 1 && !has_frame_places()) place_frames();
   check_byte_count();
   std::string unit;
   for (DcmItem* place : groups_of(0, DCM_PixelValueTransformationSequence)) {

@@ -585,6 +585,7 @@ TEST_F(DicomSeries, ASignedStreamUnderAnUnsignedHeaderIsReadAsItSays) {
 }
 
 TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
+  bool with_groups = false;
   const auto write = [&](const DcmTagKey& tag, const std::string& text, const std::string& orientation) {
     const auto file = made_up_slice({});
     DcmDataset& data = *file->getDataset();
@@ -596,10 +597,15 @@ TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
     data.putAndInsertString(DCM_NumberOfFrames, "3");
     data.putAndInsertString(DCM_ImageOrientationPatient, orientation.c_str());
     data.putAndInsertString(tag, text.c_str());
+    for (int frame = 0; frame < 3 && with_groups; ++frame) {
+      DcmItem* groups = nullptr;
+      ASSERT_TRUE(data.findOrCreateSequenceItem(DCM_PerFrameFunctionalGroupsSequence, groups, frame).good());
+    }
     ASSERT_TRUE(save(*file, folder_ / "many", EXS_LittleEndianExplicit));
   };
   for (const auto& [tag, text] : {std::pair{DCM_SpacingBetweenSlices, std::string("0.75")},
-                                  {DCM_SliceLocationVector, "5\\5.75\\6.5"}}) {
+                                  {DCM_SliceLocationVector, "5\\5.75\\6.5"},
+                                  {DCM_SpacingBetweenSlices, "0.75"}}) {
     write(tag, text, "0\\1\\0\\0\\0\\1");
     const Scan scan = read_scan(folder_ / "many");
     EXPECT_EQ(scan.grid.geometry().dims, (std::array<int, 3>{kColumns, kRows, 3}));
@@ -607,6 +613,8 @@ TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
     EXPECT_TRUE(scan.grid.geometry().direction.col(2).isApprox(Vec3::UnitX()));
     EXPECT_EQ((scan.grid[{3, 2, 2}]), 2 * stored_value(3, 2, 2) - 100);
     EXPECT_TRUE(contains(scan.warnings.at(0), "the second 0.75 mm from the first"));
+    // Functional groups need not say it either.
+    with_groups = tag == DCM_SliceLocationVector;
   }
   // Against the normal the last lies lowest.
   write(DCM_SpacingBetweenSlices, "-0.75", "1\\0\\0\\0\\1\\0");
@@ -615,6 +623,8 @@ TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
   EXPECT_TRUE(contains(refusal(folder_ / "many"), "one position"));
   write(DCM_SliceThickness, "0.75", "1\\0\\0\\0\\1\\0");
   EXPECT_TRUE(contains(refusal(folder_ / "many"), "where each of them lies"));
+  write(DCM_FrameIncrementPointer, "(0018,1063)", "1\\0\\0\\0\\1\\0");
+  EXPECT_TRUE(contains(refusal(folder_ / "many"), "follow each other by FrameTime"));
 }
 
 TEST_F(DicomSeries, WhatFollowsThePixelsIsNotRead) {
