@@ -121,6 +121,8 @@ Header header_of(const std::string& subject, const Bytes& bytes) {
     return Vec3(real(first, second, n), real(first, second, n + 1), real(first, second, n + 2));
   };
   const std::string_view magic = bytes.text(place(344, 4), 3), digit = two ? "2" : "1";
+  if (!two && magic.front() == '\0')
+    throw InputError(subject, "is Analyze 7.5, not NIfTI: it does not say which side is left");
   if ((magic.substr(0, 2) != "n+" && magic.substr(0, 2) != "ni") || magic.substr(2) != digit)
     throw InputError(subject, fmt::format("is not NIfTI: its magic is neither n+{0} nor ni{0}", digit));
   Header header{subject};
@@ -128,7 +130,8 @@ Header header_of(const std::string& subject, const Bytes& bytes) {
   for (std::size_t n = 0; n < header.sizes.size(); ++n)
     header.sizes[n] = number<std::int16_t, std::int64_t>(bytes, place(40, 16), n);
   header.qfac = real(76, 104) < 0 ? -1 : 1;
-  header.spacing = vector(76, 104, 1);
+  // Some writers give lengths a sign; the axes' directions are elsewhere.
+  header.spacing = vector(76, 104, 1).cwiseAbs();
   header.type = bytes.at<std::int16_t>(place(70, 12));
   header.offset = two ? static_cast<double>(bytes.at<std::int64_t>(168)) : real(108, 0);
   header.slope = real(112, 176);

@@ -387,6 +387,13 @@ TEST_F(VolumeFile, NiftiIsTurnedFromRasToLps) {
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
 }
 
+TEST_F(VolumeFile, SignsOfNiftiVoxelSizesArePassedOver) {
+  const Scan scan = read_scan(
+      write("a.nii", Nifti().set<float>(80, -0.5F).set<float>(88, -2.0F).with(voxels<std::int16_t>())));
+  expect_voxels(scan.grid);
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
+}
+
 TEST_F(VolumeFile, DetachedMetaImageGivesTheSame) {
   const std::string packed = zipped(voxels<std::int16_t>());
   write("a.raw", voxels<std::int16_t>());
@@ -549,6 +556,9 @@ TEST_F(VolumeFile, Nifti2AndPairsOfFilesGiveTheSame) {
   std::filesystem::copy_file(folder_ / "b.img", alone / "b.img");
   expect_scan(alone);
   EXPECT_TRUE(contains(refusal(write("d.nii", nifti2("n+1") + data)), "neither n+2 nor ni2"));
+  // Its forerunner has the same header without a magic.
+  pair.replace(344, 3, std::string(3, '\0'));
+  EXPECT_TRUE(contains(refusal(write("b.hdr", pair)), "is Analyze 7.5, not NIfTI"));
   EXPECT_TRUE(contains(refusal(write("e.nii", nifti2("n+2").substr(0, 400))), "cut short in its header"));
 }
 
