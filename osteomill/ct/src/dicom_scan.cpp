@@ -564,10 +564,13 @@ std::optional<Scan> read_file(const fs::path& file, const ReadOptions& options) 
   const std::string subject = file.string();
   std::optional<DicomHeader> header = read_dicom_header(file, options.max_memory_bytes);
   if (!header) return std::nullopt;
+  if (!header->is_image() && !header->is_directory() && !header->lost) {
+    const std::string& kind = header->modality;
+    throw InputError(subject, fmt::format("is DICOM, but not an image{}{}", kind.empty() ? "" : ": ", kind));
+  }
   if (header->fault) throw *header->fault;
   if (header->is_directory())
     return read_images(subject, images_of_directory(*header, options.max_memory_bytes), options);
-  if (!header->is_image()) throw InputError(subject, "is DICOM, but not an image");
   if (header->is_segmentation) return read_segmentation(subject, *header, options);
   if (header->is_localizer) throw InputError(subject, "is a localizer, not a slice of a scan");
   return read_images(subject, series_of(std::move(*header), options.max_memory_bytes), options, file);

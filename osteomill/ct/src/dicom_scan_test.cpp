@@ -751,6 +751,14 @@ TEST_F(DicomSeries, AFolderWithoutAScanIsRefused) {
   EXPECT_TRUE(contains(refusal(folder_ / "one"), "only one slice"));
 }
 
+TEST_F(DicomSeries, WhatIsNoImageIsRefusedByItsModality) {
+  const auto file = made_up_slice({.modality = "RTSTRUCT"});
+  for (const DcmTagKey& tag : {DCM_PixelData, DCM_Columns, DCM_Rows})
+    file->getDataset()->findAndDeleteElement(tag);
+  ASSERT_TRUE(save(*file, folder_ / "plan", EXS_LittleEndianExplicit));
+  EXPECT_TRUE(contains(refusal(folder_ / "plan"), "plan: is DICOM, but not an image: RTSTRUCT"));
+}
+
 TEST_F(DicomSeries, ASlopeOfZeroIsRefused) {
   write_series();
   write_slice({.file = "f8", .k = 1, .slope = "0"});

@@ -327,7 +327,7 @@ Shift shift_of(double pixels) {
 
 const char* difference_of(const SlicePlane& one, const SlicePlane& other) {
   if (one.columns != other.columns || one.rows != other.rows) return "size";
-  const auto differ = [](double a, double b) { return std::abs(a - b) > kSpacingTolerance * a; };
+  const auto differ = [](double a, double b) { return std::abs(a - b) > kSpacingTolerance * std::abs(a); };
   if (differ(one.column_distance_mm, other.column_distance_mm) ||
       differ(one.row_distance_mm, other.row_distance_mm))
     return "pixel spacing";

@@ -228,6 +228,12 @@ TEST(SliceStack, WhatHasNoDensitySpreadsNoFurtherThanItIsUsed) {
   EXPECT_EQ(std::count(densities.begin(), densities.end(), 5.0F), 5 * 48 - 2);
 }
 
+TEST(SliceStack, ANegativePixelSpacingIsNoDifferenceBetweenSlices) {
+  std::vector<SlicePlane> slices = series(4, 0.5);
+  for (SlicePlane& slice : slices) slice.column_distance_mm = -0.125;
+  EXPECT_TRUE(contains(refusal(slices), "voxels -0.125 mm apart"));
+}
+
 TEST(SliceStack, UnevenDistancesThatAreTooLargeAreRefused) {
   std::vector<SlicePlane> slices = series(12, 8);
   for (std::size_t k = 6; k < slices.size(); ++k)

@@ -150,6 +150,7 @@ GridGeometry checked_geometry(const std::string& subject, const std::vector<doub
   geometry.dims = checked_dims(subject, sizes);
   if (spacing.size() != 3)
     throw InputError(subject, fmt::format("has {} spacings, a volume has 3", spacing.size()));
+  if (!axes.allFinite()) throw InputError(subject, "has an axis that is no number");
   if (!((axes.colwise().norm().array() > 0).all())) throw InputError(subject, "has an axis of no length");
   const double skew = most_skew(axes);
   if (!(skew <= kMostShear)) {

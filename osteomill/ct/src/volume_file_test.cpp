@@ -614,6 +614,9 @@ TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
   }
   EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(84, 0.0F).with(voxels<std::int16_t>()))),
                        "mm apart"));
+  const std::string directions = "encoding: raw\nspace: LPS\nspace directions: (nan,0,0) (0,1,0) (0,0,1)\n";
+  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd(directions, voxels<std::int16_t>()))),
+                       "an axis that is no number"));
   EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<float>(84, 0.3F).with(voxels<std::int16_t>()))),
                        "different voxel sizes"));
 }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -361,7 +362,7 @@ std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isova
   std::string faces;
   int count = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const int layer : {0, grid.geometry().dims[axis] - 1}) {
+    for (const int layer : std::set{0, grid.geometry().dims[axis] - 1}) {
       if (!bone_touches(grid, isovalue, axis, layer)) continue;
       faces += fmt::format("{}{} {}", count++ == 0 ? "" : ", ", layer == 0 ? "first" : "last", "ijk"[axis]);
     }

@@ -18,6 +18,14 @@ TEST(IsovalueWarnings, NameTheFacesThatCutBoneOff) {
   const auto out_of_two = isovalue_warnings(shape_volume(geometry, ball({4, 0, -4}, 3)).grid(), 500);
   ASSERT_EQ(out_of_two.size(), 1u);
   EXPECT_NE(out_of_two[0].find("(last i, first k)"), std::string::npos) << out_of_two[0];
+  // A single layer has one face.
+  GridGeometry layer = geometry;
+  layer.dims[2] = 1;
+  std::vector<float> densities(1600, 0);
+  for (const std::size_t n : {820U, 821U}) densities[n] = 700;
+  const auto out_of_layer = isovalue_warnings(DensityGrid(layer, densities), 500);
+  ASSERT_EQ(out_of_layer.size(), 1u);
+  EXPECT_NE(out_of_layer[0].find("(first k)"), std::string::npos) << out_of_layer[0];
 }
 
 TEST(IsovalueWarnings, AnIsovalueOutsideTheDensitiesLeavesNoBoneOrNothingElse) {
