@@ -61,6 +61,7 @@ const std::vector<Named>& all_sections() {
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
       {"reaction", milling_with_cutting_reaction},
+      {"rhythm", no_rhythm_of_its_own},
       {"second", milling_the_second_scan},
       {"paper", papers_findings},
       {"choices", papers_choices},

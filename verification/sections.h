@@ -59,6 +59,8 @@ Section haptic_rates(const Bones& bones, const Effort& effort);
 Section random_pushes(const Bones& bones, const Effort& effort);
 Section milling_the_tooth(const Bones& bones, const Effort& effort);
 Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort);
+/// Measures what updates of bone in turns would do to the torque.
+Section no_rhythm_of_its_own(const Bones& bones, const Effort& effort);
 Section milling_the_second_scan(const Bones& bones, const Effort& effort);
 Section soak(const Bones& bones, const Effort& effort);
 

@@ -42,7 +42,7 @@ const std::vector<Question>& questions() {
       {"Does the tool stay out of bone?", {"pushes", "tools", "sheets", "spongy", "through"}},
       {"Is the hole what the burr swept?", {"voxels", "swept"}},
       {"Does it keep 1000 Hz, also in fine scans?", {"fine", "ticks", "rates"}},
-      {"Is it calm while a hand mills?", {"tooth", "reaction", "second", "energy", "rig"}},
+      {"Is it calm while a hand mills?", {"tooth", "reaction", "rhythm", "second", "energy", "rig"}},
       {"Does what the paper found come out?", {"paper", "choices"}},
       {"Does cutting resist as published?", {"feed"}},
       {"Does a long session stay sound?", {"soak"}},

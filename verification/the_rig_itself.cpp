@@ -36,7 +36,7 @@ Section the_rig_itself(const Bones& bones, const Effort& effort) {
           .algorithm = algorithm, .push_N = push_N, .seed = 11, .phase_s = effort.phase_s};
       std::vector<TrialVariant> variants(3, usual);
       variants[1].spindle = false;
-      variants[2].encoder = false;
+      variants[2].encoder_mm = variants[2].encoder_rad = 0;
       const std::vector<TrialFigures> f = milling_figures(bones.tooth, variants);
       std::vector<std::string> cells{fmt::format("{}, {} N", algorithm, push_N)};
       for (const TrialFigures& run : f) cells.push_back(figure(run.hp_over_mean()));

@@ -23,10 +23,13 @@ struct TrialVariant {
   bool random_hand = false;
   /// False lets the hand go through its motions without removing bone.
   bool spindle = true;
-  /// False reads the handle's pose without rounding.
-  bool encoder = true;
+  /// The steps of the handle's encoder; 0 reads without rounding.
+  double encoder_mm = HandleSettings{}.position_step_mm;
+  double encoder_rad = HandleSettings{}.rotation_step_rad;
   /// True has the hand feel what cutting does to the burr (CuttingReaction).
   bool cutting_reaction = false;
+  /// True cuts by chips with a surgical drill, and has the hand feel the reaction and the drag.
+  bool by_chips = false;
   std::vector<HapticSettings::Named> named = {};
   MillingTool tool = {};
 };
@@ -34,8 +37,11 @@ struct TrialVariant {
 /// One algorithm's milling in the test of section 8.2.
 struct TrialFigures {
   RunMetrics metrics;
-  /// Removed volume / (kappa times the integral of the paying part of the burr's force).
+  /// Removed volume / (kappa times the integral of the paying part of the burr's force); with chips not a
+  /// number.
   double paid_share = 0;
+  /// The amplitude of the torque at half the haptic rate, in the worst 0.1 s of leaning.
+  double half_rate_Nmm = 0;
   /// Counts of barrier-shell; none for other algorithms.
   std::optional<barrier_shell::Counts> counts;
   /// Time of each tick's milling, with everything that follows the volume, us.

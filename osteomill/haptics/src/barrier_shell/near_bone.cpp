@@ -128,19 +128,26 @@ void NearBone::measure(const Cores& cores, const Barrier& barrier, const Pose& X
 
 void NearBone::list_supporting(const MeasuredBone& measured, double within_mm,
                                BoneBricks& bricks) const noexcept {
+  constexpr auto kNearest = static_cast<float>(Barrier::kNearestShare);
   const auto within = static_cast<float>(within_mm);
-  const auto supports = [&](const MeasuredPoints& points, std::size_t first, std::size_t end) {
-    const float* distance = points.distance.data();
-    return std::any_of(distance + first, distance + end, [&](float mm) { return mm < within; });
+  // The barrier's pressure except for a factor between 2 and 3, summed over points.
+  const auto load_on = [&](const NearPoints& near, const MeasuredPoints& points, std::size_t first,
+                           std::size_t end) {
+    float load = 0;
+    for (std::size_t n = first; n < end; ++n) {
+      const float share = std::max(points.distance[n] / within, kNearest);
+      if (share < 1) load += near.area[n] * (1 - share) * (1 - share) / (share * share);
+    }
+    return load;
   };
   bricks.clear_supporting();
   for (std::size_t n = 0; n < brick_count_; ++n) {
     const bool last = n + 1 == brick_count_;
-    if (supports(measured.ball, bricks_[n].at_ball, last ? ball_.count : bricks_[n + 1].at_ball) ||
-        supports(measured.cylinder, bricks_[n].at_cylinder,
-                 last ? cylinder_.count : bricks_[n + 1].at_cylinder)) {
-      bricks.add_supporting(bricks_[n].slot);
-    }
+    const float load =
+        load_on(ball_, measured.ball, bricks_[n].at_ball, last ? ball_.count : bricks_[n + 1].at_ball) +
+        load_on(cylinder_, measured.cylinder, bricks_[n].at_cylinder,
+                last ? cylinder_.count : bricks_[n + 1].at_cylinder);
+    if (load > 0) bricks.add_supporting(bricks_[n].slot, load);
   }
 }
 

@@ -50,8 +50,8 @@ class NearBone {
   /// Measures the points from a pose within the leeway of the last gathering.
   void measure(const Cores& cores, const Barrier& barrier, const Pose& X_WT,
                MeasuredBone& measured) const noexcept;
-  /// Lists in `bricks` those that support the tool: with points that were measured nearer than `within_mm` to
-  /// a part since the last gathering.
+  /// Lists in `bricks` those that support the tool, with points that were measured nearer than `within_mm` to
+  /// a part since the last gathering, and about the load that each bears.
   void list_supporting(const MeasuredBone& measured, double within_mm, BoneBricks& bricks) const noexcept;
 
  private:

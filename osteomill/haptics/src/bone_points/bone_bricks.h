@@ -73,9 +73,10 @@ class BoneBricks {
   /// all other bricks about `others` points are updated a tick; building bricks and skipping unchanged ones
   /// count as points too.
   void refresh(const VoxelBox& voxels, int others = kOtherPointsPerTick) noexcept;
-  /// List the slots of the bricks on which the tool rests. The caller must refresh the list after every step.
+  /// List the slots of the bricks on which the tool rests, and with which load, in any unit. The caller must
+  /// refresh the list after every step.
   void clear_supporting() { queue_.clear_supporting(); }
-  void add_supporting(std::uint32_t slot) { queue_.add_supporting(slot); }
+  void add_supporting(std::uint32_t slot, float load) { queue_.add_supporting(slot, load); }
   bool is_up_to_date() const { return queue_.is_empty(); }
   /// Returns how many bricks wait for their update, including those on which the tool rests.
   std::size_t pending_count() const noexcept { return queue_.size(); }

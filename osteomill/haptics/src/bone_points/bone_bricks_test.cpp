@@ -117,7 +117,7 @@ TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
 }
 
 // The surface falls everywhere in every tick, faster than the others have their turns.
-TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
+TEST(BoneBricks, ThoseThatSupportTheToolAreBroughtUpToDateWithinAFewTicks) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(90, 0.13),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   BoneBricks kept(volume, 0.13);
@@ -135,10 +135,8 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
     return z_mm;
   };
   int supporting = 0;
-  at_the_middle(kept, [&](std::uint32_t slot) {
-    kept.add_supporting(slot);
-    ++supporting;
-  });
+  at_the_middle(kept,
+                [&](std::uint32_t slot) { kept.add_supporting(slot, supporting++ == 0 ? 1.0f : 0.0f); });
   ASSERT_GT(supporting, 4);
   const VoxelBox all = volume.geometry().all_voxels();
   constexpr int kTicks = 30, kTurns = 4;

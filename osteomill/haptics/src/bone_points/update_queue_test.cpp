@@ -23,23 +23,25 @@ TEST(UpdateQueue, EveryBrickOfABoxHasItsTurnAndWhatIsAddedMeanwhileComesAfter) {
   EXPECT_EQ(queue.size(), 0u);
 }
 
-TEST(UpdateQueue, BearingBricksTakeTurnsOnceTheyCostMoreThanATickDoes) {
+TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATickDoes) {
   UpdateQueue queue;
-  for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot);
-  std::vector<int> turns(8);
+  for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot, 0.001f);
+  std::vector<int> turns(9);
   const auto take = [&](int cost) {
     queue.update_supporting_in_turns([&](std::uint32_t) { return cost; },
                                      [&](std::uint32_t slot) { ++turns[slot]; });
   };
+  // One that bears nearly all, and has all turns.
+  queue.add_supporting(8, 1);
   take(UpdateQueue::kSupportingPointsPerTick / 16);
-  EXPECT_EQ(turns, std::vector<int>(8, 1));
+  EXPECT_EQ(turns, std::vector<int>(9, 1));
   EXPECT_EQ(queue.size(), 0u);
   for (int tick = 0; tick < 3; ++tick) {
-    take(2 * UpdateQueue::kSupportingPointsPerTick / 8);
+    take(2 * UpdateQueue::kSupportingPointsPerTick / 9 + 1);
     EXPECT_GE(queue.size(), 5u);
   }
-  EXPECT_EQ(turns, std::vector<int>(8, 2));
-  for (std::size_t n = 0; n < 2 * UpdateQueue::kMaxSupporting; ++n) queue.add_supporting(0);
+  EXPECT_EQ(turns, std::vector<int>({2, 2, 2, 2, 2, 2, 2, 2, 4}));
+  for (std::size_t n = 0; n < 2 * UpdateQueue::kMaxSupporting; ++n) queue.add_supporting(0, 1);
   queue.clear_supporting();
   take(1);
   EXPECT_EQ(queue.size(), 0u);
