@@ -56,13 +56,25 @@ std::vector<std::string> setting_warnings(const MillingSetup& setup, const GridG
   return make_algorithm(setup.algorithm, setup.haptics)->setting_warnings(setup.tool, scan);
 }
 
+namespace {
+
+ChipLaw chip_law_of(const MillingSetup& setup) {
+  ChipLaw law = chip_law(setup.burr, setup.wear_cuts);
+  if (setup.chip_energy_Nmm_per_mm3 > 0)
+    law.edge = law.sharp = {setup.chip_energy_Nmm_per_mm3, law.sharp.chip_mm, setup.chip_exponent};
+  law.edges = setup.chip_edges;
+  return law;
+}
+
+}  // namespace
+
 MillingSettings milling_settings(const MillingSetup& setup) {
   MillingSettings milling;
   milling.removal_rate_mm3_per_Ns = setup.removal_rate_mm3_per_Ns
                                         ? *setup.removal_rate_mm3_per_Ns
                                         : removal_rate_mm3_per_Ns(setup.cutting, setup.tool.burr_radius_mm);
   milling.spindle_speed_rpm = setup.cutting.spindle_speed_rpm;
-  if (setup.law == CuttingLaw::chips) milling.chips = chip_law(setup.burr, setup.wear_cuts);
+  if (setup.law == CuttingLaw::chips) milling.chips = chip_law_of(setup);
   milling.tangential_share = milling.chips ? milling.chips->friction : setup.cutting.tangential_share;
   if (setup.cutting_reaction || setup.drag) milling.reaction_share = milling.tangential_share;
   return milling;
@@ -129,6 +141,11 @@ Field<S> handpiece_field() {
           }};
 }
 
+Field<S> chip_field(const char* name, const char* unit, const NumberRange& range, const char* doc,
+                    const char* option, double S::*member) {
+  return field<S>({name, unit, range, doc, kOfTheCutting | kOfTheRecording | kMayBeAbsent, option}, member);
+}
+
 std::vector<Field<S>> law_fields() {
   return {
       handpiece_field(),
@@ -137,13 +154,20 @@ std::vector<Field<S>> law_fields() {
                &S::law),
       field<S>(choice("milling.burr", "Kind of burr, for --law chips", "burr", names_of(burr_types())),
                &S::burr),
-      field<S>({"milling.wear",
-                "cuts",
-                {0, 1000},
-                "Cuts that the burr has made before; 20 take 20 % of its rate (--law chips)",
-                kOfTheCutting | kOfTheRecording | kMayBeAbsent,
-                "wear"},
-               &S::wear_cuts),
+      chip_field("milling.wear", "cuts", {0, 1000},
+                 "Cuts that the burr has made before; 20 take 20 % of its rate (--law chips)", "wear",
+                 &S::wear_cuts),
+      chip_field(
+          "milling.chip_energy", "N mm/mm^3", {0, 1e6},
+          "Work to remove bone of the reference density in chips of 48 um, as scripts/fit-cutting fits it "
+          "(--law chips); 0: that of the burr",
+          "chip-energy", &S::chip_energy_Nmm_per_mm3),
+      chip_field("milling.chip_exponent", "", {0, 0.95},
+                 "Exponent by which that energy grows in thinner chips (--chip-energy)", "chip-exponent",
+                 &S::chip_exponent),
+      chip_field("milling.chip_edges", "", {1, 100},
+                 "Edges that cut in a turn: 1 if a burr runs out, 2 of a twist drill (--law chips)",
+                 "chip-edges", &S::chip_edges),
   };
 }
 
