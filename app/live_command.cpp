@@ -37,7 +37,6 @@ struct LiveOptions {
   ScanOptions scan;
   TrialOptions trial;
   double seconds = 60;
-  double rate_hz = 1000;
   std::string record;
   DeviceOption device{kSimulated};
   bool spindle = false;
@@ -184,7 +183,6 @@ void run_live(LiveOptions options, const std::string& command_line) {
   script.milling_s = script.holding_s = 0.5 * options.seconds;
   LiveToolSource tool_source(options.device);
   MillingSetup setup = options.trial.milling.setup;
-  setup.tick_s = 1 / options.rate_hz;
   LoadedBone loaded = load_bone(options.scan);
   warn_of_settings(setup, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
@@ -246,8 +244,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   add_positive(
       *command, "--seconds", options->seconds, "s",
       "Length of the session; the simulated hand mills for half of it and holds still for the other half");
-  add_number(*command, {"", "Hz", {100, 4000}, "Rate of the haptic loop", 0, "rate"},
-             number_text(options->rate_hz), [=](double rate_hz) { options->rate_hz = rate_hz; });
+  add_rate_option(*command, options->trial.milling.setup.tick_s);
   command->add_option("--record", options->record, "Recording (HDF5) of every tick to write")
       ->type_name("FILE");
   add_device_option(*command, options->device);

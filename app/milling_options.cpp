@@ -168,6 +168,11 @@ void take_given_options(const CLI::App& command, const MillingSetup& given, Mill
   }
 }
 
+void add_rate_option(CLI::App& command, double& tick_s) {
+  add_number(command, {"", "Hz", {100, 4000}, "Rate of the haptic loop", 0, "rate"}, number_text(1 / tick_s),
+             [&tick_s](double rate_hz) { tick_s = 1 / rate_hz; });
+}
+
 void settle_law(const CLI::App& command, MillingSetup& setup) {
   for (const char* option : {"--removal-rate", "--cutting-energy"}) {
     if (command.count(option) == 0 || setup.law == CuttingLaw::constant_energy) continue;

@@ -35,6 +35,9 @@ void add_milling_options(CLI::App& command, MillingOptions& options);
 /// them was given with --law chips. Call it when all options are read.
 void settle_law(const CLI::App& command, MillingSetup& setup);
 
+/// Adds --rate, which sets the length of a tick.
+void add_rate_option(CLI::App& command, double& tick_s);
+
 /// Adds --algorithm for a command that works with one.
 void add_algorithm_option(CLI::App& command, AlgorithmDescription& algorithm);
 /// Adds --algorithm, which may repeat; none given means all of `algorithms`.

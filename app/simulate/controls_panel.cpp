@@ -42,6 +42,21 @@ bool settle_field(std::string_view option, MillingSetup& requested_setup, float 
   return settled;
 }
 
+// Radio buttons for a field of names, two in a row.
+bool choose_field(std::string_view option, MillingSetup& requested_setup) {
+  const Field<MillingSetup>& field = *field_of_option(fields_of<MillingSetup>(), option);
+  bool changed = false;
+  for (std::size_t n = 0; n < field.choices.size(); ++n) {
+    if (n % 2 == 1) ImGui::SameLine(ui::px(kWidth_px / 2));
+    if (ui::radio(field.choices[n].c_str(), static_cast<std::size_t>(field.get(requested_setup)) == n)) {
+      field.set(requested_setup, static_cast<double>(n));
+      changed = true;
+    }
+    ui::tooltip(field.doc);
+  }
+  return changed;
+}
+
 // The end of a name, which tells one scan from another, if there is no room for all of it.
 std::string fitting_suffix(const std::string& name) {
   const float room = ImGui::GetContentRegionAvail().x;
@@ -84,11 +99,16 @@ void draw_algorithm(MillingSetup& requested_setup, bool& changed) {
   changed = changed || settled;
 }
 
+bool is_dental(Handpiece handpiece) {
+  return handpiece == Handpiece::turbine || handpiece == Handpiece::electric;
+}
+
 void draw_tool(MillingSetup& requested_setup, bool& sound, bool& changed) {
   if (!ui::header("Tool", true)) return;
   changed = settle_field("burr-radius", requested_setup, 0.5f, 4.0f, 1) || changed;
   changed = settle_field("shaft-radius", requested_setup, 0.3f, 3.0f, 1) || changed;
-  changed = settle_field("spindle-speed", requested_setup, 5000, 120000, 0) || changed;
+  const float max_rpm = is_dental(requested_setup.handpiece) ? 400000.0f : 120000.0f;
+  changed = settle_field("spindle-speed", requested_setup, 5000, max_rpm, 0) || changed;
   changed = ui::checkbox("vibration", &requested_setup.vibration.on) || changed;
   ui::tooltip("You feel the burr's teeth in the hand");
   ImGui::SameLine();
@@ -96,6 +116,20 @@ void draw_tool(MillingSetup& requested_setup, bool& sound, bool& changed) {
   ui::tooltip("Cutting pulls the burr sideways, as it turns, and twists the handle");
   ImGui::SameLine();
   ui::checkbox("sound", &sound);
+}
+
+void draw_drive(MillingSetup& requested_setup, bool& changed) {
+  if (!ui::header("Burr and drive", false)) return;
+  changed = choose_field("handpiece", requested_setup) || changed;
+  ImGui::Separator();
+  changed = choose_field("law", requested_setup) || changed;
+  ImGui::Separator();
+  ImGui::BeginDisabled(requested_setup.law != CuttingLaw::chips);
+  changed = choose_field("burr", requested_setup) || changed;
+  changed = settle_field("wear", requested_setup, 0, 100, 0) || changed;
+  ImGui::EndDisabled();
+  changed = ui::checkbox("drag", &requested_setup.drag) || changed;
+  ui::tooltip(field_of_option(fields_of<MillingSetup>(), "drag")->doc);
 }
 
 void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
@@ -253,6 +287,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   draw_session(view, simulation.milling, simulation.tool_source.is_pointer());
   draw_algorithm(view.requested_setup, changed);
   draw_tool(view.requested_setup, view.sound, changed);
+  draw_drive(view.requested_setup, changed);
   draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);
   draw_cuts(view, simulation);
   files.draw(view, simulation);

@@ -24,12 +24,11 @@ constexpr float kValues_px = 96;
 constexpr float kCalibrate_px = 112;
 
 // The greatest of each stretch of ticks: peaks must not fall between two points.
-std::vector<float> downsampled(const std::deque<TickRecord>& history,
+std::vector<float> downsampled(const std::deque<TickRecord>& history, std::size_t ticks,
                                double (*magnitude)(const TickRecord&)) {
   std::vector<float> points(kPlotPoints, 0.0f);
-  constexpr std::size_t kTicks = 5000;
   for (std::size_t n = 0; n < history.size(); ++n) {
-    const std::size_t place = (kTicks - history.size() + n) * kPlotPoints / kTicks;
+    const std::size_t place = (ticks - history.size() + n) * kPlotPoints / ticks;
     points[place] = std::max(points[place], static_cast<float>(magnitude(history[n])));
   }
   return points;
@@ -43,9 +42,10 @@ void row(const char* name, const std::string& value,
 }
 
 // Plots the last 5 s from 0 to a round number, which stands at the top.
-void plot(const char* name, const char* unit, const std::deque<TickRecord>& history,
+void plot(const char* name, const char* unit, const Simulation& simulation,
           double (*magnitude)(const TickRecord&), double min_scale, const ImVec4& colour, float height_px) {
-  const std::vector<float> points = downsampled(history, magnitude);
+  const std::deque<TickRecord>& history = simulation.history;
+  const std::vector<float> points = downsampled(history, simulation.max_history(), magnitude);
   const double max = static_cast<double>(*std::max_element(points.begin(), points.end()));
   const double scale = round_up(std::max(max, min_scale));
   const double now = history.empty() ? 0 : magnitude(history.back());
@@ -213,14 +213,13 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
   ui::tooltip("The spindle's speed, and the one that it is set to");
   if (simulation.tool_source.hardware != nullptr) draw_device(view, *simulation.tool_source.hardware);
   ImGui::Separator();
-  const auto& history = simulation.history;
   // Lower in a low window, where the text needs the room.
   const float height_px = std::min(ui::px(56), 0.07f * static_cast<float>(size.height));
   plot(
-      "force", "N", history, [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1,
+      "force", "N", simulation, [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1,
       {0.30f, 0.85f, 0.40f, 1}, height_px);
   plot(
-      "torque", "N mm", history, [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); }, 5,
+      "torque", "N mm", simulation, [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); }, 5,
       {0.98f, 0.76f, 0.25f, 1}, height_px);
   if (const std::string& refused = simulation.milling.refused_real_time(); !refused.empty())
     ui::warning(refused);

@@ -1,5 +1,6 @@
 #include "app/simulate/simulation.h"
 
+#include <cmath>
 #include <iterator>
 #include <thread>
 #include <utility>
@@ -16,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kHistory = 5000;
+constexpr double kHistory_s = 5;
 
 HandleSettings handle_settings(const MillingSetup& setup) {
   HandleSettings handle;
@@ -88,12 +89,16 @@ RunDescription Simulation::describe() const {
   return run;
 }
 
+std::size_t Simulation::max_history() const {
+  return static_cast<std::size_t>(std::lround(kHistory_s / milling.setup().tick_s));
+}
+
 void Simulation::update() {
   while (const auto record = milling.next_record()) {
     history.push_back(*record);
     if (const auto touched = label_count.add(*record)) warn(no_go_text = *touched);
   }
-  while (history.size() > kHistory) history.pop_front();
+  while (history.size() > max_history()) history.pop_front();
   milling.update();
   autosave.update(milling);
   count_labels();

@@ -71,6 +71,8 @@ struct Simulation {
   /// Calls LiveMilling::update, and updates the ticks' history, the counts and the autosave. Call once for
   /// each picture.
   void update();
+  /// Returns how many ticks the history has once it is full.
+  std::size_t max_history() const;
   /// Returns what a recording that is begun now says about it.
   RunDescription describe() const;
 

@@ -22,6 +22,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/recent_rate.h"
 #include "osteomill/base/work_progress.h"
+#include "osteomill/live/spindle_state.h"
 #include "osteomill/openigtlink/bone_sender.h"
 #include "osteomill/visual/annotations.h"
 #include "osteomill/visual/image.h"
@@ -470,11 +471,8 @@ class Simulator {
   double pictures_per_s() { return pictures_.per_s(seconds_since({})); }
 
   void set_sound() {
-    const TickRecord& record = simulation_->milling.state().record;
-    const MillingSetup& setup = simulation_->milling.setup();
-    const bool is_abrasive = setup.law == CuttingLaw::chips && setup.burr == BurrEdge::diamond;
-    heard_ = {view_.sound ? std::max(record.spindle_rpm, 0.0) : 0, sound_load(record.cutting_power_W),
-              std::max(record.cut_density, 0.0), is_abrasive};
+    heard_ = spindle_state(simulation_->milling.state().record, simulation_->milling.setup());
+    if (!view_.sound) heard_.speed_rpm = 0;
     sound_.set(heard_);
   }
 
@@ -580,6 +578,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   add_algorithm_option(*command, options->milling.setup.algorithm);
   add_milling_options(*command, options->milling);
   add_device_option(*command, options->device);
+  add_rate_option(*command, options->milling.setup.tick_s);
   add_send_options(*command, options->send);
   command->option_defaults()->group("The window");
   command->add_option("--out", options->folder, "Folder for recordings and saved files")

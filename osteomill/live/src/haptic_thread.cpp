@@ -17,8 +17,8 @@ using namespace std::chrono_literals;
 
 // However late a tick comes, no more time than this is simulated in it.
 constexpr double kMaxTick_s = 0.02;
-// Records that wait for the commanding thread: 4 s.
-constexpr std::size_t kMaxRecords = 4096;
+// Records that wait for the commanding thread: 4 s at 4 kHz.
+constexpr std::size_t kMaxRecords = 16384;
 
 }  // namespace
 
@@ -27,7 +27,8 @@ HapticThread::HapticThread(std::unique_ptr<MillingSession> session, Device& devi
       device_(device),
       driven_(device),
       session_(std::move(session)),
-      records_(std::make_unique<SpscQueue<TickRecord>>(kMaxRecords)) {}
+      records_(std::make_unique<SpscQueue<TickRecord>>(kMaxRecords)),
+      timing_(1e6 * session_->setup().tick_s) {}
 
 HapticThread::~HapticThread() = default;
 

@@ -53,6 +53,16 @@ TEST(LiveTiming, ALoopThatCannotKeepUpShowsItsTrueRate) {
   EXPECT_EQ(found.missed_ticks, 500u);
 }
 
+TEST(LiveTiming, AQuickLoopIsNotTakenForOneOf1000Hz) {
+  LiveTiming timing(250);
+  for (int n = 0; n <= 400; ++n) {
+    const Nanoseconds deadline_ns = n * 250 * kUs;
+    timing.add({deadline_ns, deadline_ns, deadline_ns + 80 * kUs, 1}, {});
+  }
+  EXPECT_NEAR(timing.summary().rate_hz, 4000, 1e-9);
+  EXPECT_NEAR(timing.summary().ticks_per_s, 4000, 1e-9);
+}
+
 TEST(LiveTiming, NoTickIsNoRate) {
   EXPECT_EQ(LiveTiming().summary().rate_hz, 0);
   EXPECT_EQ(LiveTiming().summary().ticks, 0u);

@@ -1,8 +1,5 @@
 #define AL_ALEXT_PROTOTYPES
-#include <array>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 #include <vector>
 
 #include <AL/al.h>
@@ -12,22 +9,17 @@
 
 #include "osteomill/visual/spindle_sound.h"
 
+#include "tests/sound_brightness.h"
+
 namespace osteomill {
 namespace {
 
-constexpr int kRate_hz = SoundStream::kSampleRate_hz;
+using testing_support::brightness;
+using testing_support::strength;
+using testing_support::TwoKinds;
 
-// The strength of one frequency in the last quarter of a second, by a plain Fourier sum.
-double strength(const std::vector<float>& sound, double frequency_hz) {
-  double cosine = 0;
-  double sine = 0;
-  for (std::size_t n = sound.size() - kRate_hz / 4; n < sound.size(); ++n) {
-    const double angle = 2 * std::numbers::pi * frequency_hz * static_cast<double>(n) / kRate_hz;
-    cosine += static_cast<double>(sound[n]) * std::cos(angle);
-    sine += static_cast<double>(sound[n]) * std::sin(angle);
-  }
-  return std::hypot(cosine, sine);
-}
+constexpr int kRate_hz = SoundStream::kSampleRate_hz;
+static_assert(kRate_hz == testing_support::kSoundRate_hz);
 
 double strongest_hz(const std::vector<float>& sound) {
   double found_hz = 0;
@@ -73,24 +65,10 @@ TEST(SpindleSound, UnderLoadItIsLouderAndASaggingSpindleSoundsLower) {
   EXPECT_LT(sound_load(2), sound_load(20));
 }
 
-// The power in a band about 4 kHz against that of the tone, in the last quarter of a second.
-double brightness(const std::vector<float>& sound, double tone_hz) {
-  double band = 0;
-  for (double frequency_hz = 3600; frequency_hz <= 4400; frequency_hz += 16)
-    band += std::pow(strength(sound, frequency_hz), 2);
-  double tone = 0;
-  for (double off_hz = -8; off_hz <= 8; off_hz += 4) tone += std::pow(strength(sound, tone_hz + off_hz), 2);
-  return std::log(band / tone);
-}
-
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 // Returns the share of runs that a threshold between two kinds of sounds, learnt from other runs, tells.
 double told_apart(const SpindleState& a, const SpindleState& b) {
   constexpr int kRuns = 16;
-  std::array<std::vector<double>, 2> learnt, tried;
+  TwoKinds learnt, tried;
   const auto varied = [](int run, int factor) { return (run * factor) % kRuns / static_cast<double>(kRuns); };
   for (int run = 0; run < kRuns; ++run) {
     for (const std::size_t kind : {0u, 1u}) {
@@ -102,11 +80,7 @@ double told_apart(const SpindleState& a, const SpindleState& b) {
       (run % 2 == 0 ? learnt : tried)[kind].push_back(brightness(sound, SpindleSound::pitch_hz(state)));
     }
   }
-  const double low = mean_of(learnt[0]), high = mean_of(learnt[1]), middle = 0.5 * (low + high);
-  double told = 0;
-  for (const double value : tried[0]) told += (value < middle) == (low < high) ? 1 : 0;
-  for (const double value : tried[1]) told += (value > middle) == (low < high) ? 1 : 0;
-  return told / kRuns;
+  return testing_support::told_apart(learnt, tried);
 }
 
 TEST(SpindleSound, TellsEnamelFromDentineAndThroughFromNotYet) {

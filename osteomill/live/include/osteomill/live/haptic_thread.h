@@ -33,9 +33,10 @@ struct LiveState {
   std::optional<Vec3> intersection_W = {};
 };
 
-/// The thread that ticks a milling session at 1 kHz in real time, with real-time scheduling if the system
-/// allows it. Nothing that other threads do makes a tick wait. LiveMilling is what most programs want: it
-/// runs one of these and adds undo, recordings and changes of algorithm, tool and bone.
+/// The thread that ticks a milling session in real time, at the rate of its setup (1 kHz), with real-time
+/// scheduling if the system allows it. Nothing that other threads do makes a tick wait. LiveMilling is what
+/// most programs want: it runs one of these and adds undo, recordings and changes of algorithm, tool and
+/// bone.
 ///
 /// One other thread commands and reads the state (the window's). Commands take effect between two ticks and
 /// return when they have, a tick or two later. On stopping, however it comes about, the device is sent a
@@ -78,7 +79,7 @@ class HapticThread {
 
   /// Returns the state after the last tick.
   const LiveState& state() { return state_.read(); }
-  /// Returns every tick's record in turn. The queue holds 4 s; records that find it full are lost.
+  /// Returns every tick's record in turn. The queue holds 4 s at 4 kHz; records that find it full are lost.
   std::optional<TickRecord> next_record();
   /// Returns how well the session keeps its time. From any thread.
   TimingSummary timing() const { return timing_.summary(); }

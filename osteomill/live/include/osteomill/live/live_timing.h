@@ -103,6 +103,8 @@ struct TimingSummary {
 /// Counts ticks' times. One thread adds, safely in the haptic tick; any thread reads meanwhile.
 class LiveTiming {
  public:
+  explicit LiveTiming(double period_us = 1000) : sustained_(period_us) {}
+
   void add(const TickTimes& times, const TickRecord& record) noexcept;
   TimingSummary summary() const;
 
