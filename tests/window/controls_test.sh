@@ -170,6 +170,17 @@ drag spindle speed 30 ;; settle ;; state rpm
 click vibration ;; settle ;; state no-vibration
 click burr pulls ;; settle ;; state no-pull
 click Milling ;; click Algorithm ;; click Tool
+click Burr and drive ;; state drives
+click turbine ;; settle ;; state turbine
+click electric ;; settle ;; state electric
+click surgical ;; settle ;; state surgical
+click diamond ;; settle ;; state diamond ;; click cutting ;; settle ;; state cutting
+drag wear 40 ;; settle ;; state worn
+click drag ;; settle ;; state no-drag
+screenshot controls-6-drive.png
+click constant-energy ;; settle ;; state constant ;; click chips ;; settle ;; state chips
+click none ;; settle ;; state no-drive
+click Burr and drive
 drag isovalue 20 ;; settle ;; wait 0.2 ;; state isovalue
 press control ;; click isovalue ;; release control ;; type 500 ;; key enter ;; settle ;; wait 0.2 ;; state typed
 screenshot controls-4-bone.png
@@ -194,6 +205,14 @@ for algorithm in line-proxy surface-points point-shell; do
 done
 changed point-shell-stiffness burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
 is rpm vibration true; is no-vibration vibration false
+hides no-pull turbine; shows drives turbine
+# The speed is not the usual one of a drive any more, so a drive keeps it.
+is drives handpiece 0; is turbine handpiece 1; is electric handpiece 2; is surgical handpiece 3; is no-drive handpiece 0
+same rpm turbine rpm
+is drives burr 0; is diamond burr 1; is cutting burr 0
+is cutting wear 0; more cutting worn wear
+is worn drag 1; is no-drag drag 0
+is no-drag law 1; is constant law 0; is chips law 1
 is no-vibration cutting_reaction true; is no-pull cutting_reaction false
 more no-vibration isovalue isovalue; is typed isovalue 500
 value no-vibration isovalue_from | grep -q "^suggested: " || fault "nobody is told that the isovalue was suggested"

@@ -16,10 +16,15 @@ fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 "$here/ball.sh" >ball.nrrd
 
 # The script of the window stands still at each `await` until the display's events have been sent.
-moments=(taps paused chord tapped-thrice clicked flicked dragged wheeled brought)
+moments=(taps paused chord tapped-thrice clicked flicked dragged wheeled brought turbine diamond worn)
 {
   printf '%s\n' "wait 0.3" "state start"
-  for moment in "${moments[@]}"; do printf '%s\n' "say $moment" "await $moment" "state $moment"; done
+  for moment in "${moments[@]}"; do
+    [ $moment != turbine ] || printf '%s\n' "click Algorithm" "click Bone" "click Burr and drive" "wait 0.5" "state opened"
+    printf '%s\n' "say $moment" "await $moment"
+    case $moment in turbine | diamond | worn) printf '%s\n' settle "wait 0.5" ;; esac
+    echo "state $moment"
+  done
   echo close
 } >actions
 cat >hands <<'END'
@@ -46,9 +51,15 @@ send flicked mousemove --window "$window" 640 700 sleep 0.3 mousemove --window "
 send dragged mousemove --window "$window" 640 700 mousedown 1 sleep 0.7 mousemove --window "$window" 670 710 sleep 0.7 mousemove --window "$window" 700 720 sleep 0.7 mouseup 1
 send wheeled click 4 click 4
 send brought mousemove --window "$window" 640 400 key --delay 0 b
+# The place of a control at a moment, on the window.
+place() { sed -n "s/^$1\.place of $2=//p" said; }
+until grep -q "^opened\.place of wear=" said || ! kill -0 "$program"; do sleep 0.05; done
+send turbine mousemove --window "$window" $(place opened turbine) sleep 0.3 click 1
+send diamond mousemove --window "$window" $(place opened diamond) sleep 0.3 click 1
+send worn mousemove --window "$window" $(place opened wear) sleep 0.3 mousedown 1 sleep 0.5 mouseup 1 sleep 0.3 key --delay 0 space
 wait "$program"
 END
-xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash hands "$osteomill" || fail "exit code $?"
+xvfb-run -a -s "-screen 0 1280x800x24" timeout 200 bash hands "$osteomill" || fail "exit code $?"
 
 value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
@@ -62,3 +73,9 @@ is flicked towards_viewer "$(value clicked towards_viewer)"
 [ "$(value clicked distance_mm)" = "$(value dragged distance_mm)" ] || fail "a drag of the left button zooms"
 [ "$(value dragged distance_mm)" != "$(value wheeled distance_mm)" ] || fail "the wheel does not zoom"
 [ "$(value wheeled tool_px)" != "640 400" ] && is brought tool_px "640 400"
+# A drive brings its own speed, and its true one runs up to that.
+is opened handpiece 0; is turbine handpiece 1; is turbine rpm 400000
+is turbine burr 0; is diamond burr 1; is diamond wear 0
+[ "$(value worn wear)" != 0 ] || fail "a click on the slider does not wear the burr"
+awk -v rpm="$(value worn true_rpm)" 'BEGIN { exit !(rpm > 0.95 * 400000 && rpm <= 400000) }' ||
+  fail "the turbine runs at $(value worn true_rpm) rpm"

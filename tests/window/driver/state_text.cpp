@@ -53,6 +53,8 @@ void add_setup(Lines& lines, const MillingSetup& setup) {
   lines.add("burr_mm", fmt::format("{:.2f}", setup.tool.burr_radius_mm));
   lines.add("shaft_mm", fmt::format("{:.2f}", setup.tool.shaft_radius_mm));
   lines.add("rpm", fmt::format("{:.0f}", setup.cutting.spindle_speed_rpm));
+  for (const char* option : {"handpiece", "law", "burr", "wear", "drag"})
+    lines.add(option, field_of_option(fields_of<MillingSetup>(), option)->get(setup));
   lines.add("vibration", setup.vibration.on);
   lines.add("cutting_reaction", setup.cutting_reaction);
 }
@@ -102,6 +104,7 @@ std::string state_text(const std::string& name, const WindowContents& window) {
   lines.add("in_hand", view.holding_tool);
   lines.add("spindle", state.spindle_on);
   lines.add("paused", state.record.paused);
+  lines.add("true_rpm", fmt::format("{:.0f}", state.record.spindle_rpm));
   lines.add("heard_rpm", fmt::format("{:.0f}", window.sound.speed_rpm));
   lines.add("isovalue", fmt::format("{:.6g}", milling.isovalue()));
   lines.add("isovalue_from", isovalue_text(simulation));
