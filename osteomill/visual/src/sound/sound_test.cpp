@@ -7,6 +7,7 @@
 #include <AL/alext.h>
 #include <gtest/gtest.h>
 
+#include "osteomill/visual/distance_beat.h"
 #include "osteomill/visual/spindle_sound.h"
 
 #include "tests/sound_brightness.h"
@@ -102,6 +103,32 @@ TEST(SpindleSound, OffIsSilentAndNothingClips) {
 
 TEST(SpindleSound, DoesNotDependOnHowItIsCutIntoPieces) {
   EXPECT_EQ(computed({30000, 0.4}, 500), computed({30000, 0.4}, 77));
+}
+
+// Returns the times at which the beat begins in some seconds.
+std::vector<double> beats_of(const BeatState& state, int seconds) {
+  std::vector<float> samples(static_cast<std::size_t>(seconds * kRate_hz));
+  DistanceBeat(kRate_hz).add_to(state, samples);
+  std::vector<double> begins_s;
+  double silent_s = 1;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const bool sounds = std::abs(samples[n]) > 0.05f;
+    if (sounds && silent_s > 0.015) begins_s.push_back(static_cast<double>(n) / kRate_hz);
+    silent_s = sounds ? 0 : silent_s + 1.0 / kRate_hz;
+  }
+  return begins_s;
+}
+
+TEST(DistanceBeat, QuickensBelowTheWarningAndHasAPitchForEachStructure) {
+  EXPECT_EQ(beats_of(distance_beat(3.1, 3, 0), 2).size(), 0u);
+  EXPECT_EQ(beats_of(distance_beat(std::nan(""), 3, 0), 2).size(), 0u);
+  const auto slow = beats_of(distance_beat(2.99, 3, 0), 4), quick = beats_of(distance_beat(0.3, 3, 0), 4);
+  EXPECT_NEAR(static_cast<double>(slow.size()), 4, 1);
+  EXPECT_GT(quick.size(), 30u);
+  EXPECT_LT(slow.front(), 0.02) << "a warning does not wait";
+  // Touching is one long tone.
+  EXPECT_EQ(beats_of(distance_beat(-0.1, 3, 0), 2).size(), 1u);
+  EXPECT_GT(distance_beat(1, 3, 1).pitch_hz, 1.2 * distance_beat(1, 3, 0).pitch_hz);
 }
 
 // Returns the samples that OpenAL would send to a sound device.

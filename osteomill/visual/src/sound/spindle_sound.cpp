@@ -124,8 +124,9 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
   }
 }
 
-void SoundStream::fill(unsigned buffer, const SpindleState& state) {
+void SoundStream::fill(unsigned buffer, const SpindleState& state, const BeatState& beat) {
   sound_.render(state, samples_);
+  beat_.add_to(beat, samples_);
   alBufferData(buffer, AL_FORMAT_MONO_FLOAT32, samples_.data(), static_cast<ALsizei>(sizeof(samples_)),
                kSampleRate_hz);
   alSourceQueueBuffers(source_, 1, &buffer);
@@ -134,7 +135,7 @@ void SoundStream::fill(unsigned buffer, const SpindleState& state) {
 SoundStream::SoundStream() {
   alGenSources(1, &source_);
   alGenBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
-  for (const unsigned buffer : buffers_) fill(buffer, {});
+  for (const unsigned buffer : buffers_) fill(buffer, {}, {});
   alSourcePlay(source_);
 }
 
@@ -144,13 +145,13 @@ SoundStream::~SoundStream() {
   alDeleteBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
 }
 
-void SoundStream::feed(const SpindleState& state) {
+void SoundStream::feed(const SpindleState& state, const BeatState& beat) {
   ALint played = 0;
   alGetSourcei(source_, AL_BUFFERS_PROCESSED, &played);
   for (; played > 0; --played) {
     ALuint buffer = 0;
     alSourceUnqueueBuffers(source_, 1, &buffer);
-    fill(buffer, state);
+    fill(buffer, state, beat);
   }
   // It stops by itself if it ran dry.
   ALint doing = AL_PLAYING;
@@ -163,6 +164,8 @@ struct SoundPlayer::Impl {
   std::atomic<double> load{0};
   std::atomic<double> density{1};
   std::atomic<bool> is_abrasive{false};
+  std::atomic<double> beats_per_s{0};
+  std::atomic<double> beat_hz{0};
   ALCdevice* device = nullptr;
   ALCcontext* context = nullptr;
   std::jthread thread;
@@ -171,8 +174,9 @@ struct SoundPlayer::Impl {
     SoundStream stream;
     while (!stop.stop_requested()) {
       constexpr auto kRelaxed = std::memory_order_relaxed;
-      stream.feed({speed_rpm.load(kRelaxed), load.load(kRelaxed), density.load(kRelaxed),
-                   is_abrasive.load(kRelaxed)});
+      stream.feed(
+          {speed_rpm.load(kRelaxed), load.load(kRelaxed), density.load(kRelaxed), is_abrasive.load(kRelaxed)},
+          {beats_per_s.load(kRelaxed), beat_hz.load(kRelaxed)});
       std::this_thread::sleep_for(8ms);
     }
   }
@@ -196,11 +200,13 @@ SoundPlayer::~SoundPlayer() {
   if (impl_->device != nullptr) alcCloseDevice(impl_->device);
 }
 
-void SoundPlayer::set(const SpindleState& state) {
+void SoundPlayer::set(const SpindleState& state, const BeatState& beat) {
   impl_->speed_rpm.store(state.speed_rpm, std::memory_order_relaxed);
   impl_->load.store(state.load, std::memory_order_relaxed);
   impl_->density.store(state.density, std::memory_order_relaxed);
   impl_->is_abrasive.store(state.is_abrasive, std::memory_order_relaxed);
+  impl_->beats_per_s.store(beat.beats_per_s, std::memory_order_relaxed);
+  impl_->beat_hz.store(beat.pitch_hz, std::memory_order_relaxed);
 }
 
 }  // namespace osteomill

@@ -6,6 +6,8 @@
 #include <memory>
 #include <span>
 
+#include "osteomill/visual/distance_beat.h"
+
 namespace osteomill {
 
 /// The state of a spindle, from which its sound follows.
@@ -54,7 +56,8 @@ class SpindleSound {
   std::array<double, 2> band_in_{}, band_out_{};
 };
 
-/// Queues a spindle's sound to the OpenAL context that is current, some 70 ms ahead. For one thread.
+/// Queues a spindle's sound, and the beat of a structure that is near, to the OpenAL context that is current,
+/// some 70 ms ahead. For one thread.
 class SoundStream {
  public:
   static constexpr int kSampleRate_hz = 44100;
@@ -65,14 +68,15 @@ class SoundStream {
   SoundStream& operator=(const SoundStream&) = delete;
 
   /// Fills the played buffers with the spindle's present sound. Call at least every 15 ms or so.
-  void feed(const SpindleState& state);
+  void feed(const SpindleState& state, const BeatState& beat = {});
 
  private:
   static constexpr std::size_t kSamples = 768;
 
-  void fill(unsigned buffer, const SpindleState& state);
+  void fill(unsigned buffer, const SpindleState& state, const BeatState& beat);
 
   SpindleSound sound_{kSampleRate_hz};
+  DistanceBeat beat_{kSampleRate_hz};
   // OpenAL's names.
   unsigned source_ = 0;
   std::array<unsigned, 4> buffers_{};
@@ -88,8 +92,8 @@ class SoundPlayer {
   SoundPlayer(const SoundPlayer&) = delete;
   SoundPlayer& operator=(const SoundPlayer&) = delete;
 
-  /// Sets the spindle's state. Call from one thread; never waits.
-  void set(const SpindleState& state);
+  /// Sets the spindle's state, and the beat. Call from one thread; never waits.
+  void set(const SpindleState& state, const BeatState& beat = {});
 
  private:
   struct Impl;

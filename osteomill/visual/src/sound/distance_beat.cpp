@@ -1,0 +1,46 @@
+#include "osteomill/visual/distance_beat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kSlowest_per_s = 1, kFastest_per_s = 10;
+// Beats at this rate run into each other.
+constexpr double kTouching_per_s = 1000;
+constexpr double kBeat_s = 0.06;
+constexpr double kLoudness = 0.18;
+constexpr double kLoudnessFollows_per_s = 250;
+
+}  // namespace
+
+BeatState distance_beat(double distance_mm, double warn_mm, std::size_t structure) {
+  // Whole tones of a chord, so that neighbours differ by a third or more.
+  constexpr double kPitches_hz[] = {660, 880, 1109, 1319, 1760};
+  BeatState beat{0, kPitches_hz[structure % std::size(kPitches_hz)]};
+  if (distance_mm <= 0) {
+    beat.beats_per_s = kTouching_per_s;
+  } else if (distance_mm < warn_mm) {
+    beat.beats_per_s = kFastest_per_s + (kSlowest_per_s - kFastest_per_s) * distance_mm / warn_mm;
+  }
+  return beat;
+}
+
+void DistanceBeat::add_to(const BeatState& state, std::span<float> samples) {
+  const double share = 1 - std::exp(-kLoudnessFollows_per_s / sample_rate_hz_);
+  for (float& sample : samples) {
+    // The first beat comes at once.
+    beat_ = state.beats_per_s > 0 ? beat_ + state.beats_per_s / sample_rate_hz_ : 0;
+    beat_ -= std::floor(beat_);
+    const bool sounds = state.beats_per_s > 0 && beat_ < kBeat_s * state.beats_per_s;
+    loudness_ += share * ((sounds ? kLoudness : 0.0) - loudness_);
+    turns_ += state.pitch_hz / sample_rate_hz_;
+    turns_ -= std::floor(turns_);
+    sample += static_cast<float>(loudness_ * std::sin(2 * std::numbers::pi * turns_));
+  }
+}
+
+}  // namespace osteomill
