@@ -71,11 +71,14 @@ std::string row_text(const MeasuredValue& row) {
 void run_debrief(const DebriefOptions& options) {
   const Recording recording = read_recording_chain(options.recording);
   const auto [bone, placed] = load_exercise(exercise_of(options, recording), {}, &recording);
-  const std::vector<MeasuredValue> rows = measure_attempt(make_attempt(placed, bone.volume, recording));
+  const Attempt attempt = make_attempt(placed, bone.volume, recording);
+  const std::vector<MeasuredValue> rows = measure_attempt(attempt);
   const std::filesystem::path folder = options.out;
   const OutputFolder held(folder);
-  write_folder_atomically(
-      folder, [&](const std::filesystem::path& beside) { write_measured(beside / "debrief.csv", rows); });
+  write_folder_atomically(folder, [&](const std::filesystem::path& beside) {
+    write_measured(beside / "debrief.csv", rows);
+    write_progress(beside / "progress.csv", attempt);
+  });
   fmt::print("{}\n", placed.exercise.title);
   for (const MeasuredValue& row : rows)
     if (!row.limit.empty()) fmt::print("{}\n", row_text(row));

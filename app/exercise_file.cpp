@@ -22,7 +22,8 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-const Keys kRegionKeys{"label", "box", "sphere", "cylinder", "shell", "recordings", "at_least"};
+const Keys kRegionKeys{"label",        "box",   "sphere",     "cylinder",
+                       "outside_cone", "shell", "recordings", "at_least"};
 
 Keys with_region(Keys keys) {
   keys.insert(keys.end(), kRegionKeys.begin(), kRegionKeys.end());
@@ -37,7 +38,7 @@ class ExerciseReader {
     const toml::table all = read_toml(file_);
     require_known(all, "an exercise",
                   {"title", "task", "scan", "iso", "labels", "label_table", "target", "keep", "no_go",
-                   "entry", "tools", "time_s", "step", "item"});
+                   "crown", "entry", "tools", "time_s", "step", "item"});
     Exercise exercise;
     exercise.file = file_;
     exercise.title = required_text(all, "an exercise", "title");
@@ -48,6 +49,8 @@ class ExerciseReader {
     exercise.label_table = text(all, "label_table");
     read_target_and_keep(all, exercise);
     for (const toml::table* one : tables(all, "no_go")) exercise.no_go.push_back(no_go(*one));
+    if (const toml::node* crown = all.get("crown"))
+      exercise.crown_axis_W = crown_axis(table(*crown, "crown"));
     if (const toml::node* entry = all.get("entry")) exercise.entry_W_mm = point(*entry, "entry");
     exercise.burr_radii_mm = burr_radii(all);
     exercise.time_s = number(all, "time_s", NumberRange::positive());
@@ -141,6 +144,15 @@ class ExerciseReader {
     if (cylinder.from_W == cylinder.to_W) refuse(table, "the cylinder's from and to are the same point");
     return cylinder;
   }
+  Shape outside_cone(const toml::table& table) const {
+    require_known(table, "an outside_cone", {"from", "to", "radius", "radius_to"});
+    OutsideConeShape cone{
+        required_point(table, "an outside_cone", "from"), required_point(table, "an outside_cone", "to"),
+        required_number(table, "an outside_cone", "radius", NumberRange::positive()),
+        required_number(table, "an outside_cone", "radius_to", NumberRange::not_negative())};
+    if (cone.from_W == cone.to_W) refuse(table, "the cone's from and to are the same point");
+    return cone;
+  }
   Shape shell(const toml::table& table) const {
     require_known(table, "a shell", {"of", "thickness"});
     if (text(table, "of") != "bone") refuse(table, "a shell needs of = \"bone\"");
@@ -167,9 +179,10 @@ class ExerciseReader {
     if (std::string label = text(table, "label"); !label.empty())
       region.shapes.push_back(LabelShape{std::move(label)});
     using Make = Shape (ExerciseReader::*)(const toml::table&) const;
-    const std::array<std::pair<const char*, Make>, 4> shapes{{{"box", &ExerciseReader::box},
+    const std::array<std::pair<const char*, Make>, 5> shapes{{{"box", &ExerciseReader::box},
                                                               {"sphere", &ExerciseReader::sphere},
                                                               {"cylinder", &ExerciseReader::cylinder},
+                                                              {"outside_cone", &ExerciseReader::outside_cone},
                                                               {"shell", &ExerciseReader::shell}}};
     for (const auto& [key, make] : shapes) {
       const toml::node* node = table.get(key);
@@ -185,7 +198,8 @@ class ExerciseReader {
   Region required_region(const toml::table& table, const char* what) const {
     Region found = region(table);
     if (found.shapes.empty())
-      refuse(table, fmt::format("{} needs a label, box, sphere, cylinder, shell or recordings", what));
+      refuse(table,
+             fmt::format("{} needs a label, box, sphere, cylinder, outside_cone, shell or recordings", what));
     return found;
   }
 
@@ -212,6 +226,13 @@ class ExerciseReader {
     return structure;
   }
 
+  Vec3 crown_axis(const toml::table& table) const {
+    require_known(table, "crown", {"axis"});
+    const Vec3 axis_W = required_point(table, "crown", "axis");
+    if (axis_W.isZero()) refuse(table, "the crown's axis has no direction");
+    return axis_W.normalized();
+  }
+
   std::vector<double> burr_radii(const toml::table& all) const {
     std::vector<double> radii_mm;
     const toml::node* node = all.get("tools");
@@ -231,8 +252,28 @@ class ExerciseReader {
     return step;
   }
 
+  // Returns the structure or step of an item; empty if it names none.
+  std::string part_of(const toml::table& table, const Measure& measure, const Exercise& exercise) const {
+    const Keys parts = parts_of(measure, exercise);
+    for (const auto& [key, each] :
+         {std::pair("structure", Measure::Each::structure), std::pair("step", Measure::Each::step)}) {
+      const toml::node* node = table.get(key);
+      if (node == nullptr) continue;
+      if (measure.each != each) refuse(*node, fmt::format("{} is not of a {}", measure.name, key));
+      const std::string part = each == Measure::Each::step
+                                   ? fmt::format("{:g}", number_in(*node, key, NumberRange::count(1)))
+                                   : text(table, key);
+      if (std::ranges::find(parts, part) == parts.end())
+        refuse(*node, fmt::format("there is no {} {}{}", each == Measure::Each::step ? "step" : "no_go", part,
+                                  did_you_mean(part, parts)));
+      return part;
+    }
+    return "";
+  }
+
   ExerciseItem item(const toml::table& table, const Exercise& exercise) const {
-    require_known(table, "an item", {"measure", "structure", "at_least", "at_most", "source", "weight"});
+    require_known(table, "an item",
+                  {"measure", "structure", "step", "at_least", "at_most", "source", "weight"});
     ExerciseItem item;
     item.line = static_cast<int>(table.source().begin.line);
     item.measure = required_text(table, "an item", "measure");
@@ -241,15 +282,7 @@ class ExerciseReader {
       refuse(*table.get("measure"), fmt::format("there is no measure {}{}", item.measure,
                                                 did_you_mean(item.measure, measure_names())));
     }
-    item.structure = text(table, "structure");
-    if (!item.structure.empty()) {
-      Keys names;
-      for (const NoGoStructure& one : exercise.no_go) names.push_back(one.name);
-      if (!measure->value_at) refuse(*table.get("structure"), item.measure + " is not of a structure");
-      if (std::ranges::find(names, item.structure) == names.end())
-        refuse(*table.get("structure"),
-               fmt::format("there is no no_go {}{}", item.structure, did_you_mean(item.structure, names)));
-    }
+    item.part = part_of(table, *measure, exercise);
     item.at_least = number(table, "at_least", NumberRange::finite());
     item.at_most = number(table, "at_most", NumberRange::finite());
     if (!item.at_least && !item.at_most)

@@ -90,7 +90,7 @@ TEST_F(ExerciseFile, HoldsWhatWasWritten) {
   ASSERT_EQ(exercise.items.size(), 2u);
   EXPECT_EQ(exercise.items[0].at_least, 95);
   EXPECT_FALSE(exercise.items[0].at_most);
-  EXPECT_EQ(exercise.items[1].structure, "nerve");
+  EXPECT_EQ(exercise.items[1].part, "nerve");
   EXPECT_EQ(exercise.items[1].weight, 2);
 }
 

@@ -58,6 +58,7 @@ LoadedExercise load_exercise(const std::string& file, const ScanOptions& options
   LoadedBone bone = load_bone(scan);
   if (recording != nullptr) require_made_with(*recording, bone.volume);
   PlacedExercise placed = place_exercise(exercise, bone.volume);
+  bone.volume.set_no_go(placed.distances);
   for (const NoGoStructure& structure : exercise.no_go) {
     const auto* label = std::get_if<LabelShape>(&structure.region.shapes.front());
     if (label != nullptr && structure.region.shapes.size() == 1) scan.labels.no_go.push_back(label->label);
@@ -65,6 +66,15 @@ LoadedExercise load_exercise(const std::string& file, const ScanOptions& options
   if (!scan.labels.no_go.empty() && !scan.labels.map.empty())
     bone.volume.set_labels(read_labels(scan.labels, bone.volume.geometry(), scan.read.max_memory_bytes).map);
   return {std::move(bone), std::move(placed)};
+}
+
+BoneToMill load_bone_to_mill(const ExerciseOptions& exercise, const ScanOptions& options,
+                             const MillingTool& tool) {
+  if (!exercise.given()) return {load_bone(options), options, {}, {}};
+  LoadedExercise loaded = load_exercise(exercise.file, options);
+  const Exercise& task = loaded.placed.exercise;
+  require_allowed_burr(task, tool.burr_radius_mm);
+  return {std::move(loaded.bone), scan_of(task, options), to_be_recorded(task, exercise), task.entry_W_mm};
 }
 
 void require_allowed_burr(const Exercise& exercise, double burr_radius_mm) {
@@ -76,6 +86,21 @@ void require_allowed_burr(const Exercise& exercise, double burr_radius_mm) {
   throw InputError(exercise.file.string(),
                    fmt::format("its tools are burrs of {} mm radius, not {:g} mm; --burr-radius sets one",
                                fmt::join(radii_mm, ", "), burr_radius_mm));
+}
+
+MillingTool with_burr(MillingTool tool, double burr_radius_mm) {
+  constexpr double kShaft_share = 0.6;
+  tool.burr_radius_mm = burr_radius_mm;
+  tool.shaft_radius_mm = std::min(MillingTool{}.shaft_radius_mm, kShaft_share * burr_radius_mm);
+  return tool;
+}
+
+MillingTool allowed_tool(const Exercise& exercise, const MillingTool& tool) {
+  const std::vector<double>& radii_mm = exercise.burr_radii_mm;
+  if (radii_mm.empty()) return tool;
+  const double nearest_mm = *std::ranges::min_element(
+      radii_mm, {}, [&](double one) { return std::abs(one - tool.burr_radius_mm); });
+  return nearest_mm == tool.burr_radius_mm ? tool : with_burr(tool, nearest_mm);
 }
 
 RecordedExercise to_be_recorded(const Exercise& exercise, const ExerciseOptions& options) {

@@ -22,6 +22,7 @@
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/device_option.h"
+#include "app/exercise_options.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
@@ -35,6 +36,7 @@ constexpr double kUpdatePeriod_s = 0.02;
 
 struct LiveOptions {
   ScanOptions scan;
+  ExerciseOptions exercise;
   TrialOptions trial;
   double seconds = 60;
   std::string record;
@@ -183,7 +185,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
   script.milling_s = script.holding_s = 0.5 * options.seconds;
   LiveToolSource tool_source(options.device);
   MillingSetup setup = options.trial.milling.setup;
-  LoadedBone loaded = load_bone(options.scan);
+  auto [loaded, scan, exercise, entry_W_mm] = load_bone_to_mill(options.exercise, options.scan, setup.tool);
+  if (!options.trial.entry_W_mm) options.trial.entry_W_mm = entry_W_mm;
   warn_of_settings(setup, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const std::shared_ptr<const LabelMap> labels = bone->labels();
@@ -196,10 +199,11 @@ void run_live(LiveOptions options, const std::string& command_line) {
   const std::unique_ptr<BoneSender> sender = send_bone(milling.follower(), options.send);
   std::optional<EntryPictures> pictures;
   if (!options.record.empty()) {
-    pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
+    pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !is_builtin(scan.scan));
     RunDescription run = milling.describe(loaded.name, command_line);
-    std::ranges::move(scan_settings(options.scan), std::back_inserter(run.settings));
+    std::ranges::move(scan_settings(scan), std::back_inserter(run.settings));
     tool_source.describe(run);
+    if (exercise) put_exercise(run, *exercise);
     const auto picture = [&](std::string_view name) {
       std::optional<std::vector<unsigned char>> png;
       milling.follower().read(
@@ -237,6 +241,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
       "Run one algorithm in real time with a device or the simulated hand, and print how well it keeps time");
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
+  add_exercise_options(*command, options->exercise);
   add_algorithm_option(*command, options->trial.milling.setup.algorithm);
   add_trial_options(*command, options->trial);
   command->remove_option(command->get_option("--seconds"));

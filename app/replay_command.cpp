@@ -97,14 +97,8 @@ void end_recorder(std::optional<Recorder>& recorder, const std::string& path) {
 
 void replay_trajectory(ReplayOptions options, const std::string& command_line) {
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.input);
-  std::optional<RecordedExercise> exercise;
-  LoadedBone bone = [&] {
-    if (!options.exercise.given()) return load_bone(options.scan);
-    LoadedExercise loaded = load_exercise(options.exercise.file, options.scan);
-    require_allowed_burr(loaded.placed.exercise, options.milling.setup.tool.burr_radius_mm);
-    exercise = to_be_recorded(loaded.placed.exercise, options.exercise);
-    return std::move(loaded.bone);
-  }();
+  auto [bone, scan, exercise, entry_W_mm] =
+      load_bone_to_mill(options.exercise, options.scan, options.milling.setup.tool);
   warn_of_settings(options.milling.setup, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   const std::uint64_t scan_hash = options.record.empty() ? 0 : fingerprint_of(bone.volume.grid());
@@ -116,7 +110,7 @@ void replay_trajectory(ReplayOptions options, const std::string& command_line) {
   if (!options.record.empty()) {
     RunDescription run = describe_run(session.volume(), {bone.name, scan_hash}, {setup, densities},
                                       session.algorithm().sample_point_count(), command_line);
-    std::ranges::move(scan_settings(options.scan), std::back_inserter(run.settings));
+    std::ranges::move(scan_settings(scan), std::back_inserter(run.settings));
     if (exercise) put_exercise(run, *exercise);
     begin_recorder(recorder, options.record, run, Recorder::FirstSession::begins_at_once);
   }

@@ -1,5 +1,6 @@
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -52,6 +53,13 @@ std::shared_ptr<const LabelMap> labels_of(const GridGeometry& grid) {
   return std::make_shared<const LabelMap>(labels, grid, grid, places);
 }
 
+// A nerve of voxels, and a ball.
+NoGoDistances structures_in(const GridGeometry& grid) {
+  VoxelSet nerve(VoxelBox{{30, 0, 20}, {31, 63, 21}});
+  for_each(nerve.box(), [&](const VoxelIndex& v) { nerve.insert(v); });
+  return {StructureDistance(nerve, grid), StructureDistance(SphereShape{{0, 0, -4}, 1})};
+}
+
 // Comes down, mills, leans the shaft on the edge; also a jump across the bone, a pose that is not finite, and
 // a reset.
 TEST_P(TickAllocation, NoTickAllocates) {
@@ -59,6 +67,7 @@ TEST_P(TickAllocation, NoTickAllocates) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
                                                 testing_support::ball(Vec3::Zero(), kBallRadius_mm));
   volume.set_labels(labels_of(volume.geometry()));
+  volume.set_no_go(std::make_shared<NoGoDistances>(structures_in(volume.geometry())));
   const MillingTool tool;
   const BoneDensities densities = estimate_densities(volume);
   MillingSession session(std::make_shared<Volume>(std::move(volume)), densities,
@@ -67,6 +76,7 @@ TEST_P(TickAllocation, NoTickAllocates) {
   constexpr int kTicks = 3000;
   int touching = 0;
   double removed_mm3 = 0, labelled_mm3 = 0;
+  double nearest_mm = std::numeric_limits<double>::infinity();
   bool touched_no_go = false;
   const long before = allocations_of_this_thread();
   for (int n = 0; n < kTicks; ++n) {
@@ -79,6 +89,7 @@ TEST_P(TickAllocation, NoTickAllocates) {
     const TickRecord record = session.tick(device, {.time_s = n * 1e-3, .spindle_on = n < kTicks - 3});
     touching += record.contacts > 0 ? 1 : 0;
     removed_mm3 = record.removed_mm3;
+    nearest_mm = std::fmin(nearest_mm, record.no_go_distance_mm);
     for (const LabelCut& cut : record.label_cuts) {
       labelled_mm3 += cut.removed_mm3;
       touched_no_go = touched_no_go || cut.label == 6;
@@ -94,6 +105,7 @@ TEST_P(TickAllocation, NoTickAllocates) {
   EXPECT_GT(removed_mm3, 0.1);
   EXPECT_NEAR(labelled_mm3, removed_mm3, 1e-9);
   EXPECT_TRUE(touched_no_go);
+  EXPECT_LT(nearest_mm, 6);
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,

@@ -2,6 +2,8 @@
 """Writes the poses of a scripted session: the burr sweeps a box or an upright cylinder in layers from above.
     exercise_poses.py box XMIN YMIN ZMIN XMAX YMAX ZMAX BURR_RADIUS SPEED >poses.csv
     exercise_poses.py cylinder X Y ZMIN ZMAX RADIUS BURR_RADIUS SPEED >poses.csv
+    exercise_poses.py crown ZMIN ZFLAT ZMAX RADIUS RADIUS_TO OUTER BURR_RADIUS SPEED >poses.csv
+                         around a stump about (0, 0): RADIUS at ZMIN, RADIUS_TO at ZFLAT, bone out to OUTER
     exercise_poses.py plunge X Y ZFROM ZTO SPEED >poses.csv
 Lengths are in mm, the speed in mm/s, a pose each millisecond.
 """
@@ -13,6 +15,27 @@ corners = []
 if kind == "plunge":
     x, y, z_from, z_to, speed = numbers
     corners = [(x, y, z_from), (x, y, z_to)]
+elif kind == "crown":
+    bottom, flat, top, radius, radius_to, outer, burr, speed = numbers
+    # Layers down to the flat top, and from there down to the shoulder.
+    upper = math.ceil((top - flat) / (0.6 * burr))
+    lower = math.ceil((flat - bottom) / (0.5 * burr))
+    heights = [top + burr + (flat - top) * n / upper for n in range(1, upper + 1)]
+    heights += [flat + burr + (bottom - flat) * n / lower for n in range(1, lower + 1)]
+    for z in heights:
+        # The ball's middle beside the wall, or beside the edge of the top.
+        wall = radius + (radius_to - radius) * (z - bottom) / (flat - bottom)
+        inner = 0 if z >= flat + burr - 1e-9 else wall + burr * 1.0025
+        if flat <= z < flat + burr - 1e-9:
+            inner = radius_to + math.sqrt(burr ** 2 - (z - flat) ** 2)
+        rings = max(1, math.ceil((outer - inner) / (0.5 * burr)))
+        for ring in range(rings + 1):
+            r = outer + (inner - outer) * ring / rings
+            for step in range(65):
+                a = 2 * math.pi * step / 64
+                corners.append((r * math.cos(a), r * math.sin(a), z))
+    corners.insert(0, (*corners[0][:2], top + 3 * burr))
+    corners.append((corners[-1][0] + 2, *corners[-1][1:]))
 else:
     *shape, burr, speed = numbers
     if kind == "box":

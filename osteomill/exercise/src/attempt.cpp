@@ -1,13 +1,15 @@
 #include "osteomill/exercise/attempt.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "osteomill/exercise/nearest_voxels.h"
 #include "osteomill/exercise/region_voxels.h"
 #include "osteomill/recording/replay_recording.h"
+#include "osteomill/volume/nearest_voxels.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 
@@ -101,6 +103,68 @@ std::vector<double> thickness_over(const PlacedExercise& exercise, const VoxelSe
   return left_mm;
 }
 
+// Notes for every voxel when it ceased to be bone, to a tenth of a second.
+class RemovalTimes {
+ public:
+  explicit RemovalTimes(const Volume& scan) : scan_(scan) {}
+
+  void add(const Volume& bone, const VoxelBox& changed, double time_s) {
+    constexpr double kEvery_s = 0.1;
+    // A session may begin with bone that was put back.
+    if (changed == bone.geometry().all_voxels())
+      std::erase_if(times_s_, [&](const auto& one) { return bone.is_bone(voxel(one.first)); });
+    if (!changed.empty()) {
+      changed_.include(changed.first);
+      changed_.include(changed.last);
+    }
+    time_s_ = time_s;
+    if (time_s - looked_s_ >= kEvery_s) look(bone);
+  }
+  // Looks through what has changed since it last looked.
+  void look(const Volume& bone) {
+    for_each(std::exchange(changed_, {}), [&](const VoxelIndex& v) {
+      if (scan_.is_bone(v) && !bone.is_bone(v))
+        times_s_.emplace(row_major(bone.geometry().dims, v.i, v.j, v.k), static_cast<float>(time_s_));
+    });
+    looked_s_ = time_s_;
+  }
+  std::unordered_map<std::size_t, float> take() { return std::move(times_s_); }
+
+ private:
+  VoxelIndex voxel(std::size_t index) const {
+    const auto [i, j, k] = cell_at(scan_.geometry().dims, index);
+    return {i, j, k};
+  }
+
+  const Volume& scan_;
+  std::unordered_map<std::size_t, float> times_s_;
+  VoxelBox changed_;
+  double time_s_ = 0;
+  double looked_s_ = -std::numeric_limits<double>::infinity();
+};
+
+// Tells the ticks that cut whether their contact was seen. Each view is looked at once.
+class SeenContacts {
+ public:
+  explicit SeenContacts(const std::vector<ViewSample>& views) : views_(views) {}
+
+  void add(const Volume& bone, const TickRecord& record, AttemptTick& tick) {
+    constexpr double kMaxAge_s = 0.2;
+    for (; next_ < views_.size() && views_[next_].time_s <= tick.time_s; ++next_) is_hidden_.reset();
+    if (next_ == 0 || !tick.is_cutting() || tick.time_s - views_[next_ - 1].time_s > kMaxAge_s) return;
+    if (!is_hidden_) {
+      const Vec3 ahead_W = record.burr_force_W_N.stableNormalized();
+      is_hidden_ = is_hidden(views_[next_ - 1], bone, tick.burr_W + tick.burr_radius_mm * ahead_W);
+    }
+    tick.is_contact_hidden = is_hidden_;
+  }
+
+ private:
+  const std::vector<ViewSample>& views_;
+  std::size_t next_ = 0;
+  std::optional<bool> is_hidden_;
+};
+
 }  // namespace
 
 double Attempt::distance_mm(std::size_t tick) const {
@@ -149,19 +213,90 @@ std::vector<std::vector<double>> thickness_left_mm(const PlacedExercise& exercis
 
 Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const Recording& recording) {
   Volume after = scan;
-  repeat_milling(after, recording);
+  std::vector<AttemptTick> ticks = attempt_ticks(recording);
+  RemovalTimes times(scan);
+  SeenContacts seen(recording.views);
+  repeat_milling(after, recording, [&](std::size_t n, const Volume& bone, const VolumeChange& change) {
+    times.add(bone, change.voxels, ticks[n].time_s);
+    seen.add(bone, recording.records[n], ticks[n]);
+  });
+  times.look(after);
   VoxelSet removed = removed_voxels(scan, after);
-  Attempt attempt{&exercise, &scan, std::move(after), std::move(removed), attempt_ticks(recording), {}, {}};
+  Attempt attempt{&exercise, &scan, std::move(after), std::move(removed), std::move(ticks),
+                  {},        {},    times.take(),     recording.views};
   attempt.thickness_left_mm = thickness_left_mm(exercise, scan, attempt.after);
   attempt.distances_mm.reserve(attempt.ticks.size() * exercise.structures.size());
   for (const AttemptTick& tick : attempt.ticks) {
-    for (const PlacedStructure& structure : exercise.structures) {
-      attempt.distances_mm.push_back(tick.is_placed
-                                         ? structure.distance.from(tick.burr_W) - tick.burr_radius_mm
-                                         : std::numeric_limits<double>::quiet_NaN());
+    for (const StructureDistance& structure : *exercise.distances) {
+      attempt.distances_mm.push_back(tick.is_placed ? structure.from(tick.burr_W) - tick.burr_radius_mm
+                                                    : std::numeric_limits<double>::quiet_NaN());
     }
   }
   return attempt;
+}
+
+std::vector<AttemptProgress> progress_of(const Attempt& attempt) {
+  constexpr std::size_t kSteps = 200;
+  std::vector<AttemptProgress> way;
+  if (attempt.ticks.empty()) return way;
+  const PlacedExercise& exercise = *attempt.exercise;
+  const double begin_s = attempt.ticks.front().time_s, end_s = attempt.ticks.back().time_s;
+  std::array<std::size_t, kSteps + 1> target{}, outside{}, all{};
+  attempt.removed.for_each([&](const VoxelIndex& v) {
+    const double share =
+        end_s > begin_s ? (attempt.removed_at_s(v).value_or(begin_s) - begin_s) / (end_s - begin_s) : 1;
+    const auto step = static_cast<std::size_t>(std::ceil(std::clamp(share, 0.0, 1.0) * kSteps));
+    ++all[step];
+    if (exercise.target.contains(v)) ++target[step];
+    if (exercise.is_outside(v)) ++outside[step];
+  });
+  const auto whole = static_cast<double>(exercise.target.count());
+  double targets = 0, removed = 0, outsides = 0;
+  for (std::size_t step = 0; step <= kSteps; ++step) {
+    targets += static_cast<double>(target[step]);
+    removed += static_cast<double>(all[step]);
+    outsides += static_cast<double>(outside[step]);
+    way.push_back({begin_s + (end_s - begin_s) * static_cast<double>(step) / kSteps, 100 * targets / whole,
+                   outsides * exercise.scan.voxel_volume_mm3(), 200 * targets / (whole + removed)});
+  }
+  return way;
+}
+
+bool is_hidden(const ViewSample& view, const Volume& bone, const Vec3& contact_W) {
+  const Vec3 contact_C = view.X_WC.inverse() * contact_W;
+  const double up = std::tan(0.5 * view.field_of_view_rad);
+  const Vec3 seen = contact_C / -contact_C.z();
+  if (!(contact_C.z() < 0) || std::abs(seen.y()) > up || std::abs(seen.x()) > up * view.aspect) return true;
+  // The contact itself lies on bone.
+  const Vec3& eye_W = view.X_WC.position_mm;
+  const double voxel_mm = bone.geometry().spacing_mm.maxCoeff();
+  const Vec3 sight_W = (contact_W - eye_W).normalized();
+  Vec3 from_W = eye_W;
+  const Vec3 to_W = contact_W - 1.5 * voxel_mm * sight_W;
+  // The cuts leave a convex part: along the line of sight it begins behind the last of them.
+  for (const ViewCut& cut : view.cuts) {
+    if (cut.normal_W.isZero()) continue;
+    const double before_mm = cut.offset_mm - cut.normal_W.dot(from_W);
+    const double along = cut.normal_W.dot(sight_W);
+    if (cut.normal_W.dot(to_W) < cut.offset_mm) return true;
+    if (before_mm > 0 && along > 0) from_W += before_mm / along * sight_W;
+  }
+  return first_crossing(bone, from_W, to_W).has_value();
+}
+
+double view_changes(const std::vector<ViewSample>& views) {
+  constexpr double kMoved_mm = 0.2, kTurned_rad = 0.01, kRest_s = 0.5;
+  if (views.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double changes = 0, moved_s = -std::numeric_limits<double>::infinity();
+  for (std::size_t n = 1; n < views.size(); ++n) {
+    const Pose &before = views[n - 1].X_WC, &now = views[n].X_WC;
+    if ((now.position_mm - before.position_mm).norm() < kMoved_mm &&
+        now.orientation.angularDistance(before.orientation) < kTurned_rad)
+      continue;
+    if (views[n].time_s - moved_s > kRest_s) ++changes;
+    moved_s = views[n].time_s;
+  }
+  return changes;
 }
 
 std::vector<Stroke> strokes_of(const std::vector<AttemptTick>& ticks) {

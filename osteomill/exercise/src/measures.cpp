@@ -1,6 +1,7 @@
 #include "osteomill/exercise/measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <ostream>
@@ -11,6 +12,9 @@
 #include "osteomill/base/atomic_file.h"
 #include "osteomill/base/csv_field.h"
 #include "osteomill/base/distribution.h"
+#include "osteomill/exercise/region_voxels.h"
+
+#include "crown.h"
 
 namespace osteomill {
 
@@ -83,52 +87,32 @@ std::function<double(const Attempt&)> worst_of(OfStructure one, bool is_least) {
   };
 }
 
-// Calls `use` with every tick in which the turning burr reaches into a structure.
-template <typename Distance, typename Use>
-void for_each_contact(const Attempt& attempt, const Distance& distance_mm, const Use& use) {
-  for (std::size_t n = 0; n < attempt.ticks.size(); ++n)
-    if (attempt.ticks[n].spindle_on && distance_mm(n) <= 0) use(attempt.ticks[n]);
-}
-
-template <typename Distance>
-double contacts(const Attempt& attempt, const Distance& distance_mm) {
-  constexpr double kApart_s = 0.5;
-  double count = 0, last_s = -std::numeric_limits<double>::infinity();
-  for_each_contact(attempt, distance_mm, [&](const AttemptTick& tick) {
-    if (tick.time_s - last_s >= kApart_s) ++count;
-    last_s = tick.time_s;
-  });
-  return count;
-}
-
-template <typename Distance>
-double contact_s(const Attempt& attempt, const Distance& distance_mm) {
-  double sum_s = 0;
-  for_each_contact(attempt, distance_mm, [&](const AttemptTick& tick) { sum_s += tick.dt_s; });
-  return sum_s;
-}
-
-template <typename Distance>
-double first_contact_s(const Attempt& attempt, const Distance& distance_mm) {
+// The contacts with one structure, or with the nearest of all.
+struct Contacts {
+  double count = 0;
+  double time_s = 0;
   double first_s = kNone;
-  for_each_contact(attempt, distance_mm,
-                   [&](const AttemptTick& tick) { first_s = std::fmin(first_s, tick.time_s); });
-  return first_s;
-}
+  double force_max_N = kNone;
+  double min_distance_mm = kNone;
+};
 
 template <typename Distance>
-double contact_force_max_N(const Attempt& attempt, const Distance& distance_mm) {
-  double force_N = kNone;
-  for_each_contact(attempt, distance_mm,
-                   [&](const AttemptTick& tick) { force_N = std::fmax(force_N, tick.force_N); });
-  return force_N;
-}
-
-template <typename Distance>
-double min_distance_mm(const Attempt& attempt, const Distance& distance_mm) {
-  double least_mm = kNone;
-  for (std::size_t n = 0; n < attempt.ticks.size(); ++n) least_mm = std::fmin(least_mm, distance_mm(n));
-  return least_mm;
+Contacts contacts_at(const Attempt& attempt, const Distance& distance_mm) {
+  constexpr double kApart_s = 0.5;
+  Contacts found;
+  double last_s = -std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < attempt.ticks.size(); ++n) {
+    const AttemptTick& tick = attempt.ticks[n];
+    const double here_mm = distance_mm(n);
+    found.min_distance_mm = std::fmin(found.min_distance_mm, here_mm);
+    if (!tick.spindle_on || !(here_mm <= 0)) continue;
+    if (tick.time_s - last_s >= kApart_s) ++found.count;
+    last_s = tick.time_s;
+    found.time_s += tick.dt_s;
+    found.first_s = std::fmin(found.first_s, tick.time_s);
+    found.force_max_N = std::fmax(found.force_max_N, tick.force_N);
+  }
+  return found;
 }
 
 double no_go_removed_mm3(const Attempt& attempt, std::size_t structure) {
@@ -147,21 +131,30 @@ double no_go_removed_of_all_mm3(const Attempt& attempt) {
   return exercise.structures.empty() ? kNone : exercise.volume_mm3(count);
 }
 
-// Makes the measure of all structures and of each from one function that takes the distance in a tick.
-template <typename Function>
+// Makes the measure of the nearest structure in each tick and of each structure from one part of the
+// contacts.
 Measure of_contact(std::string name, std::string unit, std::string formula, std::string source,
-                   Function function) {
-  return {std::move(name),
-          std::move(unit),
-          std::move(formula),
-          std::move(source),
-          [function](const Attempt& attempt) {
-            if (attempt.exercise->structures.empty()) return kNone;
-            return function(attempt, [&](std::size_t tick) { return attempt.distance_mm(tick); });
-          },
-          [function](const Attempt& attempt, std::size_t structure) {
-            return function(attempt, [&](std::size_t tick) { return attempt.distance_mm(tick, structure); });
-          }};
+                   double Contacts::*part) {
+  Measure measure{std::move(name), std::move(unit), std::move(formula), std::move(source), {}};
+  measure.value = [part](const Attempt& attempt) {
+    if (attempt.exercise->structures.empty()) return kNone;
+    return contacts_at(attempt, [&](std::size_t tick) { return attempt.distance_mm(tick); }).*part;
+  };
+  measure.each = Measure::Each::structure;
+  measure.value_at = [part](const Attempt& attempt, std::size_t structure) {
+    return contacts_at(attempt, [&](std::size_t tick) { return attempt.distance_mm(tick, structure); }).*part;
+  };
+  return measure;
+}
+
+// Makes the measure of each structure, and of all the least or greatest that has a value.
+Measure of_structure(std::string name, std::string unit, std::string formula, std::string source,
+                     OfStructure one, bool is_least) {
+  Measure measure{std::move(name), std::move(unit), std::move(formula), std::move(source),
+                  worst_of(one, is_least)};
+  measure.each = Measure::Each::structure;
+  measure.value_at = std::move(one);
+  return measure;
 }
 
 double thickness_left_min_mm(const Attempt& attempt, std::size_t structure) {
@@ -238,13 +231,59 @@ double removal_rate_mm3_s(const Attempt& attempt, const Zone* zone) {
   return ratio(removed, time_s);
 }
 
-// Recordings have no camera.
-double not_recorded(const Attempt&) {
-  return kNone;
+// Time that the steps took, and how the work went on.
+
+// Returns when a step was done; not a number if it never was.
+double step_done_s(const Attempt& attempt, std::size_t step) {
+  const VoxelSet& bone = attempt.exercise->steps[step];
+  std::vector<double> times_s;
+  bone.for_each([&](const VoxelIndex& v) {
+    if (const auto time_s = attempt.removed_at_s(v)) times_s.push_back(*time_s);
+  });
+  const double wanted =
+      attempt.exercise->exercise.steps[step].done_percent / 100 * static_cast<double>(bone.count());
+  const auto needed = static_cast<std::size_t>(std::ceil(std::max(wanted, 1.0)));
+  if (times_s.size() < needed) return kNone;
+  std::ranges::nth_element(times_s, times_s.begin() + static_cast<std::ptrdiff_t>(needed - 1));
+  return times_s[needed - 1];
+}
+
+// From when all steps before it were done, or from the beginning.
+double step_s(const Attempt& attempt, std::size_t step) {
+  if (attempt.ticks.empty()) return kNone;
+  double from_s = attempt.ticks.front().time_s;
+  for (std::size_t n = 0; n < step; ++n) from_s = std::fmax(from_s, step_done_s(attempt, n));
+  return std::fmax(step_done_s(attempt, step) - from_s, std::isnan(step_done_s(attempt, step)) ? kNone : 0);
+}
+
+double steps_s(const Attempt& attempt) {
+  double sum_s = attempt.exercise->steps.empty() ? kNone : 0;
+  for (std::size_t n = 0; n < attempt.exercise->steps.size(); ++n) sum_s += step_s(attempt, n);
+  return sum_s;
+}
+
+// The greatest Dice coefficient on the way, which is lower again at the end if bone went that should not.
+AttemptProgress peak_of(const Attempt& attempt) {
+  const std::vector<AttemptProgress> way = progress_of(attempt);
+  const auto peak = std::ranges::max_element(way, {}, &AttemptProgress::dice_percent);
+  return peak == way.end() ? AttemptProgress{kNone, kNone, kNone, kNone} : *peak;
+}
+
+// The trainee's view.
+
+double hidden_cutting_percent(const Attempt& attempt) {
+  double hidden_s = 0, seen_s = 0;
+  for (const AttemptTick& tick : attempt.ticks) {
+    if (!tick.is_cutting() || !tick.is_contact_hidden) continue;
+    (*tick.is_contact_hidden ? hidden_s : seen_s) += tick.dt_s;
+  }
+  return 100 * ratio(hidden_s, hidden_s + seen_s);
 }
 
 constexpr const char* kZones =
     "10.1097/MAO.0000000000001398: experts press harder and remove faster far from structures";
+constexpr const char* kProduct = "J Laryngol Otol 129:1091: the product peaks and then falls";
+constexpr const char* kCrown = "prepCheck";
 constexpr const char* kTeachers = "PMC3413455: no violation of the facial nerve";
 
 void add_bone(std::vector<Measure>& all) {
@@ -264,10 +303,28 @@ void add_bone(std::vector<Measure>& all) {
   const std::string over =
       "bone between a structure and the space open from outside, {} over the structure's "
       "surface as far as milling made it thinner by a voxel or more; empty beyond 8 mm";
-  all.push_back({"thickness_left_min_mm", "mm", fmt::format(fmt::runtime(over), "least"), "",
-                 worst_of(thickness_left_min_mm, true), thickness_left_min_mm});
-  all.push_back({"thickness_left_median_mm", "mm", fmt::format(fmt::runtime(over), "median"), "",
-                 worst_of(thickness_left_median_mm, true), thickness_left_median_mm});
+  all.push_back(of_structure("thickness_left_min_mm", "mm", fmt::format(fmt::runtime(over), "least"), "",
+                             thickness_left_min_mm, true));
+  all.push_back(of_structure("thickness_left_median_mm", "mm", fmt::format(fmt::runtime(over), "median"), "",
+                             thickness_left_median_mm, true));
+}
+
+void add_crown(std::vector<Measure>& all) {
+  const std::string along =
+      "bone between the crown's surface before and after, along the surface's normal, {}; "
+      "empty without [crown]";
+  all.push_back({"reduction_median_mm", "mm",
+                 fmt::format(fmt::runtime(along), "median over the target's surface"), kCrown,
+                 [](const Attempt& a) { return share(crown_of(a).reductions_mm, 0.5); }});
+  all.push_back({"reduction_p10_mm", "mm", fmt::format(fmt::runtime(along), "10th percentile"), kCrown,
+                 [](const Attempt& a) { return share(crown_of(a).reductions_mm, 0.1); }});
+  all.push_back({"taper_deg", "°",
+                 "convergence of the axial walls: twice the median angle between wall and [crown] axis, over "
+                 "walls within 30° of it",
+                 kCrown, [](const Attempt& a) { return 2 * share(crown_of(a).wall_angles_deg, 0.5); }});
+  all.push_back({"undercut_mm3", "mm³",
+                 "volume of the target's removed bone that lies below bone which is left, along [crown] axis",
+                 kCrown, [](const Attempt& a) { return crown_of(a).undercut_mm3; }});
 }
 
 void add_contacts(std::vector<Measure>& all) {
@@ -275,20 +332,28 @@ void add_contacts(std::vector<Measure>& all) {
       of_contact("no_go_contacts", "",
                  "times at which the turning burr's surface reached into a structure; half a second "
                  "without parts one from the next",
-                 kTeachers, [](const auto& a, const auto& d) { return contacts(a, d); }));
-  all.push_back(of_contact("no_go_contact_s", "s", "length of the ticks with contact", kTeachers,
-                           [](const auto& a, const auto& d) { return contact_s(a, d); }));
+                 kTeachers, &Contacts::count));
+  all.push_back(
+      of_contact("no_go_contact_s", "s", "length of the ticks with contact", kTeachers, &Contacts::time_s));
   all.push_back(of_contact("no_go_first_contact_s", "s", "time of the first tick with contact; empty without",
-                           kTeachers, [](const auto& a, const auto& d) { return first_contact_s(a, d); }));
+                           kTeachers, &Contacts::first_s));
   all.push_back(of_contact("no_go_force_max_N", "N", "greatest force of the burr in contact; empty without",
-                           "PMC3413455: no excessive force near the facial nerve",
-                           [](const auto& a, const auto& d) { return contact_force_max_N(a, d); }));
+                           "PMC3413455: no excessive force near the facial nerve", &Contacts::force_max_N));
   all.push_back({"no_go_removed_mm3", "mm³", "volume of R within structures", kTeachers,
-                 no_go_removed_of_all_mm3, no_go_removed_mm3});
+                 no_go_removed_of_all_mm3, Measure::Each::structure, no_go_removed_mm3});
+  all.push_back(of_structure(
+      "no_go_perforated", "",
+      "1 if removed bone opened a way through a structure, between spaces that nothing within it joined "
+      "before",
+      "PMC3413455: no perforation",
+      [](const Attempt& a, std::size_t n) {
+        return is_cut_through(a.exercise->structures[n].voxels, *a.scan, a.after) ? 1.0 : 0.0;
+      },
+      false));
   all.push_back(of_contact("no_go_min_distance_mm", "mm",
                            "least distance of the burr's surface from a structure; negative if it reached in",
                            "Voormolen: 3 mm left every facial nerve undamaged, 1 and 2 mm did not",
-                           [](const auto& a, const auto& d) { return min_distance_mm(a, d); }));
+                           &Contacts::min_distance_mm));
 }
 
 void add_work(std::vector<Measure>& all) {
@@ -323,10 +388,28 @@ void add_work(std::vector<Measure>& all) {
         {fmt::format("burr_radius_median_{}_mm", zone->name), "mm", "median burr radius " + where, kZones,
          [zone](const Attempt& a) { return cutting_share(a, zone, &AttemptTick::burr_radius_mm, 0.5); }});
   }
-  all.push_back({"hidden_cutting_percent", "%",
-                 "share of the cutting in which the burr's contact was hidden from the camera; empty because "
-                 "recordings have no camera yet",
-                 "PMC3413455: visibility while removing bone", not_recorded});
+}
+
+void add_course(std::vector<Measure>& all) {
+  all.push_back({"step_s", "s",
+                 "time from when the steps before it were done until done_percent of a step's bone was gone; "
+                 "empty if it was not. Without a step: the sum",
+                 "", steps_s, Measure::Each::step, step_s});
+  all.push_back({"dice_peak_percent", "%",
+                 "greatest Dice coefficient on the way; progress.csv has its course", kProduct,
+                 [](const Attempt& a) { return peak_of(a).dice_percent; }});
+  all.push_back({"dice_peak_s", "s", "time of the greatest Dice coefficient", kProduct,
+                 [](const Attempt& a) { return peak_of(a).time_s; }});
+  all.push_back(
+      {"hidden_cutting_percent", "%",
+       "share of the cutting, as far as a view was recorded, in which bone or the picture's edge hid the "
+       "burr's contact",
+       "PMC3413455: visibility while removing bone", hidden_cutting_percent});
+  all.push_back(
+      {"view_changes", "",
+       "times at which the view began to turn, shift or zoom after half a second at rest; empty without "
+       "views",
+       "PMC3413455: use of the view", [](const Attempt& a) { return view_changes(a.views); }});
 }
 
 std::string limit_text(const ExerciseItem& item) {
@@ -341,18 +424,14 @@ bool is_met(const ExerciseItem& item, double value) {
 }
 
 // A row for each item that limits the measure, or one without a limit.
-void add_rows(std::vector<MeasuredValue>& rows, const Measure& measure, const std::string& structure,
-              double value, const Exercise& exercise) {
-  MeasuredValue row{structure.empty() ? measure.name : measure.name + "." + structure,
-                    {},
-                    measure.unit,
-                    "",
-                    {},
-                    measure.source};
+void add_rows(std::vector<MeasuredValue>& rows, const Measure& measure, const std::string& part, double value,
+              const Exercise& exercise) {
+  MeasuredValue row{
+      part.empty() ? measure.name : measure.name + "." + part, {}, measure.unit, "", {}, measure.source};
   if (std::isfinite(value)) row.value = value;
   bool is_limited = false;
   for (const ExerciseItem& item : exercise.items) {
-    if (item.measure != measure.name || item.structure != structure) continue;
+    if (item.measure != measure.name || item.part != part) continue;
     MeasuredValue limited = row;
     limited.limit = limit_text(item);
     if (row.value) limited.is_met = is_met(item, *row.value);
@@ -369,8 +448,10 @@ const std::vector<Measure>& all_measures() {
   static const std::vector<Measure> all = [] {
     std::vector<Measure> measures;
     add_bone(measures);
+    add_crown(measures);
     add_contacts(measures);
     add_work(measures);
+    add_course(measures);
     return measures;
   }();
   return all;
@@ -381,6 +462,15 @@ const Measure* find_measure(std::string_view name) {
   return found == all_measures().end() ? nullptr : &*found;
 }
 
+std::vector<std::string> parts_of(const Measure& measure, const Exercise& exercise) {
+  std::vector<std::string> names;
+  if (measure.each == Measure::Each::structure)
+    for (const NoGoStructure& structure : exercise.no_go) names.push_back(structure.name);
+  if (measure.each == Measure::Each::step)
+    for (std::size_t n = 1; n <= exercise.steps.size(); ++n) names.push_back(std::to_string(n));
+  return names;
+}
+
 std::vector<std::string> measure_names() {
   std::vector<std::string> names;
   for (const Measure& measure : all_measures()) names.push_back(measure.name);
@@ -388,10 +478,11 @@ std::vector<std::string> measure_names() {
 }
 
 std::string measures_table() {
-  std::string table = "| measure | unit | definition | each structure | source |\n|---|---|---|---|---|\n";
+  constexpr std::array<const char*, 3> kEach{"", "structure", "step"};
+  std::string table = "| measure | unit | definition | for each | source |\n|---|---|---|---|---|\n";
   for (const Measure& measure : all_measures()) {
     table += fmt::format("| `{}` | {} | {} | {} | {} |\n", measure.name, measure.unit, measure.formula,
-                         measure.value_at ? "yes" : "", measure.source);
+                         kEach[static_cast<std::size_t>(measure.each)], measure.source);
   }
   return table;
 }
@@ -401,11 +492,21 @@ std::vector<MeasuredValue> measure_attempt(const Attempt& attempt) {
   std::vector<MeasuredValue> rows;
   for (const Measure& measure : all_measures()) {
     add_rows(rows, measure, "", measure.value(attempt), exercise);
-    if (!measure.value_at) continue;
-    for (std::size_t n = 0; n < attempt.exercise->structures.size(); ++n)
-      add_rows(rows, measure, attempt.exercise->structures[n].name, measure.value_at(attempt, n), exercise);
+    const std::vector<std::string> parts = parts_of(measure, exercise);
+    for (std::size_t n = 0; n < parts.size(); ++n)
+      add_rows(rows, measure, parts[n], measure.value_at(attempt, n), exercise);
   }
   return rows;
+}
+
+void write_progress(const std::filesystem::path& path, const Attempt& attempt) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << "time_s,target_removed_percent,removed_outside_mm3,dice_percent\n";
+    for (const AttemptProgress& at : progress_of(attempt)) {
+      out << fmt::format("{:.3f},{},{},{}\n", at.time_s, at.target_removed_percent, at.removed_outside_mm3,
+                         at.dice_percent);
+    }
+  });
 }
 
 void write_measured(const std::filesystem::path& path, const std::vector<MeasuredValue>& rows) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/base/input_error.h"
+#include "osteomill/base/row_major.h"
 #include "osteomill/exercise/region_voxels.h"
 #include "osteomill/exercise/src/exercise_samples.h"
 
@@ -28,7 +29,7 @@ Attempt attempt_removing(const PlacedExercise& placed, const Volume& scan, const
   region_voxels(region, scan, "task.toml").for_each([&](const VoxelIndex& v) { after.lower_density(v, 0); });
   VoxelSet removed = removed_voxels(scan, after);
   std::vector<std::vector<double>> left_mm = thickness_left_mm(placed, scan, after);
-  return {&placed, &scan, std::move(after), std::move(removed), {}, {}, std::move(left_mm)};
+  return {&placed, &scan, std::move(after), std::move(removed), {}, {}, std::move(left_mm), {}, {}};
 }
 
 class MeasuresOfABox : public ::testing::Test {
@@ -45,7 +46,7 @@ class MeasuresOfABox : public ::testing::Test {
     attempt.ticks = ticks;
     const StructureDistance& nerve = placed_.structures.front().distance;
     for (const AttemptTick& tick : ticks)
-      attempt.distances_mm.push_back(nerve.from(tick.burr_W) - tick.burr_radius_mm);
+      attempt.distances_mm.push_back(no_go_distance_mm(*placed_.distances, tick.burr_W, tick.burr_radius_mm));
     return attempt;
   }
 
@@ -130,7 +131,9 @@ TEST_F(MeasuresOfABox, TellForceAndSpeedApartByTheDistanceFromStructures) {
 }
 
 TEST_F(MeasuresOfABox, AreEmptyIfTheyCannotBeMeasured) {
-  EXPECT_TRUE(std::isnan(measured("hidden_cutting_percent", with_ticks({}))));
+  for (const char* name : {"hidden_cutting_percent", "view_changes", "step_s", "dice_peak_percent",
+                           "taper_deg", "undercut_mm3", "reduction_median_mm"})
+    EXPECT_TRUE(std::isnan(measured(name, with_ticks({})))) << name;
   Exercise without = exercise_;
   without.no_go.clear();
   without.keep.reset();
@@ -160,7 +163,138 @@ TEST_F(MeasuresOfABox, BecomeARowForEachItemAndStructure) {
   EXPECT_EQ(limited, (std::vector<std::string>{"target_removed_percent at least 40 met a book, page 3",
                                                "target_removed_percent at most 45 missed ",
                                                "thickness_left_min_mm.nerve at least 1 met "}));
-  EXPECT_EQ(of_nerve, 8u);
+  EXPECT_EQ(of_nerve, 9u);
+}
+
+TEST_F(MeasuresOfABox, TimeEachStepFromWhenThoseBeforeItWereDone) {
+  exercise_.steps = {{"upper", region_of({BoxShape{{-2, -2, -2}, {2, 2, 0}}}), 50},
+                     {"lower", region_of({BoxShape{{-2, -2, -4}, {2, 2, -2}}}), 100}};
+  placed_ = place_exercise(exercise_, scan_);
+  Attempt attempt = removing({{-2, -2, -4}, {3, 2, 0}});
+  // From the top at 1 mm/s from 1 s on; beside the target at the end.
+  attempt.removed.for_each([&](const VoxelIndex& v) {
+    const Vec3 place_W = scan_.geometry().world_from_voxel(v);
+    attempt.removal_times_s[row_major(scan_.geometry().dims, v.i, v.j, v.k)] =
+        static_cast<float>(place_W.x() > 2 ? 9 : 1 - place_W.z());
+  });
+  for (int n = 0; n <= 1000; ++n) attempt.ticks.push_back({.time_s = 0.01 * n, .dt_s = 0.01});
+  const Measure& step_s = *find_measure("step_s");
+  // Half of the upper half is gone after 1 mm; the lower one, after 4 mm.
+  EXPECT_NEAR(step_s.value_at(attempt, 0), 2, 0.15);
+  EXPECT_NEAR(step_s.value_at(attempt, 1), 3, 0.15);
+  EXPECT_NEAR(step_s.value(attempt), 5, 0.15);
+  // The product is best before bone goes that should stay.
+  EXPECT_DOUBLE_EQ(measured("dice_peak_percent", attempt), 100);
+  EXPECT_NEAR(measured("dice_peak_s", attempt), 5, 0.15);
+  EXPECT_DOUBLE_EQ(measured("dice_percent", attempt), 200.0 * 64 / (64 + 80));
+  const std::vector<AttemptProgress> way = progress_of(attempt);
+  EXPECT_NEAR(way[way.size() * 3 / 10].target_removed_percent, 50, 5);
+  EXPECT_DOUBLE_EQ(way.back().removed_outside_mm3, 16);
+}
+
+TEST(Perforation, IsAWayThroughAStructureAndNotAHoleInIt) {
+  Volume scan = bone_below_zero(0.25);
+  const auto hollow = [&](const BoxShape& box) {
+    region_voxels(region_of({box}), scan, "task.toml").for_each([&](const VoxelIndex& v) {
+      scan.lower_density(v, 0);
+    });
+  };
+  hollow({{-3, -3, -5}, {3, 3, -4}});
+  Exercise exercise = exercise_with_target(region_of({BoxShape{{-1, -1, -1}, {1, 1, 0}}}));
+  exercise.no_go.push_back({"floor", region_of({BoxShape{{-3, -3, -4}, {3, 3, -2}}}), 1});
+  const PlacedExercise placed = place_exercise(exercise, scan);
+  const auto perforated = [&](const BoxShape& removed) {
+    return measured("no_go_perforated", attempt_removing(placed, scan, region_of({removed})));
+  };
+  EXPECT_EQ(perforated({{-1, -1, -1}, {1, 1, 0}}), 0);
+  EXPECT_EQ(perforated({{-1, -1, -3.8}, {1, 1, 0}}), 0);
+  EXPECT_EQ(perforated({{-1, -1, -4}, {1, 1, 0}}), 1);
+  // From the hollow up, and past it.
+  EXPECT_EQ(perforated({{-1, -1, -4}, {1, 1, -2.3}}), 0);
+  EXPECT_EQ(perforated({{4, -1, -5}, {5, 1, 0}}), 0);
+}
+
+ViewSample view_from(const Vec3& eye_W, const Vec3& towards_viewer_W) {
+  ViewSample view;
+  view.X_WC = {eye_W, Quat::FromTwoVectors(Vec3::UnitZ(), towards_viewer_W)};
+  view.field_of_view_rad = 0.5;
+  view.aspect = 1.5;
+  return view;
+}
+
+TEST(IsHidden, ByBoneUnlessItIsCutAwayOrByThePicturesEdge) {
+  Volume bone = bone_below_zero(0.25);
+  region_voxels(region_of({BoxShape{{-2, -2, -5}, {2, 2, -4}}}), bone, "task.toml")
+      .for_each([&](const VoxelIndex& v) { bone.lower_density(v, 0); });
+  const ViewSample above = view_from({0, 0, 60}, Vec3::UnitZ());
+  EXPECT_FALSE(is_hidden(above, bone, Vec3::Zero()));
+  EXPECT_TRUE(is_hidden(view_from({0, 0, -60}, -Vec3::UnitZ()), bone, Vec3::Zero()));
+  // The floor of the hollow is hidden from above, too, until a cut takes its roof away.
+  const auto cut_above = [&](double z) {
+    ViewSample view = above;
+    view.cuts[1] = {-Vec3::UnitZ(), -z};
+    return view;
+  };
+  EXPECT_TRUE(is_hidden(above, bone, {0, 0, -5}));
+  EXPECT_TRUE(is_hidden(cut_above(-2), bone, {0, 0, -5}));
+  EXPECT_FALSE(is_hidden(cut_above(-4.5), bone, {0, 0, -5}));
+  EXPECT_TRUE(is_hidden(cut_above(-6), bone, {0, 0, -5})) << "it is cut away itself";
+  // The picture reaches to tan 0.25 of 60 mm, and 1.5 times as far to its sides.
+  EXPECT_FALSE(is_hidden(above, bone, {0, 15, 0.5}));
+  EXPECT_TRUE(is_hidden(above, bone, {0, 16, 0.5}));
+  EXPECT_FALSE(is_hidden(above, bone, {22, 0, 0.5}));
+  EXPECT_TRUE(is_hidden(above, bone, {24, 0, 0.5}));
+}
+
+TEST(ViewChanges, CountMotionsThatBeginAfterARest) {
+  EXPECT_TRUE(std::isnan(view_changes({})));
+  std::vector<ViewSample> views;
+  const auto add = [&](double seconds, double speed_mm_s) {
+    for (int n = 0; n < 30 * seconds; ++n) {
+      const Vec3 eye_W = views.empty() ? Vec3(0, 0, 60) : views.back().X_WC.position_mm;
+      ViewSample view = view_from(eye_W + Vec3(speed_mm_s / 30, 0, 0), Vec3::UnitZ());
+      view.time_s = static_cast<double>(views.size()) / 30;
+      views.push_back(view);
+    }
+  };
+  add(2, 0);
+  EXPECT_EQ(view_changes(views), 0);
+  add(1, 20);
+  add(0.2, 0);
+  add(1, -20);
+  EXPECT_EQ(view_changes(views), 1) << "a short stop parts no two motions";
+  add(1, 0);
+  add(0.1, 20);
+  EXPECT_EQ(view_changes(views), 2);
+}
+
+TEST(SeenContacts, AreThoseOfTheSessionsViews) {
+  const Volume bone = bone_below_zero(0.25, 10);
+  std::vector<Vec3> places = way({0.03, 0.05, 1.6}, {0.03, 0.05, 0.4}, 0.004);
+  places.resize(places.size() + 300, places.back());
+  Recording recording = record_poses(bone, places, 1.5);
+  const PlacedExercise placed =
+      place_exercise(exercise_with_target(region_of({SphereShape{{0.03, 0.05, 0.4}, 1.5}})), bone);
+  EXPECT_TRUE(std::isnan(measured("hidden_cutting_percent", make_attempt(placed, bone, recording))));
+  // From above in the first half, and from below in the second.
+  double cutting_s = 0;
+  const std::vector<AttemptTick> ticks = attempt_ticks(recording);
+  for (const AttemptTick& tick : ticks) cutting_s += tick.is_cutting() ? tick.dt_s : 0;
+  double passed_s = 0, turn_s = 0;
+  for (const AttemptTick& tick : ticks) {
+    passed_s += tick.is_cutting() ? tick.dt_s : 0;
+    if (passed_s < 0.5 * cutting_s) turn_s = tick.time_s;
+  }
+  for (double time_s = 0; time_s < ticks.back().time_s; time_s += 1.0 / 30) {
+    recording.views.push_back(time_s < turn_s ? view_from({0, 0, 60}, Vec3::UnitZ())
+                                              : view_from({0, 0, -60}, -Vec3::UnitZ()));
+    recording.views.back().time_s = time_s;
+  }
+  const Attempt attempt = make_attempt(placed, bone, recording);
+  EXPECT_NEAR(measured("hidden_cutting_percent", attempt), 50, 10);
+  EXPECT_EQ(measured("view_changes", attempt), 1);
+  // Every voxel that went has a time, and the deepest went last.
+  EXPECT_EQ(attempt.removal_times_s.size(), attempt.removed.count());
 }
 
 TEST(Strokes, EndWhereTheirDirectionTurns) {
@@ -199,7 +333,7 @@ Attempt attempt_cutting(const PlacedExercise& placed, const Volume& scan,
     after.lower_density(v, static_cast<float>(std::clamp(500 + 500 * voxels, 0.0, 1000.0)));
   });
   VoxelSet removed = removed_voxels(scan, after);
-  return {&placed, &scan, std::move(after), std::move(removed), {}, {}, {}};
+  return {&placed, &scan, std::move(after), std::move(removed), {}, {}, {}, {}, {}};
 }
 
 class CutVolume : public ::testing::TestWithParam<double> {};
@@ -243,6 +377,85 @@ TEST_P(CutVolume, OfASessionIsThatWhichItsMillCounted) {
   EXPECT_NEAR(measured("removed_mm3", attempt), counted_mm3, 0.02 * counted_mm3);
   EXPECT_GT(measured("target_removed_percent", attempt), 90);
   EXPECT_GT(measured("cutting_s", attempt), 0.1);
+}
+
+// Returns the volume below z = 0 that a ball sweeps along the simulated tool's path, by counting points.
+double swept_mm3(const Recording& recording, double radius_mm) {
+  constexpr double kApart_mm = 0.05;
+  constexpr std::size_t kTicks = 25;
+  std::vector<Vec3> path_W;
+  for (std::size_t n = 0; n < recording.records.size(); n += kTicks)
+    if (recording.records[n].X_WT.position_mm.z() < radius_mm)
+      path_W.push_back(recording.records[n].X_WT.position_mm);
+  std::size_t swept = 0;
+  for (double z = -0.5 * kApart_mm; z > -2; z -= kApart_mm) {
+    for (double y = -2; y < 2; y += kApart_mm) {
+      for (double x = -4; x < 4; x += kApart_mm) {
+        const Vec3 point_W(x, y, z);
+        swept += std::ranges::any_of(path_W, [&](const Vec3& centre_W) {
+          return (point_W - centre_W).squaredNorm() <= radius_mm * radius_mm;
+        });
+      }
+    }
+  }
+  return static_cast<double>(swept) * std::pow(kApart_mm, 3);
+}
+
+// A burr at rest would widen its hole, because the skin of the haptic algorithm then holds it off by up to
+// 0.1 mm, which milling bridges.
+TEST_P(CutVolume, OfAPlungeAndOfASlotIsThatSweptByTheToolWithinTwoPercent) {
+  const Volume bone = bone_below_zero(GetParam(), 10);
+  const PlacedExercise placed =
+      place_exercise(exercise_with_target(region_of({SphereShape{{0.03, 0.05, 0.2}, 1.5}})), bone);
+  const auto lift = [](std::vector<Vec3> places) {
+    const Vec3 last_W = places.back();
+    for (int n = 1; n < 200; ++n) places.push_back(last_W + Vec3(0, 0, 0.02 * n));
+    return places;
+  };
+  const std::vector<Vec3> plunge = way({0.03, 0.05, 1.7}, {0.03, 0.05, 0.2}, 0.0004);
+  // Several voxels deep, since voxels are counted whole.
+  std::vector<Vec3> slot = way({-1.97, 0.05, 1.7}, {-1.97, 0.05, -0.1}, 0.0005);
+  for (const Vec3& place_W : way({-1.97, 0.05, -0.1}, {2.03, 0.05, -0.1}, 0.0008)) slot.push_back(place_W);
+  for (const std::vector<Vec3>& places : {lift(plunge), lift(slot)}) {
+    const Recording recording = record_poses(bone, places, 1.5);
+    const double expected_mm3 = swept_mm3(recording, 1.5);
+    EXPECT_GT(expected_mm3, 2);
+    EXPECT_NEAR(measured("removed_mm3", make_attempt(placed, bone, recording)), expected_mm3,
+                0.02 * expected_mm3);
+  }
+}
+
+// A cone's frustum within a cylinder of 4 mm: its sides lean by 4 degrees.
+TEST(Crown, HasTheReductionAndTaperOfItsShapes) {
+  const double lean = 4 * std::numbers::pi / 180;
+  GridGeometry grid = centred_cube(56, 0.2);
+  const auto cylinder = [](const Vec3& p) { return std::max(p.head<2>().norm() - 4, p.z() - 4); };
+  const auto frustum = [&](const Vec3& p) {
+    const double radius_mm = 3 - (p.z() + 3) * std::tan(lean);
+    return std::max((p.head<2>().norm() - radius_mm) * std::cos(lean), p.z() - 2.5);
+  };
+  const Volume scan = shape_volume(grid, cylinder);
+  Exercise exercise = exercise_with_target(region_of({ShellShape{1.6}, BoxShape{{-5, -5, -3}, {5, 5, 5}}}));
+  exercise.crown_axis_W = Vec3::UnitZ();
+  const PlacedExercise placed = place_exercise(exercise, scan);
+  const auto cut = [&](const std::function<double(const Vec3&)>& left) {
+    return attempt_cutting(placed, scan, [&](const Vec3& p) { return p.z() < -3 ? 1.0 : -left(p); });
+  };
+  const Attempt tapered = cut(frustum);
+  EXPECT_NEAR(measured("taper_deg", tapered), 8, 1);
+  // 1 mm at the margin, 1.38 mm at the top of the sides, and 1.5 mm from above on a seventh of the surface.
+  EXPECT_NEAR(measured("reduction_median_mm", tapered), 1.22, 0.1);
+  EXPECT_NEAR(measured("reduction_p10_mm", tapered), 1.04, 0.1);
+  EXPECT_LT(measured("undercut_mm3", tapered), 0.05);
+  // Upside down it has undercuts all round: a ring under the wider top.
+  const Attempt undercut = cut([&](const Vec3& p) {
+    const double radius_mm = 2.5 + (p.z() + 3) * std::tan(lean);
+    return std::max((p.head<2>().norm() - radius_mm) * std::cos(lean), p.z() - 2.5);
+  });
+  EXPECT_NEAR(measured("taper_deg", undercut), -8, 1);
+  const double top_mm = 2.5 + 5.5 * std::tan(lean);
+  const double cone_mm3 = std::numbers::pi * 5.5 / 3 * (2.5 * 2.5 + 2.5 * top_mm + top_mm * top_mm);
+  EXPECT_NEAR(measured("undercut_mm3", undercut), std::numbers::pi * 5.5 * top_mm * top_mm - cone_mm3, 2);
 }
 
 TEST(MakeAttempt, RefusesARecordingOfAnotherScan) {

@@ -1,6 +1,7 @@
 #include "osteomill/exercise/placed_exercise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -31,19 +32,40 @@ VoxelSet within_margin(const VoxelSet& target, const GridGeometry& scan, double 
   return allowed;
 }
 
+Vec3 outward_of(const VoxelSet& target, const Volume& scan) {
+  Vec3 sum_W = Vec3::Zero();
+  target.for_each([&](const VoxelIndex& v) {
+    for (const int step : {-1, 1}) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const Vec3 along = step * Vec3::Unit(axis);
+        const VoxelIndex beside{v.i + static_cast<int>(along.x()), v.j + static_cast<int>(along.y()),
+                                v.k + static_cast<int>(along.z())};
+        if (!scan.is_bone_in_grid(beside)) sum_W += scan.geometry().direction * along;
+      }
+    }
+  });
+  return sum_W.norm() > 0 ? sum_W.normalized() : Vec3::UnitZ();
+}
+
 // One solid is measured exactly; all else, by its voxels.
 StructureDistance distance_of(const Region& region, const VoxelSet& voxels, const GridGeometry& scan) {
-  const bool is_solid = region.shapes.size() == 1 && region.shapes.front().index() <= 2;
-  return is_solid ? StructureDistance(region.shapes.front()) : StructureDistance(voxels, scan);
+  if (region.shapes.size() == 1) {
+    const Shape& shape = region.shapes.front();
+    if (const auto* box = std::get_if<BoxShape>(&shape)) return StructureDistance(*box);
+    if (const auto* sphere = std::get_if<SphereShape>(&shape)) return StructureDistance(*sphere);
+    if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) return StructureDistance(*cylinder);
+  }
+  return {voxels, scan};
 }
 
 PlacedStructure place_structure(const NoGoStructure& structure, const PlacedExercise& placed,
-                                const Volume& scan) {
+                                const Volume& scan, NoGoDistances& distances) {
   const Exercise& exercise = placed.exercise;
   VoxelSet voxels = region_voxels(structure.region, scan, exercise.file);
   if (voxels.empty())
     refuse(exercise, structure.region.line, fmt::format("{} holds no voxel of the scan", structure.name));
-  StructureDistance distance = distance_of(structure.region, voxels, scan.geometry());
+  const StructureDistance& distance =
+      distances.emplace_back(distance_of(structure.region, voxels, scan.geometry()));
   std::size_t shared = 0;
   double least_mm = std::numeric_limits<double>::infinity();
   placed.target.for_each([&](const VoxelIndex& v) {
@@ -55,7 +77,7 @@ PlacedStructure place_structure(const NoGoStructure& structure, const PlacedExer
            fmt::format("the target overlaps {}, which must not be touched, by {:.4g} mm³", structure.name,
                        placed.volume_mm3(shared)));
   }
-  return {structure.name, structure.warn_mm, std::move(voxels), std::move(distance), least_mm};
+  return {structure.name, structure.warn_mm, std::move(voxels), least_mm};
 }
 
 std::string limits_text(const ExerciseItem& item, const std::string& unit) {
@@ -73,6 +95,7 @@ PlacedExercise place_exercise(const Exercise& exercise, const Volume& scan) {
   placed.scan = scan.geometry();
   placed.target = bone_within(region_voxels(exercise.target, scan, exercise.file), scan);
   if (placed.target.empty()) refuse(exercise, exercise.target.line, "the target holds no bone");
+  placed.outward_W = outward_of(placed.target, scan);
   placed.allowed = within_margin(placed.target, scan.geometry(), exercise.margin_mm);
   if (exercise.keep) {
     placed.keep = bone_within(region_voxels(*exercise.keep, scan, exercise.file), scan);
@@ -82,13 +105,36 @@ PlacedExercise place_exercise(const Exercise& exercise, const Volume& scan) {
         refuse(exercise, exercise.keep->line, "the target overlaps the bone to be kept");
     });
   }
+  auto distances = std::make_shared<NoGoDistances>();
   for (const NoGoStructure& structure : exercise.no_go)
-    placed.structures.push_back(place_structure(structure, placed, scan));
+    placed.structures.push_back(place_structure(structure, placed, scan, *distances));
+  placed.distances = std::move(distances);
   for (const ExerciseStep& step : exercise.steps) {
     placed.steps.push_back(bone_within(region_voxels(step.region, scan, exercise.file), scan));
     if (placed.steps.back().empty()) refuse(exercise, step.region.line, "the step's region holds no bone");
   }
   return placed;
+}
+
+std::shared_ptr<const LabelMap> colours_of(const PlacedExercise& placed) {
+  constexpr std::array<std::uint8_t, 3> kTarget{70, 190, 110}, kKeep{90, 140, 230};
+  constexpr std::array<std::array<std::uint8_t, 3>, 4> kNoGo{
+      {{235, 80, 60}, {240, 150, 40}, {215, 70, 160}, {160, 90, 220}}};
+  std::vector<Label> labels{{1, "target", kTarget}};
+  std::vector<LabelMap::LabelIndex> places(placed.scan.voxel_count(), 0);
+  const auto colour = [&](const VoxelSet& voxels) {
+    voxels.for_each([&](const VoxelIndex& v) {
+      places[row_major(placed.scan.dims, v.i, v.j, v.k)] = static_cast<LabelMap::LabelIndex>(labels.size());
+    });
+  };
+  colour(placed.target);
+  labels.push_back({2, "bone to be kept", kKeep});
+  colour(placed.keep);
+  for (std::size_t n = 0; n < placed.structures.size() && labels.size() < LabelMap::kMaxLabels; ++n) {
+    labels.push_back({static_cast<int>(n + 3), placed.structures[n].name, kNoGo[n % kNoGo.size()], true});
+    colour(placed.structures[n].voxels);
+  }
+  return std::make_shared<const LabelMap>(std::move(labels), placed.scan, placed.scan, places);
 }
 
 std::vector<std::string> describe(const PlacedExercise& placed) {
@@ -120,8 +166,7 @@ std::vector<std::string> describe(const PlacedExercise& placed) {
   }
   for (const ExerciseItem& item : exercise.items) {
     const Measure* measure = find_measure(item.measure);
-    lines.push_back(fmt::format("item {}{}: {}{}", item.measure,
-                                item.structure.empty() ? "" : " of " + item.structure,
+    lines.push_back(fmt::format("item {}{}: {}{}", item.measure, item.part.empty() ? "" : " of " + item.part,
                                 limits_text(item, measure != nullptr ? measure->unit : ""),
                                 item.source.empty() ? "" : " (" + item.source + ")"));
   }

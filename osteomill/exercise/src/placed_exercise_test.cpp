@@ -34,6 +34,22 @@ TEST(PlaceExercise, TakesTheBoneOfTheTargetAndNotTheAirAboveIt) {
   EXPECT_NEAR(volume_mm3(bone, placed.target), std::numbers::pi * 4 * 3, 0.02 * std::numbers::pi * 12);
 }
 
+TEST(PlaceExercise, FacesOutOfTheBoneAndColoursWhatTheTraineeIsShown) {
+  const Volume bone = bone_below_zero(0.25);
+  Exercise exercise = exercise_with_target(region_of({BoxShape{{-2, -2, -2}, {2, 2, 0}}}));
+  exercise.no_go.push_back({"nerve", region_of({BoxShape{{-2, -2, -6}, {2, 2, -5}}}), 3});
+  const PlacedExercise placed = place_exercise(exercise, bone);
+  EXPECT_TRUE(placed.outward_W.isApprox(Vec3::UnitZ(), 1e-9));
+  const std::shared_ptr<const LabelMap> colours = colours_of(placed);
+  const auto name_at = [&](const Vec3& point_W) {
+    const LabelMap::LabelIndex label = colours->nearest_to(point_W);
+    return label == 0 ? "" : colours->label(label).name;
+  };
+  EXPECT_EQ(name_at({0, 0, -1}), "target");
+  EXPECT_EQ(name_at({0, 0, -5.5}), "nerve");
+  EXPECT_EQ(name_at({0, 0, -3}), "");
+}
+
 TEST(PlaceExercise, AllowsTheMarginAroundTheTargetAndNothingBeyond) {
   const Volume bone = bone_below_zero(0.25);
   Exercise exercise = exercise_with_target(region_of({BoxShape{{-2, -2, -2.5}, {2, 2, 0}}}));
@@ -72,7 +88,7 @@ TEST(PlaceExercise, MeasuresHowFarAStructureLiesFromTheTarget) {
   exercise.no_go.push_back({"nerve", region_of({SphereShape{{0, 0, -6}, 1}}), 3});
   const PlacedExercise placed = place_exercise(exercise, bone);
   EXPECT_NEAR(placed.structures.front().from_target_mm, 3, 0.25);
-  EXPECT_NEAR(placed.structures.front().distance.from({0, 0, -2}), 3, 1e-12);
+  EXPECT_NEAR(no_go_distance_mm(*placed.distances, {0, 0, -2}, 0.5), 2.5, 1e-12);
 }
 
 TEST(PlaceExercise, RefusesWhatDoesNotFitTheScanAndNamesTheLine) {

@@ -5,16 +5,17 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "osteomill/base/input_error.h"
-#include "osteomill/exercise/nearest_voxels.h"
-#include "osteomill/exercise/structure_distance.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
+#include "osteomill/volume/nearest_voxels.h"
 #include "osteomill/volume/sampling.h"
+#include "osteomill/volume/structure_distance.h"
 
 namespace osteomill {
 
@@ -108,6 +109,16 @@ class Finder {
     return solid(cylinder, box_about(grid(), {cylinder.from_W, cylinder.to_W}, cylinder.radius_mm),
                  "cylinder");
   }
+  ShapeVoxels voxels_of(const OutsideConeShape& cone) const {
+    const Vec3 axis = cone.to_W - cone.from_W;
+    return {grid().all_voxels(), [this, cone, axis](const VoxelIndex& v) {
+              const Vec3 from_start = grid().world_from_voxel(v) - cone.from_W;
+              const double along = from_start.dot(axis) / axis.squaredNorm();
+              if (along < 0 || along > 1) return true;
+              const double radius_mm = cone.radius_mm + along * (cone.radius_to_mm - cone.radius_mm);
+              return (from_start - along * axis).norm() > radius_mm;
+            }};
+  }
   ShapeVoxels voxels_of(const ShellShape&) const { return {}; }
 
   ShapeVoxels voxels_of(const LabelShape& named) const {
@@ -192,29 +203,70 @@ VoxelSet removed_voxels(const Volume& before, const Volume& after) {
   return removed;
 }
 
-VoxelSet open_space(const Volume& bone, const VoxelSet& walls) {
-  const VoxelBox all = bone.geometry().all_voxels();
-  VoxelSet open(all);
+namespace {
+
+// Adds to `found` the space that is connected to a voxel by faces, and calls `use` with each of its voxels.
+template <typename IsSpace, typename Use>
+void flood(VoxelSet& found, const VoxelIndex& start, const IsSpace& is_space, const Use& use) {
   std::vector<VoxelIndex> pending;
   const auto enter = [&](const VoxelIndex& v) {
-    if (!all.contains(v) || open.contains(v) || bone.is_bone(v) || walls.contains(v)) return;
-    open.insert(v);
+    if (!found.box().contains(v) || found.contains(v) || !is_space(v)) return;
+    found.insert(v);
     pending.push_back(v);
   };
-  for_each(all, [&](const VoxelIndex& v) {
-    if (v.i == 0 || v.j == 0 || v.k == 0 || v.i == all.last.i || v.j == all.last.j || v.k == all.last.k)
-      enter(v);
-  });
+  enter(start);
   while (!pending.empty()) {
     const VoxelIndex v = pending.back();
     pending.pop_back();
+    use(v);
     for (const int step : {-1, 1}) {
       enter({v.i + step, v.j, v.k});
       enter({v.i, v.j + step, v.k});
       enter({v.i, v.j, v.k + step});
     }
   }
+}
+
+}  // namespace
+
+VoxelSet open_space(const Volume& bone, const VoxelSet& walls) {
+  const VoxelBox all = bone.geometry().all_voxels();
+  VoxelSet open(all);
+  const auto is_space = [&](const VoxelIndex& v) { return !bone.is_bone(v) && !walls.contains(v); };
+  for_each(all, [&](const VoxelIndex& v) {
+    if (v.i == 0 || v.j == 0 || v.k == 0 || v.i == all.last.i || v.j == all.last.j || v.k == all.last.k)
+      flood(open, v, is_space, [](const VoxelIndex&) {});
+  });
   return open;
+}
+
+bool is_cut_through(const VoxelSet& structure, const Volume& before, const Volume& after) {
+  const VoxelBox box = structure.box().grown(1).intersected(before.geometry().all_voxels());
+  // Bone that was removed beside the structure opens no way through it.
+  const auto is_space = [&](const Volume& within) {
+    return [&](const VoxelIndex& v) { return !(structure.contains(v) ? within : after).is_bone(v); };
+  };
+  std::unordered_map<std::size_t, int> number_beside;
+  const auto place = [&](const VoxelIndex& v) { return row_major(before.geometry().dims, v.i, v.j, v.k); };
+  VoxelSet was(box), is(box);
+  int number = 0;
+  for_each(box, [&](const VoxelIndex& start) {
+    ++number;
+    flood(was, start, is_space(before), [&](const VoxelIndex& v) {
+      if (!structure.contains(v)) number_beside[place(v)] = number;
+    });
+  });
+  bool is_joined = false;
+  for_each(box, [&](const VoxelIndex& start) {
+    int first = 0;
+    flood(is, start, is_space(after), [&](const VoxelIndex& v) {
+      const auto beside = number_beside.find(place(v));
+      if (beside == number_beside.end()) return;
+      is_joined = is_joined || (first != 0 && first != beside->second);
+      first = beside->second;
+    });
+  });
+  return is_joined;
 }
 
 VoxelSet bone_within(const VoxelSet& voxels, const Volume& bone) {

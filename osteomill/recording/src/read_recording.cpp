@@ -22,6 +22,9 @@ namespace osteomill {
 
 namespace fs = std::filesystem;
 
+template <>
+inline constexpr bool kFlat<ViewSample> = true;
+
 // Members that the reading process passes on.
 static auto members_of(RunSetting& setting) {
   return std::tie(setting.key, setting.value, setting.unit);
@@ -51,7 +54,7 @@ static auto members_of(RunPicture& picture) {
 }
 static auto members_of(Recording& recording) {
   return std::tie(recording.description, recording.sessions, recording.bone_hashes, recording.records,
-                  recording.pictures, recording.complete, recording.dropped);
+                  recording.views, recording.pictures, recording.complete, recording.dropped);
 }
 
 namespace {
@@ -79,24 +82,26 @@ std::size_t common_rows(const Hdf5File& recording, std::span<const Hdf5Column> c
   return rows;
 }
 
-void require_in_range(const Hdf5File& recording, const Field<TickRecord>& column, double value) {
+void require_in_range(const Hdf5File& recording, const FieldDescription& column, double value) {
   const bool is_missing = column.has(kMayBeNotFinite) && !std::isfinite(value);
   if (!is_missing && !column.range.contains(value))
     recording.refuse(fmt::format("the column '{}' holds {:g}", column.name, value));
 }
 
-std::vector<TickRecord> read_records(const Hdf5File& recording, bool complete) {
+// Reads a group that has a column for each field.
+template <typename Struct>
+std::vector<Struct> read_rows(const Hdf5File& recording, bool complete, const std::string& group) {
   std::vector<Hdf5Column> columns;
-  std::vector<const Field<TickRecord>*> fields;
-  for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
-    const std::string place = "columns/" + column.name;
+  std::vector<const Field<Struct>*> fields;
+  for (const Field<Struct>& column : fields_of<Struct>()) {
+    const std::string place = group + "/" + column.name;
     if (column.has(kMayBeAbsent) && H5Lexists(recording.id(), place.c_str(), H5P_DEFAULT) <= 0) continue;
     columns.push_back(open_column(recording, place));
     fields.push_back(&column);
   }
-  std::vector<TickRecord> records(common_rows(recording, columns, complete));
+  std::vector<Struct> records(common_rows(recording, columns, complete));
   for (std::size_t n = 0; n < columns.size(); ++n) {
-    const Field<TickRecord>& column = *fields[n];
+    const Field<Struct>& column = *fields[n];
     const auto values = read_values<double>(recording, columns[n]);
     for (std::size_t row = 0; row < records.size(); ++row) {
       require_in_range(recording, column, values[row]);
@@ -261,7 +266,9 @@ Recording read_open_file(const Hdf5File& open) {
   recording.complete = root.get<std::uint64_t>("complete") != 0;
   root.get("dropped_records", recording.dropped);
   recording.description = read_description(path, open.id());
-  recording.records = read_records(open, recording.complete);
+  recording.records = read_rows<TickRecord>(open, recording.complete, "columns");
+  if (H5Lexists(open.id(), "view", H5P_DEFAULT) > 0)
+    recording.views = read_rows<ViewSample>(open, recording.complete, "view");
   read_cuts(open, recording.description.labels, recording.complete, recording.records);
   recording.bone_hashes = read_hashes(open, recording.complete, recording.records.size());
   recording.sessions = read_sessions(open, recording);
@@ -320,6 +327,7 @@ Recording read_recording_chain(const fs::path& path) {
     record.session += static_cast<std::uint32_t>(sessions_before - 1);
     whole.records.push_back(record);
   }
+  whole.views.insert(whole.views.end(), recording.views.begin(), recording.views.end());
   whole.path = path;
   whole.pictures = std::move(recording.pictures);
   whole.complete = whole.complete && recording.complete;

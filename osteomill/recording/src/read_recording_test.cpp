@@ -1,3 +1,4 @@
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -115,11 +116,15 @@ TEST_F(ChangedRecording, AMissingColumnIsNamed) {
 TEST_F(ChangedRecording, OneFromBeforeHandsWereHeldBackIsRead) {
   change([](hid_t file) {
     H5Ldelete(file, "columns/driven", H5P_DEFAULT);
+    H5Ldelete(file, "columns/no_go_distance_mm", H5P_DEFAULT);
     H5Adelete_by_name(file, "sessions/0", "held_back", H5P_DEFAULT);
   });
   const Recording read = read_recording(path_);
   ASSERT_EQ(read.records.size(), 1500u);
-  for (const TickRecord& record : read.records) ASSERT_TRUE(record.driven);
+  for (const TickRecord& record : read.records) {
+    ASSERT_TRUE(record.driven);
+    ASSERT_TRUE(std::isnan(record.no_go_distance_mm));
+  }
   EXPECT_FALSE(read.sessions.front().start.handover.held_back);
 }
 

@@ -8,46 +8,50 @@
 
 #include "osteomill/base/atomic_file.h"
 #include "osteomill/recording/hdf5.h"
+#include "osteomill/recording/view_sample.h"
 
 namespace osteomill {
 
 namespace {
 
-using Fields = std::vector<Field<TickRecord>>;
+template <typename Struct>
+using Fields = std::vector<Field<Struct>>;
 
 constexpr NumberRange kReal{-kMaxReal, kMaxReal, false};
 
-template <typename Place>
-void add_real(Fields& fields, const char* name, const char* unit, Place place, const char* doc,
+template <typename Struct, typename Place>
+void add_real(Fields<Struct>& fields, const char* name, const char* unit, Place place, const char* doc,
               unsigned flags = 0) {
-  fields.push_back(field<TickRecord>({name, unit, kReal, doc, flags}, place));
+  fields.push_back(field<Struct>({name, unit, kReal, doc, flags}, place));
 }
 
-template <typename Place>
-void add_switch(Fields& fields, const char* name, Place place, const char* doc, unsigned flags = 0) {
-  fields.push_back(field<TickRecord>({name, "", NumberRange::on_or_off(), doc, flags}, place));
+template <typename Struct, typename Place>
+void add_switch(Fields<Struct>& fields, const char* name, Place place, const char* doc, unsigned flags = 0) {
+  fields.push_back(field<Struct>({name, "", NumberRange::on_or_off(), doc, flags}, place));
 }
 
-template <typename Place>
-void add_vector(Fields& fields, const std::string& name, const std::string& unit, Place place,
+template <typename Struct, typename Place>
+void add_vector(Fields<Struct>& fields, const std::string& name, const std::string& unit, Place place,
                 const char* doc, unsigned flags = 0) {
   for (const int axis : {0, 1, 2}) {
     const std::string unit_in_name = unit == "N mm" ? "Nmm" : unit;
-    fields.push_back(field<TickRecord>(
-        {fmt::format("{}_{}_{}", name, "xyz"[axis], unit_in_name), unit, kReal, doc, flags},
+    const std::string column =
+        fmt::format("{}_{}{}{}", name, "xyz"[axis], unit.empty() ? "" : "_", unit_in_name);
+    fields.push_back(field<Struct>(
+        {column, unit, kReal, doc, flags},
         [ place, axis ](auto& record) -> auto& { return place(record)[axis]; }));
   }
 }
 
-template <typename Place>
-void add_pose(Fields& fields, const std::string& name, Place place, const char* position_doc,
+template <typename Struct, typename Place>
+void add_pose(Fields<Struct>& fields, const std::string& name, Place place, const char* position_doc,
               const char* turn_doc, unsigned flags) {
   add_vector(
       fields, name, "mm", [place](auto& r) -> auto& { return (r.*place).position_mm; }, position_doc, flags);
   // In the order in which Eigen keeps them.
   constexpr int kW = 3;
   for (const int part : {kW, 0, 1, 2}) {
-    fields.push_back(field<TickRecord>(
+    fields.push_back(field<Struct>(
         {fmt::format("{}_q{}", name, "xyzw"[part]), "", kReal, turn_doc, flags},
         [ place, part ](auto& r) -> auto& { return (r.*place).orientation.coeffs()[part]; }));
   }
@@ -62,9 +66,9 @@ FieldDescription fault_column() {
   return column;
 }
 
-Fields record_fields() {
+Fields<TickRecord> record_fields() {
   using R = TickRecord;
-  Fields all;
+  Fields<R> all;
   add_real(all, "time_s", "s", &R::time_s, "when the tick began", kInLog);
   add_pose(all, "device", &R::X_WD,
            "device as read (X_WD), as the burr's centre, frame W; not finite without a pose",
@@ -113,6 +117,34 @@ Fields record_fields() {
            kInLog | kMayBeAbsent);
   add_real(all, "cut_density", "", &R::cut_density,
            "density before the burr relative to the reference; 0 without contact", kMayBeAbsent);
+  add_real(
+      all, "no_go_distance_mm", "mm", &R::no_go_distance_mm,
+      "distance of the burr's surface from the nearest structure of the exercise that it must not touch; "
+      "not a number without one",
+      kMayBeAbsent | kMayBeNotFinite);
+  return all;
+}
+
+Fields<ViewSample> view_fields() {
+  using V = ViewSample;
+  Fields<V> all;
+  add_real(all, "time_s", "s", &V::time_s, "time of the tick that was shown");
+  add_pose(all, "camera", &V::X_WC, "eye (X_WC), frame W",
+           "its orientation in W, unit quaternion: x to the right, y up, z towards the viewer", 0);
+  add_real(all, "field_of_view_rad", "rad", &V::field_of_view_rad, "angle of view from bottom to top");
+  add_real(all, "aspect", "", &V::aspect, "width of the picture by its height");
+  for (const std::size_t n : {0u, 1u, 2u, 3u}) {
+    const std::string cut = fmt::format("cut_{}", n + 1);
+    add_vector(
+        all, cut, "", [n](auto& v) -> auto& { return v.cuts[n].normal_W; },
+        "normal of a cut: points p with normal . p < offset are not shown; zero if there is none");
+    add_real(
+        all, (cut + "_offset_mm").c_str(), "mm", [n](auto& v) -> auto& { return v.cuts[n].offset_mm; },
+        "offset of the cut");
+  }
+  all.push_back(
+      field<V>({"step", "", NumberRange::count(0), "step of the exercise, from 1; 0 for none"}, &V::step));
+  add_switch(all, "guidance", &V::has_guidance, "1 if steps, colours and distances were shown");
   return all;
 }
 
@@ -131,8 +163,14 @@ void append_line(fmt::memory_buffer& text, const Write& write) {
 }  // namespace
 
 template <>
-const Fields& fields_of<TickRecord>() {
-  static const Fields all = record_fields();
+const Fields<TickRecord>& fields_of<TickRecord>() {
+  static const Fields<TickRecord> all = record_fields();
+  return all;
+}
+
+template <>
+const Fields<ViewSample>& fields_of<ViewSample>() {
+  static const Fields<ViewSample> all = view_fields();
   return all;
 }
 

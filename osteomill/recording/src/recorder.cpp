@@ -98,6 +98,7 @@ struct Recorder::Impl {
         const auto now = Clock::now();
         if (rows.empty()) waiting_since = now;
         write_rows(all_written || now - waiting_since >= kMaxWait);
+        if (all_written || now - flushed >= kFlushEvery) write_views();
         if (all_written || (file.rows() > flushed_rows && now - flushed >= kFlushEvery)) {
           file.flush(dropped.load(std::memory_order_relaxed));
           flushed = now;
@@ -122,6 +123,15 @@ struct Recorder::Impl {
       queue.pop();
     }
     return false;
+  }
+
+  void write_views() {
+    std::vector<ViewSample> waiting;
+    {
+      const std::lock_guard lock(starts_mutex);
+      waiting.swap(views);
+    }
+    file.append_views(waiting);
   }
 
   // Begins the session of a record; returns false if its initial state is not known yet.
@@ -160,6 +170,7 @@ struct Recorder::Impl {
   std::optional<std::uint32_t> session;
   std::mutex starts_mutex;
   std::deque<std::pair<std::uint32_t, SessionStart>> starts;
+  std::vector<ViewSample> views;
   std::vector<RunPicture> pictures;
   std::vector<RunSetting> settings;
   std::atomic<std::uint64_t> dropped{0};
@@ -205,6 +216,11 @@ std::uint64_t Recorder::dropped() const noexcept {
 
 bool Recorder::failed() const noexcept {
   return impl_->failed.load(std::memory_order_acquire);
+}
+
+void Recorder::add_view(const ViewSample& view) {
+  const std::lock_guard lock(impl_->starts_mutex);
+  impl_->views.push_back(view);
 }
 
 void Recorder::add_picture(const std::string& name, std::vector<unsigned char> png) {

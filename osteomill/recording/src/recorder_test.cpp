@@ -16,6 +16,7 @@
 
 #include "osteomill/base/input_error.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/recording/view_sample.h"
 
 #include "recording_file.h"
 #include "tests/support/recording_samples.h"
@@ -120,6 +121,31 @@ TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {
   EXPECT_EQ(read.pictures[0].name, "after");
   EXPECT_EQ(read.pictures[1].name, "before");
   EXPECT_EQ(read.pictures[1].png, png);
+}
+
+TEST(Recorder, KeepsEveryFieldOfTheViewsBesideTheTicks) {
+  const TestFolder folder;
+  const auto sample = [](int n) {
+    ViewSample view;
+    double value = n;
+    for (const Field<ViewSample>& field : fields_of<ViewSample>())
+      field.set(view, field.range.max == 1 ? n % 2 : ++value);
+    return view;
+  };
+  {
+    Recorder recorder(folder / "run.h5", sample_description());
+    for (int n = 0; n < 200; ++n) {
+      recorder.push_waiting(sample_record(n));
+      recorder.add_view(sample(n));
+    }
+    recorder.close();
+  }
+  const Recording read = read_recording(folder / "run.h5");
+  ASSERT_EQ(read.views.size(), 200u);
+  for (int n = 0; n < 200; ++n) {
+    for (const Field<ViewSample>& field : fields_of<ViewSample>())
+      ASSERT_EQ(field.get(read.views[static_cast<std::size_t>(n)]), field.get(sample(n))) << field.name;
+  }
 }
 
 // A path in Latin-1, and texts that are no UTF-8 for other reasons: in the file they are, and come back.

@@ -17,6 +17,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
+#include "osteomill/recording/view_sample.h"
 
 namespace osteomill {
 
@@ -135,7 +136,7 @@ RecordingFile::~RecordingFile() {
 
 bool RecordingFile::close() {
   bool closed = true;
-  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_, &view_columns_})
     for (Column& column : *columns) closed = column.dataset.close() && closed;
   if (!file_.valid()) return closed;
   closed = H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0 && closed;
@@ -180,15 +181,21 @@ Hdf5Handle RecordingFile::create_group(hid_t in, const std::string& name) const 
   return group;
 }
 
-void RecordingFile::create_columns() {
-  const Hdf5Handle group = create_group(file_.get(), "columns");
-  for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
-    columns_.push_back(create_column(group.get(), column.name.c_str(), file_type(column.range),
-                                     column.unit.c_str(), 1, kChunkRows));
-    const Attributes write(path_, columns_.back().dataset.get());
+template <typename Struct>
+std::vector<RecordingFile::Column> RecordingFile::create_columns_of(hid_t group, hsize_t chunk_rows) const {
+  std::vector<Column> columns;
+  for (const Field<Struct>& column : fields_of<Struct>()) {
+    columns.push_back(create_column(group, column.name.c_str(), file_type(column.range), column.unit.c_str(),
+                                    1, chunk_rows));
+    const Attributes write(path_, columns.back().dataset.get());
     write.put("meaning", column.doc);
     if (!column.choices.empty()) write.put("codes", codes_of(column));
   }
+  return columns;
+}
+
+void RecordingFile::create_columns() {
+  columns_ = create_columns_of<TickRecord>(create_group(file_.get(), "columns").get(), kChunkRows);
   const Hdf5Handle hashes = create_group(file_.get(), "bone_hash");
   for (const char* name : {"row", "hash"})
     hash_columns_.push_back(create_column(hashes.get(), name, H5T_STD_U64LE, "", 1, kSmallChunkRows));
@@ -281,16 +288,28 @@ void RecordingFile::append(std::span<const TickRecord> records) {
   // few numbers a record at the most.
   reserve((records.size() + 2 * kChunkRows) *
           (columns_.size() + 2 + 3 * std::tuple_size_v<LabelCuts>)*sizeof(double));
-  values_.resize(records.size());
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
-    for (std::size_t row = 0; row < records.size(); ++row) {
-      values_[row] = fields_of<TickRecord>()[c].get(records[row]);
-    }
-    append_to<double>(columns_[c], values_);
-  }
+  append_fields(columns_, records);
   if (!labels_.empty()) append_cuts(records);
   append_hashes(records);
   rows_ += records.size();
+}
+
+void RecordingFile::append_views(std::span<const ViewSample> views) {
+  if (views.empty()) return;
+  const Hdf5Lock lock;
+  reserve((views.size() + 2 * kSmallChunkRows) * fields_of<ViewSample>().size() * sizeof(double));
+  if (view_columns_.empty())
+    view_columns_ = create_columns_of<ViewSample>(create_group(file_.get(), "view").get(), kSmallChunkRows);
+  append_fields(view_columns_, views);
+}
+
+template <typename Struct>
+void RecordingFile::append_fields(std::vector<Column>& columns, std::span<const Struct> rows) {
+  values_.resize(rows.size());
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    for (std::size_t row = 0; row < rows.size(); ++row) values_[row] = fields_of<Struct>()[c].get(rows[row]);
+    append_to<double>(columns[c], values_);
+  }
 }
 
 void RecordingFile::append_cuts(std::span<const TickRecord> records) {
@@ -352,7 +371,7 @@ void RecordingFile::flush(std::uint64_t dropped) {
 
 // Frees HDF5's record of the pieces' places, 100 MB an hour, by closing each dataset (H5Pset_evict_on_close).
 void RecordingFile::forget_flushed_metadata() {
-  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_}) {
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_, &view_columns_}) {
     for (Column& column : *columns) {
       const Hdf5Handle access(H5Dget_access_plist(column.dataset.get()), H5Pclose);
       const ssize_t length = H5Iget_name(column.dataset.get(), nullptr, 0);

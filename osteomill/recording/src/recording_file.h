@@ -38,6 +38,8 @@ class RecordingFile {
   /// The rows from `row` on are of another session; the first one's description is the recording's own.
   void begin_session(const SessionStart& start, std::uint64_t row);
   void append(std::span<const TickRecord> records);
+  /// Adds views to the group /view, which is made for the first.
+  void append_views(std::span<const ViewSample> views);
   std::uint64_t rows() const { return rows_; }
   /// Makes what was appended so far survive the end of this program, however it ends.
   void flush(std::uint64_t dropped);
@@ -69,6 +71,10 @@ class RecordingFile {
   void append_cuts(std::span<const TickRecord> records);
   void append_hashes(std::span<const TickRecord> records);
   void append_hash(const BoneHash& hash);
+  template <typename Struct>
+  std::vector<Column> create_columns_of(hid_t group, hsize_t chunk_rows) const;
+  template <typename Struct>
+  void append_fields(std::vector<Column>& columns, std::span<const Struct> rows);
   template <typename Value>
   void append_to(Column& column, std::span<const Value> values) const;
   void write_bricks(hid_t session, std::span<const DensityBlock> bricks) const;
@@ -80,6 +86,8 @@ class RecordingFile {
   // The columns of cuts by label: row, label, removed_mm3; empty if the bone has none.
   std::vector<Column> cut_columns_;
   std::vector<Column> hash_columns_;
+  // None before the first view.
+  std::vector<Column> view_columns_;
   std::vector<Label> labels_;
   std::vector<double> values_;
   std::uint64_t rows_ = 0;

@@ -1,6 +1,7 @@
 #include "osteomill/recording/replay_recording.h"
 
 #include <bit>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -90,8 +91,11 @@ std::optional<std::string> difference_of(const TickRecord& recorded, const TickR
   for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
     if (column.has(kMeasuredTime)) continue;
     const double then = column.get(recorded);
-    if (column.has(kMayBeAbsent) && then == TickRecord::kNotRecorded) continue;
     const double again = column.get(now);
+    // A replay has no exercise's structures, and an earlier program no such column.
+    if (column.has(kMayBeAbsent) &&
+        (then == TickRecord::kNotRecorded || std::isnan(then) || std::isnan(again)))
+      continue;
     if (std::bit_cast<std::uint64_t>(then) == std::bit_cast<std::uint64_t>(again)) continue;
     return fmt::format("{} is {} where {} was recorded (by {:.3g})", column.name, again, then, again - then);
   }
@@ -111,7 +115,8 @@ void require_same_removal(const Recording& recording, std::size_t tick, double r
                                 recorded_mm3, removed_mm3));
 }
 
-void repeat_session(Volume& volume, const Recording& recording, std::size_t number) {
+void repeat_session(Volume& volume, const Recording& recording, std::size_t number,
+                    const OnRepeatedTick& on_tick) {
   const auto& [first, start] = recording.sessions[number];
   const SessionSettings settings = session_settings(start.run, recording.path);
   const MillingSettings milling = milling_settings(settings.setup);
@@ -122,14 +127,19 @@ void repeat_session(Volume& volume, const Recording& recording, std::size_t numb
   double removed_mm3 = start.removed_mm3;
   for (std::size_t tick = first; tick < end_of(recording, number); ++tick) {
     const TickRecord& record = recording.records[tick];
+    VolumeChange change;
     if (!record.paused) {
       const Vec3 paying_W_N =
           paying_force_W_N(milling, record.X_WT, record.burr_force_W_N, record.spindle_on);
       const double speed_share =
           settings.setup.handpiece == Handpiece::none ? 1 : record.spindle_rpm / milling.spindle_speed_rpm;
-      removed_mm3 += mill.step(record.X_WT.position_mm, paying_W_N, record.dt_s, speed_share).removed_mm3;
+      const MillingStep step = mill.step(record.X_WT.position_mm, paying_W_N, record.dt_s, speed_share);
+      removed_mm3 += step.removed_mm3;
+      change = step.change;
     }
     require_same_removal(recording, tick, removed_mm3);
+    if (tick == first) change.voxels = volume.geometry().all_voxels();
+    if (on_tick) on_tick(tick, volume, change);
   }
 }
 
@@ -190,13 +200,13 @@ Verification verify_recording(const Volume& scan, const Recording& recording,
   return verified;
 }
 
-void repeat_milling(Volume& volume, const Recording& recording) {
+void repeat_milling(Volume& volume, const Recording& recording, const OnRepeatedTick& on_tick) {
   require_made_with(recording, volume);
   require_whole(recording);
   const Volume scan = volume;
   for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
     if (n > 0) volume = scan;
-    repeat_session(volume, recording, n);
+    repeat_session(volume, recording, n, on_tick);
   }
   EditableVolume(volume).set_isovalue(scan.isovalue());
 }

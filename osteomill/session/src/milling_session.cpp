@@ -129,6 +129,9 @@ TickRecord MillingSession::tick(Device& device, const TickInput& input) {
   }
   record.energy_given_Nmm = guard_.energy_given_Nmm();
   record.removed_mm3 = removed_mm3_;
+  if (volume_->no_go())
+    record.no_go_distance_mm =
+        no_go_distance_mm(*volume_->no_go(), record.X_WT.position_mm, setup_.tool.burr_radius_mm);
   record.bone_hash = volume_->change_hash();
   device.tick_done(last_X_WT_.value_or(record.X_WD), input.dt_s);
   return record;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "osteomill/exercise/placed_exercise.h"
-#include "osteomill/exercise/voxel_set.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/volume/volume.h"
+#include "osteomill/volume/voxel_set.h"
 
 namespace osteomill {
 
@@ -20,6 +22,9 @@ struct AttemptTick {
   /// In mm^3 of the reference density, as TickRecord counts.
   double removed_mm3 = 0;
   bool spindle_on = false;
+  /// Whether bone or the picture's edge hid the burr's contact from the trainee; nothing if it did not cut or
+  /// no view was recorded.
+  std::optional<bool> is_contact_hidden = {};
   /// False in pauses, and without a pose: then the burr's place means nothing.
   bool is_placed = true;
   bool is_cutting() const { return removed_mm3 > 0; }
@@ -38,7 +43,16 @@ struct Attempt {
   std::vector<double> distances_mm;
   /// By structure (`thickness_left_mm`).
   std::vector<std::vector<double>> thickness_left_mm;
+  /// The time at which each voxel of `removed` went, by its index in the scan.
+  std::unordered_map<std::size_t, float> removal_times_s;
+  std::vector<ViewSample> views;
 
+  /// Returns when a voxel of the scan was removed; nothing if it was not.
+  std::optional<double> removed_at_s(const VoxelIndex& v) const {
+    const auto found = removal_times_s.find(row_major(exercise->scan.dims, v.i, v.j, v.k));
+    if (found == removal_times_s.end()) return std::nullopt;
+    return static_cast<double>(found->second);
+  }
   /// Returns the distance from one structure in a tick; not a number if the burr has no place.
   double distance_mm(std::size_t tick, std::size_t structure) const {
     return distances_mm[tick * exercise->structures.size() + structure];
@@ -59,6 +73,24 @@ std::vector<std::vector<double>> thickness_left_mm(const PlacedExercise& exercis
 /// Runs the recording's milling again on the exercise's scan. Throws InputError, naming the recording, as
 /// `repeat_milling` does. `exercise` and `scan` outlive the attempt. Long work.
 Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const Recording& recording);
+
+/// How far an attempt was at one time.
+struct AttemptProgress {
+  double time_s = 0;
+  double target_removed_percent = 0;
+  double removed_outside_mm3 = 0;
+  double dice_percent = 0;
+};
+/// Returns how the bone went that is gone at the end, in at most 200 equal steps of time; none without ticks.
+std::vector<AttemptProgress> progress_of(const Attempt& attempt);
+
+/// Returns whether the point where a burr presses is hidden in a view: by bone that is not cut away from the
+/// view, or because it lies outside of the picture.
+bool is_hidden(const ViewSample& view, const Volume& bone, const Vec3& contact_W);
+
+/// Returns how often the view began to turn, shift or zoom after half a second at rest; not a number without
+/// views.
+double view_changes(const std::vector<ViewSample>& views);
 
 /// A piece of the burr's path on which it cut and kept its direction.
 struct Stroke {

@@ -6,28 +6,21 @@
 #include <variant>
 #include <vector>
 
-#include "osteomill/base/pose.h"
+#include "osteomill/volume/structure_distance.h"
 
 namespace osteomill {
 
-/// A box along the axes of W.
-struct BoxShape {
-  Vec3 min_W = Vec3::Zero();
-  Vec3 max_W = Vec3::Zero();
-};
-struct SphereShape {
-  Vec3 center_W = Vec3::Zero();
-  double radius_mm = 0;
-};
-/// A cylinder with flat ends.
-struct CylinderShape {
-  Vec3 from_W = Vec3::Zero();
-  Vec3 to_W = Vec3::UnitZ();
-  double radius_mm = 0;
-};
 /// The outermost layer of the bone. Hollows that the bone encloses have none.
 struct ShellShape {
   double thickness_mm = 0;
+};
+/// Everything outside of a cone's frustum with flat ends.
+struct OutsideConeShape {
+  Vec3 from_W = Vec3::Zero();
+  Vec3 to_W = Vec3::UnitZ();
+  double radius_mm = 0;
+  /// The radius at the end `to_W`.
+  double radius_to_mm = 0;
 };
 /// A structure of the label map, by name (case does not matter) or value.
 struct LabelShape {
@@ -39,7 +32,8 @@ struct RecordedShape {
   int at_least = 1;
 };
 /// One shape of a region.
-using Shape = std::variant<BoxShape, SphereShape, CylinderShape, ShellShape, LabelShape, RecordedShape>;
+using Shape = std::variant<BoxShape, SphereShape, CylinderShape, OutsideConeShape, ShellShape, LabelShape,
+                           RecordedShape>;
 
 /// A part of the scan: everything that lies in all of its shapes.
 struct Region {
@@ -67,8 +61,9 @@ struct ExerciseStep {
 /// A measure with its limits; at least one of them is there.
 struct ExerciseItem {
   std::string measure;
-  /// The structure that it is measured of; empty for the worst of all, or if there is nothing to choose.
-  std::string structure;
+  /// The structure, or the number of the step, that it is measured of; empty for all, or if there is nothing
+  /// to choose.
+  std::string part;
   std::optional<double> at_least;
   std::optional<double> at_most;
   std::string source;
@@ -94,6 +89,8 @@ struct Exercise {
   /// Bone that must stay, wherever it lies.
   std::optional<Region> keep;
   std::vector<NoGoStructure> no_go;
+  /// The unit vector along which a prepared crown is taken off; nothing if none is prepared.
+  std::optional<Vec3> crown_axis_W;
   std::optional<Vec3> entry_W_mm;
   /// The radii of the burrs that may be used, mm; empty for any.
   std::vector<double> burr_radii_mm;

@@ -22,9 +22,16 @@ struct Measure {
   std::string source;
   /// Returns the value; not a number if it could not be measured.
   std::function<double(const Attempt&)> value;
-  /// If there is one, the measure of a single structure, by its place among the exercise's.
-  std::function<double(const Attempt&, std::size_t structure)> value_at = {};
+  /// Whether each no-go structure, or each step, has a value of its own, too.
+  enum class Each : unsigned char { none, structure, step };
+  Each each = Each::none;
+  /// Returns the value of one of them, by its place among the exercise's.
+  std::function<double(const Attempt&, std::size_t part)> value_at = {};
 };
+
+/// Returns the names of the parts of an exercise that have a value of this measure each: of structures, or
+/// the numbers of steps from 1.
+std::vector<std::string> parts_of(const Measure& measure, const Exercise& exercise);
 
 /// Returns every measure, in the order in which people should read them.
 const std::vector<Measure>& all_measures();
@@ -39,7 +46,7 @@ std::string measures_table();
 
 /// A row of a debriefing.
 struct MeasuredValue {
-  /// The measure, and behind a dot the structure if it is of one: "no_go_contact_s.facial nerve".
+  /// The measure, and behind a dot the structure or step if it is of one: "no_go_contact_s.facial nerve".
   std::string measure;
   /// Nothing if it could not be measured.
   std::optional<double> value;
@@ -51,12 +58,16 @@ struct MeasuredValue {
   std::string source;
 };
 
-/// Measures an attempt: a row for each measure, for each of its structures, and for each further item that
-/// limits it.
+/// Measures an attempt: a row for each measure, for each of its structures or steps, and for each further
+/// item that limits it.
 std::vector<MeasuredValue> measure_attempt(const Attempt& attempt);
 
 /// Writes the rows as CSV with the columns measure,value,unit,limit,met,source. Throws InputError, naming the
 /// file, if it cannot be written.
 void write_measured(const std::filesystem::path& path, const std::vector<MeasuredValue>& rows);
+
+/// Writes how target, bone outside and Dice coefficient went on over the session, as CSV. Throws as
+/// `write_measured`.
+void write_progress(const std::filesystem::path& path, const Attempt& attempt);
 
 }  // namespace osteomill

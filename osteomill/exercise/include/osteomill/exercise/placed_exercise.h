@@ -1,12 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "osteomill/exercise/exercise.h"
-#include "osteomill/exercise/structure_distance.h"
-#include "osteomill/exercise/voxel_set.h"
+#include "osteomill/volume/label_map.h"
+#include "osteomill/volume/structure_distance.h"
 #include "osteomill/volume/volume.h"
+#include "osteomill/volume/voxel_set.h"
 
 namespace osteomill {
 
@@ -14,7 +16,6 @@ struct PlacedStructure {
   std::string name;
   double warn_mm = 3;
   VoxelSet voxels;
-  StructureDistance distance;
   /// The shortest distance of the target from the structure, mm.
   double from_target_mm = 0;
 };
@@ -25,11 +26,15 @@ struct PlacedExercise {
   GridGeometry scan;
   /// The bone to be removed.
   VoxelSet target;
+  /// The direction into which the target's surface faces, of length 1.
+  Vec3 outward_W = Vec3::UnitZ();
   /// Every voxel that may be removed: the target, and all within the margin around it.
   VoxelSet allowed;
   /// Bone that must stay, of the region that the exercise names.
   VoxelSet keep;
   std::vector<PlacedStructure> structures;
+  /// Their distances, one for each, which the bone carries to the haptic tick (Volume::no_go).
+  std::shared_ptr<const NoGoDistances> distances = std::make_shared<NoGoDistances>();
   /// The bone of each step.
   std::vector<VoxelSet> steps;
 
@@ -44,6 +49,9 @@ struct PlacedExercise {
 /// and if the target holds no bone, overlaps a structure that must not be touched, or a step or a structure
 /// is empty. Long work.
 PlacedExercise place_exercise(const Exercise& exercise, const Volume& scan);
+
+/// Returns a label map of the scan that colours the target, the structures and the bone to be kept.
+std::shared_ptr<const LabelMap> colours_of(const PlacedExercise& placed);
 
 /// Returns lines for people: the target and its volume, structures and distances, steps and items.
 std::vector<std::string> describe(const PlacedExercise& placed);

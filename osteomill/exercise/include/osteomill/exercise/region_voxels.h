@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "osteomill/exercise/exercise.h"
-#include "osteomill/exercise/voxel_set.h"
 #include "osteomill/volume/volume.h"
+#include "osteomill/volume/voxel_set.h"
 
 namespace osteomill {
 
@@ -20,6 +20,10 @@ VoxelSet removed_voxels(const Volume& before, const Volume& after);
 /// Returns the voxels without bone that are connected to the border of the scan by their faces. Voxels of
 /// `walls` are in no way part of it. Long work.
 VoxelSet open_space(const Volume& bone, const VoxelSet& walls = {});
+
+/// Returns whether milling opened a way through a structure: removed bone within it joins spaces beside it
+/// that nothing within it joined before. Long work.
+bool is_cut_through(const VoxelSet& structure, const Volume& before, const Volume& after);
 
 /// Returns the part of a set that is bone.
 VoxelSet bone_within(const VoxelSet& voxels, const Volume& bone);

@@ -96,6 +96,10 @@ class LiveMilling {
   /// `update` or `finish_preparing` throws because that session cannot be prepared.
   std::string start_recording(const std::filesystem::path& path, RunDescription description,
                               TakePicture picture = {});
+  /// Adds a view to the recording, if there is one (Recorder::add_view).
+  void record_view(const ViewSample& view) {
+    if (recorder_) recorder_->add_view(view);
+  }
   /// Ends the recording and returns its name. Throws as Recorder::close does.
   std::filesystem::path stop_recording();
   bool is_recording() const { return recorder_ != nullptr; }

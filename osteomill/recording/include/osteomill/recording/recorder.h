@@ -68,6 +68,9 @@ class Recorder {
   /// Returns whether writing has failed (a full disk); the reason comes from `close`. From any thread.
   bool failed() const noexcept;
 
+  /// Adds a view to those of the recording. Call it from the thread that closes the recorder.
+  void add_view(const ViewSample& view);
+
   /// Adds a picture to be stored at closing. `png` are the bytes of a PNG file; the name must be new and hold
   /// only letters, digits, '-' and '_' (else std::invalid_argument).
   void add_picture(const std::string& name, std::vector<unsigned char> png);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "osteomill/recording/run_description.h"
+#include "osteomill/recording/view_sample.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/tick_record.h"
 #include "osteomill/volume/density_block.h"
@@ -68,6 +69,8 @@ struct Recording {
   /// The hashes of every hundredth record, and of the last one.
   std::vector<BoneHash> bone_hashes;
   std::vector<TickRecord> records;
+  /// The views that a trainee had, by time; none if there was no window.
+  std::vector<ViewSample> views;
   /// The pictures, sorted by name.
   std::vector<RunPicture> pictures;
   /// False if the program ended before it closed the recording; up to the last second is missing.

@@ -57,11 +57,16 @@ struct Verification {
 Verification verify_recording(const Volume& scan, const Recording& recording,
                               const std::function<void(std::size_t ticks)>& on_progress = {});
 
+/// A function that is told of each tick of `repeat_milling`, after it: its index, the bone, and where that
+/// may have changed. The first tick of a session may have changed all of it.
+using OnRepeatedTick = std::function<void(std::size_t tick, const Volume& bone, const VolumeChange& change)>;
+
 /// Mills the bone as the recording did: `volume` is the scan as it was when the recording began, and is
 /// afterwards as it was when the recording ended, density by density; its isovalue plays no part and stays.
 /// Throws InputError, naming the recording, if it was made with another scan, lost ticks, goes on from the
 /// milling of another recording, or does not say how the bone was milled; the bone is then in part milled.
-/// Not for the tick.
-void repeat_milling(Volume& volume, const Recording& recording);
+/// `on_tick`
+/// may be empty. Not for the tick.
+void repeat_milling(Volume& volume, const Recording& recording, const OnRepeatedTick& on_tick = {});
 
 }  // namespace osteomill

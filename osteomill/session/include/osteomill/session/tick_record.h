@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "osteomill/base/pose.h"
 #include "osteomill/base/wrench.h"
@@ -51,6 +52,9 @@ struct TickRecord {
   double cut_density = kNotRecorded;
   /// The bone removed since the start, in mm^3 of reference density.
   double removed_mm3 = 0;
+  /// The distance of the burr's surface from the nearest structure that it must not touch (Volume::no_go);
+  /// not a number without structures.
+  double no_go_distance_mm = std::numeric_limits<double>::quiet_NaN();
   /// The hash of the bone after the tick (Volume::change_hash).
   std::uint64_t bone_hash = 0;
   /// If the bone has labels: how much of which was taken in this tick, and which no-go ones were touched.

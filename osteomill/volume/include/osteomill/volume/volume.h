@@ -10,6 +10,7 @@
 #include "osteomill/volume/block_ranges.h"
 #include "osteomill/volume/density_grid.h"
 #include "osteomill/volume/label_map.h"
+#include "osteomill/volume/structure_distance.h"
 
 namespace osteomill {
 
@@ -34,6 +35,11 @@ class Volume {
   const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
   /// Sets the map, which is of this grid. Not for the tick.
   void set_labels(std::shared_ptr<const LabelMap> labels) { labels_ = std::move(labels); }
+  /// Returns the structures whose distance is recorded in every tick; null if there are none. Copies of the
+  /// bone share them.
+  const std::shared_ptr<const NoGoDistances>& no_go() const { return no_go_; }
+  /// Sets them. Not for the tick.
+  void set_no_go(std::shared_ptr<const NoGoDistances> structures) { no_go_ = std::move(structures); }
 
   /// Returns whether voxel `v`, which lies in the grid, is bone.
   bool is_bone(const VoxelIndex& v) const noexcept { return static_cast<double>(grid_[v]) > isovalue_; }
@@ -77,6 +83,7 @@ class Volume {
   double isovalue_ = 0;
   std::uint64_t change_hash_ = 0;
   std::shared_ptr<const LabelMap> labels_;
+  std::shared_ptr<const NoGoDistances> no_go_;
 };
 
 /// Calls `visit` with every bone voxel, i running fastest; passes over bricks without bone. Long work

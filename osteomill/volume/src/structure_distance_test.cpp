@@ -1,4 +1,4 @@
-#include "osteomill/exercise/structure_distance.h"
+#include "osteomill/volume/structure_distance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,16 @@ TEST(StructureDistance, MeasuresSolidsExactly) {
   EXPECT_DOUBLE_EQ(cylinder.from({0, 3, 2}), 2);
   EXPECT_DOUBLE_EQ(cylinder.from({0, 4, 8}), 5);
   EXPECT_DOUBLE_EQ(cylinder.from({0, 0.5, -2}), 2);
-  EXPECT_THROW(StructureDistance(ShellShape{1}), std::invalid_argument);
+  EXPECT_THROW(StructureDistance(VoxelSet(), GridGeometry()), std::invalid_argument);
+}
+
+TEST(NoGoDistances, GiveThatOfTheNearestStructureLessTheBurrsRadius) {
+  const NoGoDistances structures{StructureDistance(SphereShape{{0, 0, 0}, 1}),
+                                 StructureDistance(BoxShape{{5, -1, -1}, {6, 1, 1}})};
+  EXPECT_DOUBLE_EQ(no_go_distance_mm(structures, {3.5, 0, 0}, 0.5), 1);
+  EXPECT_DOUBLE_EQ(no_go_distance_mm(structures, {1.25, 0, 0}, 0.5), -0.25);
+  EXPECT_TRUE(std::isnan(no_go_distance_mm({}, {0, 0, 0}, 0.5)));
+  EXPECT_TRUE(std::isnan(no_go_distance_mm(structures, {NAN, 0, 0}, 0.5)));
 }
 
 }  // namespace

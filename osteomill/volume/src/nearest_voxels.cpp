@@ -1,4 +1,4 @@
-#include "osteomill/exercise/nearest_voxels.h"
+#include "osteomill/volume/nearest_voxels.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "osteomill/exercise/structure_distance.h"
+#include "osteomill/volume/structure_distance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,10 +37,6 @@ double distance_mm(const CylinderShape& cylinder, const Vec3& point_W) noexcept 
                     std::max({0.0, -along_mm, along_mm - length_mm}));
 }
 
-StructureDistance::StructureDistance(const Shape& shape) : shape_(shape) {
-  if (shape.index() > 2) throw std::invalid_argument("StructureDistance: the shape is no solid");
-}
-
 StructureDistance::StructureDistance(const VoxelSet& voxels, const GridGeometry& scan)
     : scan_(scan), nearest_(voxels, reached_from(voxels.box(), scan.spacing_mm), scan.spacing_mm) {
   if (!nearest_.found()) throw std::invalid_argument("StructureDistance: the structure has no voxels");
@@ -48,10 +44,7 @@ StructureDistance::StructureDistance(const VoxelSet& voxels, const GridGeometry&
 
 double StructureDistance::from(const Vec3& point_W) const noexcept {
   if (nearest_.found()) return from_voxels(point_W);
-  if (const auto* box = std::get_if<BoxShape>(&shape_)) return distance_mm(*box, point_W);
-  if (const auto* sphere = std::get_if<SphereShape>(&shape_)) return distance_mm(*sphere, point_W);
-  if (const auto* cylinder = std::get_if<CylinderShape>(&shape_)) return distance_mm(*cylinder, point_W);
-  return std::numeric_limits<double>::infinity();
+  return std::visit([&](const auto& solid) { return distance_mm(solid, point_W); }, solid_);
 }
 
 double StructureDistance::from_voxels(const Vec3& point_W) const noexcept {
@@ -67,6 +60,15 @@ double StructureDistance::from_voxels(const Vec3& point_W) const noexcept {
     least2_mm2 = std::min(least2_mm2, outside.cwiseProduct(scan_.spacing_mm).squaredNorm());
   });
   return std::sqrt(least2_mm2);
+}
+
+double no_go_distance_mm(const NoGoDistances& structures, const Vec3& burr_centre_W,
+                         double burr_radius_mm) noexcept {
+  double least_mm = std::numeric_limits<double>::quiet_NaN();
+  if (!burr_centre_W.allFinite()) return least_mm;
+  for (const StructureDistance& structure : structures)
+    least_mm = std::fmin(least_mm, structure.from(burr_centre_W) - burr_radius_mm);
+  return least_mm;
 }
 
 }  // namespace osteomill

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "osteomill/exercise/voxel_set.h"
+#include "osteomill/volume/voxel_set.h"
 
 namespace osteomill {
 
