@@ -75,6 +75,16 @@ Camera first_camera(const BoneBox& box, const PixelSize& size) {
   return showing_whole(camera_on(box.bounds(), -towards_viewer, Vec3::UnitZ()), box, size);
 }
 
+Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, const PixelSize& size) {
+  // Tilted, so that depths are seen.
+  constexpr double kTilt_rad = 0.45;
+  const Vec3 outward_W = exercise.outward_W;
+  const Vec3 up_W = std::abs(outward_W.z()) < 0.8 ? Vec3(Vec3::UnitZ()) : Vec3(-Vec3::UnitY());
+  const Vec3 aside_W = up_W.cross(outward_W).normalized();
+  const Vec3 towards_W = Eigen::AngleAxisd(kTilt_rad, aside_W) * outward_W;
+  return showing_whole(camera_on(box.bounds(), -towards_W, up_W), box, size);
+}
+
 std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
                                      const PixelSize& size, double x_px, double y_px) {
   const Vec3 ray_W = ray_through(camera, size, x_px, y_px);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "osteomill/exercise/placed_exercise.h"
 #include "osteomill/haptics/milling_tool.h"
 #include "osteomill/visual/camera.h"
 #include "osteomill/volume/volume.h"
@@ -29,6 +30,9 @@ Camera showing_whole(Camera camera, const BoneBox& box, const PixelSize& size);
 /// All of the bone upright by the patient's axes: from the front, or from the left if the bone is deeper
 /// than wide, a little from above and aside.
 Camera first_camera(const BoneBox& box, const PixelSize& size);
+
+/// The view into which the target's surface faces, with all of the bone.
+Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, const PixelSize& size);
 
 /// The tool free of bone, before the point of bone that is seen at a pixel; nothing if no bone is.
 std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,

@@ -51,7 +51,7 @@ fs::path FilesPanel::name(const std::string& what) const {
   return path;
 }
 
-void FilesPanel::record(ViewState& view, Simulation& simulation) {
+void FilesPanel::record(ViewState& view, Simulation& simulation, const std::string& what) {
   view.dialogues.run_reporting_errors([&] {
     create_folder(folder_);
     if (simulation.milling.is_recording()) {
@@ -60,7 +60,7 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
       view.result = last_recording_;
     } else {
       view.message = simulation.milling.start_recording(
-          name("recording.h5"), simulation.describe(),
+          name(what), simulation.describe(),
           [this, camera = view.camera](std::string_view name) -> std::optional<std::vector<unsigned char>> {
             if (name == kPictureAlong) return std::nullopt;
             return encode_png(take_picture_(camera));
@@ -68,6 +68,10 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
       recording_since_ = std::chrono::steady_clock::now();
     }
   });
+}
+
+void FilesPanel::begin_recording(ViewState& view, Simulation& simulation, const std::string& what) {
+  if (!simulation.milling.is_recording()) record(view, simulation, what);
 }
 
 void FilesPanel::end_recording(ViewState& view, Simulation& simulation) {

@@ -30,6 +30,8 @@ class FilesPanel {
   float draw_message(ViewState& view, const Simulation& simulation, const PixelSize& size);
   /// Ends a recording that still goes on, and waits until everything is written.
   void close(ViewState& view, Simulation& simulation);
+  /// Begins a recording, unless one goes on; its name ends in `what`.
+  void begin_recording(ViewState& view, Simulation& simulation, const std::string& what);
   /// Ends a recording that still goes on.
   void end_recording(ViewState& view, Simulation& simulation);
   bool is_busy() const { return work_.valid(); }
@@ -52,7 +54,7 @@ class FilesPanel {
   std::filesystem::path name(const std::string& what) const;
 
  private:
-  void record(ViewState& view, Simulation& simulation);
+  void record(ViewState& view, Simulation& simulation, const std::string& what = "recording.h5");
   /// Begins to write this file.
   template <typename Write>
   void begin(const std::filesystem::path& path, Write write);

@@ -12,13 +12,12 @@ constexpr int kPicturesBetween = 8;
 constexpr double kMinMove_mm = 0.03;
 constexpr double kMinTurn_rad = 0.01;
 
-// The cut as a plane; its `other_side` turned round.
+}  // namespace
+
 ClipPlane plane_of(const ViewState::Cut& cut) {
   const double side = cut.other_side ? -1 : 1;
   return {side * cut.normal_W, side * static_cast<double>(cut.offset_mm)};
 }
-
-}  // namespace
 
 void CutUpdates::update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer) {
   ++pictures_;
@@ -30,12 +29,13 @@ void CutUpdates::update(const ViewState& view, const Simulation& simulation, Sce
     }
     const ClipPlane plane = plane_of(view.cuts[n]);
     const std::uint64_t version = simulation.milling.follower().version();
-    const bool same_cut = shown && shown->plane == plane && shown->labels == view.labels;
+    const bool same_cut = shown && shown->plane == plane && shown->labels == simulation.shows_labels(view);
     if (same_cut && (shown->bone_version == version || pictures_ % kPicturesBetween != 0)) continue;
-    shown = {plane, view.labels, version};
+    shown = {plane, simulation.shows_labels(view), version};
     simulation.milling.follower().read([&](const Volume& bone) {
-      renderer.set_clip_face(n, clip_face(bone.grid(), plane, simulation.scan.grey_window,
-                                          view.labels ? bone.labels().get() : nullptr));
+      renderer.set_clip_face(
+          n, clip_face(bone.grid(), plane, simulation.scan.grey_window,
+                       simulation.shows_labels(view) ? simulation.shown_labels().get() : nullptr));
     });
   }
 }
@@ -73,7 +73,7 @@ ViewScene scene_of(const ViewState& view, Simulation& simulation) {
     scene.wrench = record.wrench;
     scene.intersection_W = state.intersection_W;
   }
-  scene.show_labels = view.labels;
+  scene.show_labels = simulation.shows_labels(view);
   scene.isovalue = simulation.milling.isovalue();
   scene.reference_density = simulation.milling.densities().reference;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {

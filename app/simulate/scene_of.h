@@ -11,6 +11,9 @@
 
 namespace osteomill::app {
 
+/// Returns the plane of a cut; its `other_side` turns it round.
+ClipPlane plane_of(const ViewState::Cut& cut);
+
 /// Returns the scene to be drawn now.
 ViewScene scene_of(const ViewState& view, Simulation& simulation);
 

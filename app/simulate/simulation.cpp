@@ -32,12 +32,8 @@ std::string isovalue_from(const ScanOptions& scan, const LoadedBone& loaded, boo
 
 }  // namespace
 
-PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
-                              const SessionStart& milled) {
-  LoadedBone loaded = [&] {
-    const WorkProgress::Part reading(0.4);
-    return load_bone(scan);
-  }();
+static PreparedScan prepare_scan(const ScanOptions& scan, LoadedBone loaded, const MillingSetup& setup,
+                                 const SessionStart& milled) {
   auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const BoneBox box = box_of_bone(*bone);
   if (const std::string fault = tool_fault(setup.tool, box); !fault.empty())
@@ -50,12 +46,38 @@ PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup
   return {{loaded.name, scan, bone->isovalue(), isovalue_from(scan, loaded, !milled.bricks.empty()),
            loaded.in_hounsfield_units ? " HU" : "", box, histogram, std::move(boundaries), grey_window,
            bone->labels()},
-          std::move(prepared)};
+          std::move(prepared),
+          nullptr};
+}
+
+PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
+                              const SessionStart& milled) {
+  LoadedBone loaded = [&] {
+    const WorkProgress::Part reading(0.4);
+    return load_bone(scan);
+  }();
+  return prepare_scan(scan, std::move(loaded), setup, milled);
+}
+
+PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& scan, MillingSetup setup) {
+  LoadedExercise loaded = [&] {
+    const WorkProgress::Part reading(0.4);
+    return load_exercise(exercise.file, scan);
+  }();
+  setup.tool = allowed_tool(loaded.placed.exercise, setup.tool);
+  RecordedExercise recorded = to_be_recorded(loaded.placed.exercise, exercise);
+  const ScanOptions source = scan_of(loaded.placed.exercise, scan);
+  auto work =
+      std::make_unique<ExerciseWork>(std::move(loaded.placed), loaded.bone.volume, std::move(recorded));
+  PreparedScan prepared = prepare_scan(source, std::move(loaded.bone), setup, {});
+  prepared.exercise = std::move(work);
+  return prepared;
 }
 
 Simulation::Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source_,
                        const std::string& command_line_, std::optional<AutosaveFile> autosave_file)
     : scan(std::move(opened.scan)),
+      exercise(std::move(opened.exercise)),
       command_line(command_line_),
       tool_source(tool_source_),
       hand(handle_settings(opened.milling.session->setup()), pointing_hand(), X_WT),
@@ -86,6 +108,7 @@ RunDescription Simulation::describe() const {
   RunDescription run = milling.describe(scan.name, command_line);
   std::ranges::move(scan_settings(scan.source), std::back_inserter(run.settings));
   describe_device(run, tool_source.name, tool_source.hardware);
+  if (exercise) put_exercise(run, exercise->recorded());
   return run;
 }
 
@@ -100,6 +123,8 @@ void Simulation::update() {
   }
   while (history.size() > max_history()) history.pop_front();
   milling.update();
+  if (exercise && exercise->is_update_due())
+    milling.follower().read([&](const Volume& bone) { exercise->update(bone); });
   autosave.update(milling);
   count_labels();
   update_warnings();

@@ -18,9 +18,11 @@
 #include "osteomill/volume/isovalue.h"
 
 #include "app/device_option.h"
+#include "app/exercise_options.h"
 #include "app/scan_options.h"
 #include "app/simulate/autosave.h"
 #include "app/simulate/bone_view.h"
+#include "app/simulate/exercise_work.h"
 
 namespace osteomill::app {
 
@@ -45,12 +47,18 @@ struct ScanInfo {
 struct PreparedScan {
   ScanInfo scan;
   PreparedMilling milling;
+  /// Null if no exercise is worked on.
+  std::unique_ptr<ExerciseWork> exercise;
 };
 
 /// Opens a scan, and puts into it what was milled of it before (`milled`), if anything was. Takes seconds;
 /// any thread, also while another scan is milled. Throws InputError as `load_bone` does and if `milled` is
 /// of another scan, and std::invalid_argument for settings out of range.
 PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled);
+
+/// Opens an exercise on its scan, with the burr of the exercise that is nearest to the setup's. Any thread;
+/// throws as `load_exercise` and `open_for_milling` do.
+PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& scan, MillingSetup setup);
 
 /// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
 struct ToolSource {
@@ -76,7 +84,17 @@ struct Simulation {
   /// Returns what a recording that is begun now says about it.
   RunDescription describe() const;
 
+  /// Returns the labels that colour the bone: the exercise's, or else the bone's own.
+  const std::shared_ptr<const LabelMap>& shown_labels() const {
+    return exercise ? exercise->colours() : scan.labels;
+  }
+  /// Returns whether labels colour the bone now.
+  bool shows_labels(const ViewState& view) const {
+    return view.labels && (!exercise || exercise->has_guidance());
+  }
+
   ScanInfo scan;
+  std::unique_ptr<ExerciseWork> exercise;
   std::string command_line;
   /// Warnings about this isovalue, tool and settings (isovalue_warnings,
   /// coarseness_warnings, setting_warnings).

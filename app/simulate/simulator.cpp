@@ -32,16 +32,19 @@
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/device_option.h"
+#include "app/exercise_options.h"
 #include "app/memory_limit.h"
 #include "app/milling_options.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
+#include "app/simulate/exercise_panel.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/screen_scale.h"
 #include "app/simulate/simulation.h"
+#include "app/simulate/start_page.h"
 #include "app/simulate/window.h"
 #include "app/simulate/window_driver.h"
 
@@ -130,6 +133,7 @@ class Opening {
 
 struct SimulatorOptions {
   ScanOptions scan;
+  ExerciseOptions exercise;
   MillingOptions milling;
   DeviceOption device{kMouse};
   SendOption send;
@@ -166,7 +170,7 @@ class Simulator {
     if (leftover_) {
       ask_about_leftover();
     } else {
-      begin_opening(options_.scan);
+      begin_first();
     }
     while (!update_closing()) {
       begin();
@@ -174,6 +178,8 @@ class Simulator {
         work();
       } else if (opening()) {
         wait_for_scan();
+      } else if (start_page_) {
+        choose_start();
       }
       draw_dialogue(view_.dialogues);
       finish();
@@ -194,7 +200,8 @@ class Simulator {
 
  private:
   bool is_driven() const {
-    return options_.driver != nullptr && (simulation_ || leftover_ || options_.driver->starts_before_scan());
+    return options_.driver != nullptr &&
+           (simulation_ || leftover_ || start_page_ || options_.driver->starts_before_scan());
   }
 
   bool has_unsaved() const { return simulation_ && simulation_->autosave.has_unsaved(simulation_->milling); }
@@ -251,10 +258,11 @@ class Simulator {
 
   void begin() {
     window_.begin_frame();
-    const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.is_preparing() &&
-                         !simulation_->milling.is_placing() && !view_.X_W_destination &&
-                         !view_.setup_changed && !view_.undo_requested && !view_.reset_confirmed &&
-                         !view_.isovalue_requested && !files_.is_busy() &&
+    const bool settled = simulation_ && to_draw_.empty() && !exercise_begins_ &&
+                         !simulation_->milling.is_preparing() && !simulation_->milling.is_placing() &&
+                         !view_.X_W_destination && !view_.setup_changed && !view_.undo_requested &&
+                         !view_.reset_confirmed && !view_.isovalue_requested && !files_.is_busy() &&
+                         !(simulation_->exercise && simulation_->exercise->is_measuring()) &&
                          (!opening() || view_.dialogues.current() != nullptr);
     if (is_driven()) options_.driver->give_input(seconds_since(last_picture_), settled, window_);
     last_picture_ = Clock::now();
@@ -264,7 +272,7 @@ class Simulator {
   void ask_about_leftover() {
     const auto start = [this] {
       leftover_.reset();
-      begin_opening(options_.scan);
+      begin_first();
     };
     const auto remove = [this, start] {
       leftover_->file.clear();
@@ -288,16 +296,52 @@ class Simulator {
 
   bool opening() const { return opening_.valid() || opened_; }
 
+  // Opens what was named, or else shows the start page.
+  void begin_first() {
+    if (options_.exercise.given()) {
+      begin_exercise(options_.exercise, options_.scan);
+    } else if (options_.scan.scan.empty() && !options_.scan.isovalue) {
+      start_page_.emplace();
+    } else {
+      begin_opening(options_.scan);
+    }
+  }
+
+  void choose_start() {
+    std::optional<StartChoice> choice = start_page_->draw(window_.size());
+    if (const auto dropped = window_.take_dropped(); !dropped.empty())
+      choice = StartChoice{"", "", dropped.back()};
+    if (!choice) return;
+    if (choice->exercise.empty()) return begin_opening(scan_options_for(choice->scan));
+    ExerciseOptions exercise = options_.exercise;
+    exercise.file = choice->exercise;
+    if (!choice->trainee.empty()) exercise.trainee = choice->trainee;
+    begin_exercise(exercise, scan_options_for(""));
+  }
+
   void begin_opening(const ScanOptions& scan) {
     opened_milled_.reset();
     open(scan, {});
   }
 
-  void open(const ScanOptions& scan, SessionStart milled) {
-    opened_scan_ = scan;
+  MillingSetup setup_to_open() {
     opening_since_ = Clock::now();
     changes_before_ = view_.changes;
-    const MillingSetup setup = simulation_ ? view_.requested_setup : setup_;
+    return simulation_ ? view_.requested_setup : setup_;
+  }
+
+  void begin_exercise(const ExerciseOptions& exercise, const ScanOptions& scan) {
+    opened_milled_.reset();
+    opened_scan_ = scan;
+    opened_scan_.scan = exercise.file;
+    options_.exercise = exercise;
+    opening_.begin(
+        [exercise, scan, setup = setup_to_open()] { return open_exercise(exercise, scan, setup); });
+  }
+
+  void open(const ScanOptions& scan, SessionStart milled) {
+    opened_scan_ = scan;
+    const MillingSetup setup = setup_to_open();
     opening_.begin(
         [scan, setup, milled = std::move(milled)] { return open_for_milling(scan, setup, milled); });
   }
@@ -313,8 +357,8 @@ class Simulator {
     opening_.stop();
     opened_milled_.reset();
     view_.message = "Opening " + what + " was given up";
-    // Without any scan the window would stay empty.
-    if (!simulation_) closing_ = true;
+    // Without a scan or a page the window would stay empty.
+    if (!simulation_ && !start_page_) closing_ = true;
   }
 
   ScanOptions scan_options_for(const std::string& scan) const {
@@ -324,6 +368,10 @@ class Simulator {
   // Milling goes on until another scan was read and takes its place.
   void open_another() {
     std::vector<std::string> asked = window_.take_dropped();
+    if (!view_.exercise_requested.empty()) {
+      options_.exercise.file = std::exchange(view_.exercise_requested, {});
+      begin_exercise(options_.exercise, scan_options_for(""));
+    }
     if (!view_.scan_requested.empty()) asked.push_back(std::exchange(view_.scan_requested, {}));
     if (asked.size() > 1) {
       view_.dialogues.add_error("One scan at a time: a file, or the folder of a series");
@@ -355,10 +403,13 @@ class Simulator {
       view_.help = view_.help && note_first_help();
     }
     options_.scan = scan.source;
+    start_page_.reset();
+    if (!is_builtin(scan.source.scan) && !opened.exercise) note_recent_scan(scan.source.scan);
     const PixelSize size = window_.size();
     view_.box = scan.box;
     window_.set_title(std::filesystem::path(scan.name).filename().string() + " - osteomill");
     view_.camera = first_camera(view_.box, size);
+    if (opened.exercise) view_.camera = camera_on_target(opened.exercise->placed(), view_.box, size);
     const Volume& bone = opened.milling.session->volume();
     // In front of the bone's upper half, so that the shaft does not hide the bone.
     const Pose X_WT = tool_pose_before_middle(bone, opened.milling.session->setup().tool, view_.camera, size,
@@ -370,6 +421,8 @@ class Simulator {
     view_.dialogues.run_reporting_errors(
         [&] { sender_ = send_bone(simulation_->milling.follower(), options_.send); });
     reset_view();
+    view_.requested_setup.tool = simulation_->milling.setup().tool;
+    exercise_begins_ = simulation_->exercise != nullptr;
   }
 
   void reset_view() {
@@ -384,7 +437,7 @@ class Simulator {
     cuts_ = {};
     to_draw_.clear();
     renderer_ = std::make_unique<SceneRenderer>(milling.follower().layout(), milling.geometry(),
-                                                simulation_->scan.labels);
+                                                simulation_->shown_labels());
   }
 
   void wait_for_scan() {
@@ -399,13 +452,32 @@ class Simulator {
     try {
       opened_ = opening_.get();
     } catch (const std::exception& error) {
+      if (!opened_milled_ && start_page_) {
+        view_.dialogues.add_error(error.what());
+        return;
+      }
       if (!opened_milled_) throw;
       // The milled bone is kept for another start, when its scan may be there again.
       view_.dialogues.add_error(error.what());
-      begin_opening(options_.scan);
+      begin_first();
       return;
     }
     take_scan();
+  }
+
+  // Goes back to the start page, once what was milled may be lost.
+  void show_start_page() {
+    ask_before("Going to the start page", [this] {
+      after_writing("Writing ...", [this] {
+        files_.end_recording(view_, *simulation_);
+        simulation_->autosave.discard();
+        sender_.reset();
+        simulation_.reset();
+        renderer_.reset();
+        window_.set_title("osteomill");
+        start_page_.emplace();
+      });
+    });
   }
 
   // Begins the requested changes; each waits until nothing else is being prepared.
@@ -436,6 +508,8 @@ class Simulator {
   void work() {
     const PixelSize size = window_.size();
     if (size.width < 1 || size.height < 1) return;
+    if (std::exchange(view_.start_page_requested, false)) show_start_page();
+    if (!simulation_) return;
     open_another();
     if (std::exchange(view_.reset_requested, false)) {
       ask_before("Resetting the bone", [this] { view_.reset_confirmed = true; });
@@ -452,11 +526,16 @@ class Simulator {
     if (view_.message.empty()) view_.message = simulation_->autosave.take_error();
     take_input(view_, *simulation_, space_mouse_, size);
     take_surface();
+    // The recording begins with a picture of the bone.
+    if (exercise_begins_ && to_draw_.empty() && renderer_->triangle_count() > 0) {
+      exercise_begins_ = false;
+      files_.begin_recording(view_, *simulation_, "exercise.h5");
+    }
     cuts_.update(view_, *simulation_, *renderer_);
     renderer_->draw(scene_of(view_, *simulation_), size);
     renderer_->copy_to_window();
     if (std::exchange(view_.picture_requested, false)) save_picture();
-    draw_annotations(view_, size, !options_.scan.scan.empty());
+    draw_annotations(view_, size, !is_builtin(options_.scan.scan));
     draw_controls(view_, *simulation_, files_, size);
     const float bottom_px = files_.draw_message(view_, *simulation_, size);
     float top_px = draw_readings(view_, *simulation_, pictures_per_s(), size);
@@ -465,15 +544,20 @@ class Simulator {
     if (opening_.valid()) draw_opening();
     if (const auto recording_s = files_.recording_s(*simulation_)) draw_recording(*recording_s);
     draw_no_go(*simulation_);
+    draw_exercise(view_, *simulation_, files_, size);
     set_sound();
   }
 
   double pictures_per_s() { return pictures_.per_s(seconds_since({})); }
 
   void set_sound() {
-    heard_ = spindle_state(simulation_->milling.state().record, simulation_->milling.setup());
+    const TickRecord& record = simulation_->milling.state().record;
+    const MillingSetup& setup = simulation_->milling.setup();
+    heard_ = spindle_state(record, setup);
     if (!view_.sound) heard_.speed_rpm = 0;
-    sound_.set(heard_);
+    sound_.set(heard_, simulation_->exercise
+                           ? simulation_->exercise->beat(record.X_WT.position_mm, setup.tool.burr_radius_mm)
+                           : BeatState{});
   }
 
   void take_surface() {
@@ -501,7 +585,7 @@ class Simulator {
   void save_picture() {
     view_.dialogues.run_reporting_errors([this] {
       Image picture = this->picture(view_.camera);
-      annotate(picture, view_.camera, !options_.scan.scan.empty(), kInkOnDark, window_.ui_scale());
+      annotate(picture, view_.camera, !is_builtin(options_.scan.scan), kInkOnDark, window_.ui_scale());
       create_folder(options_.folder);
       const auto path = files_.name("picture.png");
       write_png(path, picture);
@@ -533,6 +617,8 @@ class Simulator {
   MillingSetup setup_;
   std::unique_ptr<ConnectedDevice> hardware_;
   Window window_;
+  // Until something is opened.
+  std::optional<StartPage> start_page_;
   // The failure that the user was told of.
   std::exception_ptr device_failure_;
   Opening opening_;
@@ -547,6 +633,8 @@ class Simulator {
   std::unique_ptr<SceneRenderer> renderer_;
   // Changed bricks of the surface.
   ChangedBricks to_draw_;
+  // True from when an exercise was opened until it is recorded.
+  bool exercise_begins_ = false;
   bool closing_ = false;
   bool reported_ = false;
   ViewState view_;
@@ -574,6 +662,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
       program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");
   command->group("In a window");
   add_scan_options(*command, options->scan);
+  add_exercise_options(*command, options->exercise);
   command->option_defaults()->group("Algorithm");
   add_algorithm_option(*command, options->milling.setup.algorithm);
   add_milling_options(*command, options->milling);

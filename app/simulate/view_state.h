@@ -54,6 +54,9 @@ struct ViewState {
   /// The text in the field for the scan to open, and the scan to be opened once its button was pressed.
   std::array<char, 4096> scan_path{};
   std::string scan_requested;
+  /// The exercise to be opened, and whether the start page is to be shown, as a button asked for.
+  std::string exercise_requested;
+  bool start_page_requested = false;
   /// By how many steps text is to become larger; negative: smaller.
   int text_steps = 0;
   bool reset_requested = false;

@@ -51,7 +51,7 @@ wait 0.5
 END
 [ ! -e "$real" ] || printf '%s\n' "open $real" settle "wait 0.2" "click Discard" settle "wait 0.5" "say real" >>actions
 echo close >>actions
-xvfb-run -a -s "-screen 0 1280x800x24" timeout 200 "$osteomill" simulate --no-help --out out --script actions \
+xvfb-run -a -s "-screen 0 1280x800x24" timeout 200 "$osteomill" simulate builtin:tooth --no-help --out out --script actions \
   >said 2>errors || fail "exit code $?"
 [ -z "${OSTEOMILL_PICTURES:-}" ] || cp out/*-picture.png "$OSTEOMILL_PICTURES"
 cat said

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "app/simulate/exercise_panel.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/widgets.h"
@@ -126,6 +127,18 @@ std::string state_text(const std::string& name, const WindowContents& window) {
   lines.add("badge", recording_s ? recording_text(*recording_s) : "");
   lines.add("last_recording", files.last_recording().string());
   lines.add("scan", simulation.scan.name);
+  if (const ExerciseWork* work = simulation.exercise.get()) {
+    lines.add("exercise", work->placed().exercise.title);
+    lines.add("step", work->step());
+    lines.add("step_percent", fmt::format("{:.1f}", work->step_percent()));
+    lines.add("guidance", work->has_guidance());
+    lines.add("distance", distance_text(simulation, state.record));
+    const double radius_mm = milling.setup().tool.burr_radius_mm;
+    lines.add("beats_per_s",
+              fmt::format("{:.2f}", work->beat(state.record.X_WT.position_mm, radius_mm).beats_per_s));
+    lines.add("results", work->results().size());
+    lines.add("debrief", work->folder().string());
+  }
   lines.add("help", view.help);
   lines.add("message", view.message);
   lines.add("dialogue", view.dialogues.current() != nullptr ? view.dialogues.current()->text : "");

@@ -1,0 +1,208 @@
+#include "app/simulate/exercise_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <GLFW/glfw3.h>
+#include <fmt/core.h>
+#include <imgui.h>
+
+#include "app/simulate/panels.h"
+#include "app/simulate/widgets.h"
+
+namespace osteomill::app {
+
+namespace {
+
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoFocusOnAppearing |
+                                    ImGuiWindowFlags_AlwaysAutoResize;
+const ImVec4 kFar{0.55f, 0.90f, 0.60f, 1}, kTouching{1.0f, 0.38f, 0.30f, 1};
+
+std::string clock_text(double time_s) {
+  const auto whole_s = static_cast<int>(std::max(time_s, 0.0));
+  return fmt::format("{}:{:02}", whole_s / 60, whole_s % 60);
+}
+
+std::string time_text(const Exercise& exercise, double time_s) {
+  return exercise.time_s ? fmt::format("{} of {}", clock_text(time_s), clock_text(*exercise.time_s))
+                         : clock_text(time_s);
+}
+
+void draw_step(const ExerciseWork& work) {
+  const Exercise& exercise = work.placed().exercise;
+  if (work.step() == 0) return;
+  const ExerciseStep& step = exercise.steps[work.step() - 1];
+  ImGui::TextWrapped("Step %d of %d: %s", static_cast<int>(work.step()),
+                     static_cast<int>(exercise.steps.size()), step.text.c_str());
+  const std::string done = fmt::format("{:.0f} of {:.0f} %", work.step_percent(), step.done_percent);
+  ImGui::ProgressBar(static_cast<float>(std::min(work.step_percent() / step.done_percent, 1.0)),
+                     {-1, 1.2f * ImGui::GetFontSize()}, done.c_str());
+}
+
+void draw_distance(const Simulation& simulation, const TickRecord& record) {
+  const ExerciseWork& work = *simulation.exercise;
+  const auto reading = work.nearest(record.X_WT.position_mm, simulation.milling.setup().tool.burr_radius_mm);
+  if (!reading) return;
+  const double warn_mm = work.placed().structures[reading->structure].warn_mm;
+  const ImVec4& colour = reading->distance_mm <= 0        ? kTouching
+                         : reading->distance_mm < warn_mm ? ui::kWarning
+                                                          : kFar;
+  ImGui::SetWindowFontScale(1.4f);
+  ImGui::TextColored(colour, "%s", distance_text(simulation, record).c_str());
+  ImGui::SetWindowFontScale(1);
+}
+
+// The burrs that the exercise allows.
+void draw_burrs(ViewState& view, const Exercise& exercise) {
+  for (const double radius_mm : exercise.burr_radii_mm) {
+    const std::string label = fmt::format("round {:g} mm##burr", 2 * radius_mm);
+    if (ui::radio(label.c_str(), std::abs(view.requested_setup.tool.burr_radius_mm - radius_mm) < 1e-6)) {
+      view.requested_setup.tool = with_burr(view.requested_setup.tool, radius_mm);
+      view.setup_changed = true;
+      ++view.changes;
+    }
+    ImGui::SameLine();
+  }
+  bool diamond = view.requested_setup.burr == BurrKind::diamond;
+  if (ui::checkbox("diamond##burr", &diamond)) {
+    view.requested_setup.burr = diamond ? BurrKind::diamond : BurrKind::cutting;
+    view.setup_changed = true;
+    ++view.changes;
+  }
+  ui::tooltip("A burr set with diamonds, which grinds; else one with teeth, which cuts");
+}
+
+void draw_switches(ExerciseWork& work) {
+  bool guidance = work.has_guidance(), beat = work.has_beat();
+  if (ui::checkbox("guidance (G)##exercise", &guidance)) work.show_guidance(guidance);
+  ui::tooltip("Shows step, distance and colours; the recording says when they were shown");
+  if (work.placed().structures.empty()) return;
+  ImGui::SameLine();
+  if (ui::checkbox("beat (M)##exercise", &beat)) work.play_beat(beat);
+  ui::tooltip("A beat that quickens as the burr comes near a structure; each structure has its own pitch");
+}
+
+void take_exercise_keys(ExerciseWork& work) {
+  if (ImGui::GetIO().WantTextInput || is_dialogue_open()) return;
+  if (ui::is_key_pressed(GLFW_KEY_G)) work.show_guidance(!work.has_guidance());
+  if (ui::is_key_pressed(GLFW_KEY_M)) work.play_beat(!work.has_beat());
+}
+
+// Puts the next window between the two columns.
+void place_between_columns(const PixelSize& size, float y_px, float from_below) {
+  const float left_px = ui::px(316), right_px = static_cast<float>(size.width) - ui::px(266);
+  const float width_px = std::clamp(right_px - left_px - ui::px(8), ui::px(240), ui::px(560));
+  ImGui::SetNextWindowPos({0.5f * (left_px + right_px), y_px}, ImGuiCond_Always, {0.5f, from_below});
+  ImGui::SetNextWindowSizeConstraints({width_px, 0},
+                                      {width_px, static_cast<float>(size.height) - ui::px(16)});
+}
+
+void finish_exercise(ViewState& view, Simulation& simulation, FilesPanel& files) {
+  simulation.milling.set_spindle(false);
+  files.end_recording(view, simulation);
+  // On a full disk there is no recording.
+  if (!simulation.milling.is_recording() && !files.last_recording().empty())
+    simulation.exercise->measure(files.last_recording(), files.name("debrief"));
+}
+
+void draw_work(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size) {
+  ExerciseWork& work = *simulation.exercise;
+  const Exercise& exercise = work.placed().exercise;
+  const TickRecord& record = simulation.milling.state().record;
+  place_between_columns(size, static_cast<float>(size.height) - ui::px(8), 1);
+  ImGui::Begin(fmt::format("{}###exercise", exercise.title).c_str(), nullptr, kFixed);
+  if (!exercise.task.empty()) ImGui::TextWrapped("%s", exercise.task.c_str());
+  draw_burrs(view, exercise);
+  if (work.has_guidance()) {
+    draw_step(work);
+    draw_distance(simulation, record);
+  }
+  draw_switches(work);
+  const double time_s = files.recording_s(simulation).value_or(0);
+  const bool is_late = exercise.time_s && time_s > *exercise.time_s;
+  ImGui::TextColored(is_late ? ui::kWarning : ImGui::GetStyleColorVec4(ImGuiCol_Text), "%s",
+                     time_text(exercise, time_s).c_str());
+  ImGui::SameLine();
+  if (work.is_measuring()) {
+    ImGui::TextUnformatted("Measuring ...");
+  } else if (simulation.milling.is_recording()) {
+    if (ui::button("Finish")) finish_exercise(view, simulation, files);
+    ui::tooltip("Ends the recording, measures it and shows the results");
+  } else if (ui::button("Work on")) {
+    files.begin_recording(view, simulation, "exercise.h5");
+  }
+  ImGui::End();
+}
+
+void draw_row(const MeasuredValue& row) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextWrapped("%s", row.measure.c_str());
+  if (!row.source.empty()) ui::tooltip(row.source);
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(row.value ? fmt::format("{:.4g} {}", *row.value, row.unit).c_str() : "not measured");
+  ImGui::TableNextColumn();
+  ImGui::TextWrapped("%s", row.limit.c_str());
+  ImGui::TableNextColumn();
+  if (row.is_met) ImGui::TextColored(*row.is_met ? kFar : ui::kWarning, *row.is_met ? "met" : "not met");
+}
+
+void draw_rows(const char* name, const std::vector<MeasuredValue>& rows, bool limited) {
+  if (!ImGui::BeginTable(name, 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH)) return;
+  ImGui::TableSetupColumn("measure", ImGuiTableColumnFlags_WidthStretch, 2.2f);
+  ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1.1f);
+  ImGui::TableSetupColumn("limit", ImGuiTableColumnFlags_WidthStretch, 1.1f);
+  ImGui::TableSetupColumn("met", ImGuiTableColumnFlags_WidthStretch, 0.7f);
+  ImGui::TableHeadersRow();
+  for (const MeasuredValue& row : rows)
+    if (row.limit.empty() != limited) draw_row(row);
+  ImGui::EndTable();
+}
+
+void draw_results(ViewState& view, Simulation& simulation, const PixelSize& size) {
+  ExerciseWork& work = *simulation.exercise;
+  place_between_columns(size, ui::px(8), 0);
+  ImGui::Begin(fmt::format("Results: {}###results", work.placed().exercise.title).c_str(), nullptr, kFixed);
+  draw_rows("##items", work.results(), true);
+  if (ui::header("All measures", false)) {
+    ImGui::BeginChild("##all", {0, 0.4f * static_cast<float>(size.height)});
+    draw_rows("##measures", work.results(), false);
+    ImGui::EndChild();
+  }
+  ImGui::TextWrapped("%s", (work.folder() / "debrief.csv").string().c_str());
+  if (ui::button("Back to the bone")) work.close_results();
+  ImGui::SameLine();
+  if (ui::button("Try again")) view.exercise_requested = work.recorded().file;
+  ImGui::SameLine();
+  if (ui::button("Start page")) view.start_page_requested = true;
+  ImGui::End();
+}
+
+}  // namespace
+
+std::string distance_text(const Simulation& simulation, const TickRecord& record) {
+  const ExerciseWork& work = *simulation.exercise;
+  const auto reading = work.nearest(record.X_WT.position_mm, simulation.milling.setup().tool.burr_radius_mm);
+  if (!reading || !work.has_guidance()) return "";
+  const std::string& name = work.placed().structures[reading->structure].name;
+  return reading->distance_mm <= 0 ? fmt::format("{} touched", name)
+                                   : fmt::format("{} {:.1f} mm", name, reading->distance_mm);
+}
+
+void draw_exercise(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size) {
+  if (!simulation.exercise) return;
+  ExerciseWork& work = *simulation.exercise;
+  view.dialogues.run_reporting_errors([&] { work.take_result(); });
+  if (const auto sample = work.next_view(view, size, simulation.milling.state().record.time_s))
+    simulation.milling.record_view(*sample);
+  take_exercise_keys(work);
+  if (work.results().empty()) {
+    draw_work(view, simulation, files, size);
+  } else {
+    draw_results(view, simulation, size);
+  }
+}
+
+}  // namespace osteomill::app
