@@ -65,9 +65,9 @@ void draw_burrs(ViewState& view, const Exercise& exercise) {
     }
     ImGui::SameLine();
   }
-  bool diamond = view.requested_setup.burr == BurrKind::diamond;
+  bool diamond = view.requested_setup.burr == BurrEdge::diamond;
   if (ui::checkbox("diamond##burr", &diamond)) {
-    view.requested_setup.burr = diamond ? BurrKind::diamond : BurrKind::cutting;
+    view.requested_setup.burr = diamond ? BurrEdge::diamond : BurrEdge::cutting;
     view.setup_changed = true;
     ++view.changes;
   }
