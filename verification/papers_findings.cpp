@@ -59,10 +59,13 @@ std::vector<MeasuredRun> rows_on(const Volume& bone, Hands hands, double phase_s
 
 void add_findings(Section& section, const Volume& bone, const std::string& name, Hands hands,
                   double phase_s) {
+  int number = 0;
   for (const StudyFinding& finding : check_study_findings(Study(rows_on(bone, hands, phase_s)))) {
+    const char* settled = finding.verdict == Verdict::not_settled ? ", not settled" : "";
     section.add(
-        {fmt::format("{}, {} to {}: {}", name, hands.first, hands.last, finding.of_medians.paper_says),
-         finding.of_medians.measured, fmt::format("{} of {}", finding.agreeing, finding.tested)},
+        {fmt::format("{}, {} to {}: {}. {}", name, hands.first, hands.last, ++number,
+                     finding.of_medians.paper_says),
+         finding.of_medians.measured, fmt::format("{} of {}{}", finding.agreeing, finding.tested, settled)},
         finding.of_medians.verdict == Verdict::agrees);
   }
 }
@@ -168,7 +171,10 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
   Section section{
       "What the paper found",
       fmt::format(
-          "Must hold: the nine findings of section 8 of the paper, by the rules of a comparison's report. "
+          "Must hold: the nine findings of section 8 of the paper, in the medians over hands, by the rules "
+          "of "
+          "a comparison's report. *Not settled*: too few hands for its sign test, which the medians need not "
+          "pass. "
           "The paper's three algorithms, hands drawn by seed ({} to {}, with which the choices that it "
           "leaves open were made on the built-in tooth, and {} to {}), the phases of `compare --seconds "
           "{:g}`. "

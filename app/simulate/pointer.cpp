@@ -166,7 +166,7 @@ void pull_tool(ViewState& view, Simulation& simulation, const ToolInput& input, 
   simulation.hand.pull_to(view.X_W_target);
 }
 
-// Stops the spindle and the push if the hand has just let go of the tool, which otherwise would mill on alone.
+// Stops the spindle and the push if the hand has just let go of the tool, which would mill on alone.
 void relax_if_let_go(ViewState& view, Simulation& simulation) {
   const bool held = view.holding_tool || view.dragging_tool;
   if (!std::exchange(view.was_held, held) || held) return;
