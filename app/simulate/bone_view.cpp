@@ -76,12 +76,13 @@ Camera first_camera(const BoneBox& box, const PixelSize& size) {
 }
 
 Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, const PixelSize& size) {
-  // Tilted, so that depths are seen.
+  // Tilted, so that depths are seen: from above towards the front, from a side upwards.
   constexpr double kTilt_rad = 0.45;
-  const Vec3 outward_W = exercise.outward_W;
-  const Vec3 up_W = std::abs(outward_W.z()) < 0.8 ? Vec3(Vec3::UnitZ()) : Vec3(-Vec3::UnitY());
+  const Vec3& outward_W = exercise.outward_W;
+  const bool is_above = std::abs(outward_W.z()) > 0.5;
+  const Vec3 up_W = is_above ? Vec3::UnitY() : Vec3::UnitZ();
   const Vec3 aside_W = up_W.cross(outward_W).normalized();
-  const Vec3 towards_W = Eigen::AngleAxisd(kTilt_rad, aside_W) * outward_W;
+  const Vec3 towards_W = Eigen::AngleAxisd(is_above ? kTilt_rad : -kTilt_rad, aside_W) * outward_W;
   return showing_whole(camera_on(box.bounds(), -towards_W, up_W), box, size);
 }
 

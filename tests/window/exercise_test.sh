@@ -45,7 +45,7 @@ xdotool windowfocus "$window"
 send() {
   until grep -q "^$1\(: \|$\)" said || ! kill -0 "$program"; do sleep 0.05; done
   xdotool "${@:2}"
-  sleep 0.5
+  sleep 2
   touch "$1"
 }
 place() { sed -n "s/^$1\.place of $2=//p" said; }
