@@ -113,7 +113,7 @@ Section spongy_bone(const Bones& bones) {
   const BoneSurface surface(*bones.spongy);
   PushKind kind;
   kind.tool = {0.5, 0.35, 25};
-  for (const AlgorithmDescription& description : all_algorithms()) {
+  for (const std::string& id : algorithm_names()) {
     const std::vector<PushOutcome> all = push_outcomes(id, *bones.spongy, surface, kind, kPushes);
     const std::size_t ever = count_deeper(all, &PushOutcome::tool, &Depth::ever_mm, kDeepest_mm);
     double deepest = -1;
