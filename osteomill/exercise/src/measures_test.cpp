@@ -44,7 +44,6 @@ class MeasuresOfABox : public ::testing::Test {
   Attempt with_ticks(const std::vector<AttemptTick>& ticks) const {
     Attempt attempt = removing({{-1, -1, 5}, {1, 1, 6}});
     attempt.ticks = ticks;
-    const StructureDistance& nerve = placed_.structures.front().distance;
     for (const AttemptTick& tick : ticks)
       attempt.distances_mm.push_back(no_go_distance_mm(*placed_.distances, tick.burr_W, tick.burr_radius_mm));
     return attempt;
