@@ -9,11 +9,11 @@ namespace {
 
 // Returns the lines of work that goes on evenly, told each second.
 std::vector<std::string> lines_of(double seconds, double fraction_per_s) {
-  ProgressText progress;
+  ProgressText text;
   std::vector<std::string> lines;
   for (int n = 0; n <= seconds; ++n) {
-    const std::string text = progress.at("compare", fraction_per_s * n, 1e5 + n);
-    if (!text.empty() && progress.take_line()) lines.push_back(text);
+    const std::string line = text.at("compare", fraction_per_s * n, 1e5 + n);
+    if (!line.empty() && text.take_line()) lines.push_back(line);
   }
   return lines;
 }
@@ -32,12 +32,12 @@ TEST(ProgressText, HasALineEachMinuteOfSlowWork) {
 }
 
 TEST(ProgressText, BeginsAgainWithOtherWorkAndIsSilentForASecond) {
-  ProgressText progress;
-  EXPECT_EQ(progress.at("a", 0.5, 10), "");
-  EXPECT_EQ(progress.at("a", 0.5, 20), "a  50 %, 10 s left");
-  EXPECT_EQ(progress.at("b", 0.5, 21), "");
-  EXPECT_EQ(progress.at("b", 0.5, 23), "b  50 %, 2 s left");
-  EXPECT_EQ(progress.at("b", 0.25, 24), "") << "the same work once more";
+  ProgressText text;
+  EXPECT_EQ(text.at("a", 0.5, 10), "");
+  EXPECT_EQ(text.at("a", 0.5, 20), "a  50 %, 10 s left");
+  EXPECT_EQ(text.at("b", 0.5, 21), "");
+  EXPECT_EQ(text.at("b", 0.5, 23), "b  50 %, 2 s left");
+  EXPECT_EQ(text.at("b", 0.25, 24), "") << "the same work once more";
 }
 
 }  // namespace
