@@ -53,7 +53,7 @@ place() { sed -n "s/^$1\.place of $2=//p" said; }
 send chosen mousemove --window "$window" $2 150 sleep 0.3 click 1
 send hidden key --delay 0 g
 send shown key --delay 0 g key --delay 0 m key --delay 0 m
-send finished mousemove --window "$window" $(place milled Finish) sleep 0.3 click 1
+send finished mousemove --window "$window" $(place begun Finish) sleep 0.3 click 1
 wait "$program"
 END
 
