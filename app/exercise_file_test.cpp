@@ -122,7 +122,7 @@ TEST_F(ExerciseFile, NamesTheLineAndTheNearestKeyOfAFault) {
   EXPECT_EQ(fault("cylinder =", "at_least = 1 #"),
             "line 9: at_least is of recordings, of which there are none");
   EXPECT_EQ(fault("cylinder =", "#"),
-            "line 8: target needs a label, box, sphere, cylinder, shell or recordings");
+            "line 8: target needs a label, box, sphere, cylinder, outside_cone, shell or recordings");
   EXPECT_EQ(fault("[target]", "[targets]"), "line 8: an exercise has no targets; did you mean target?");
 }
 

@@ -22,6 +22,7 @@ std::vector<std::string> words_for(const CLI::Option& option) {
   if (name == "--direction") return {name, "0.1,0,-1"};
   if (option.get_type_name() == "X,Y,Z") return {name, "0.5,0,20"};
   if (option.get_type_name() == "SETTING") return {name, "point-shell.damping-time=0.002"};
+  if (name == "--chip-exponent") return {name, "0.5"};
   return {name, name == "--push" ? "2.5" : "4"};
 }
 

@@ -120,6 +120,7 @@ TEST_F(RecordedTrialTest, MillsAgainWhatWasRecorded) {
     const TickRecord now = trial.tick().record;
     for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
       if (column.has(kMeasuredTime)) continue;
+      if (std::isnan(column.get(now)) && std::isnan(column.get(recorded))) continue;
       ASSERT_EQ(column.get(now), column.get(recorded)) << column.name << " at " << recorded.time_s << " s";
     }
   }
