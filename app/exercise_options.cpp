@@ -28,6 +28,10 @@ void add_exercise_options(CLI::App& command, ExerciseOptions& options) {
   command.add_option("--trainee", options.trainee, "Name to record with the exercise (default: none)")
       ->check(not_empty())
       ->type_name("NAME");
+}
+
+void add_guidance_option(CLI::App& command, ExerciseOptions& options) {
+  options.has_guidance = true;
   command.add_flag(
       "--guidance,!--no-guidance", options.has_guidance,
       "Show steps, colours and distances, and record that they were shown; --no-guidance hides them");

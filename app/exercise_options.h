@@ -18,13 +18,16 @@ namespace osteomill::app {
 struct ExerciseOptions {
   std::string file;
   std::string trainee;
-  bool has_guidance = true;
+  /// Whether steps, colours and distances are shown, which only the window does.
+  bool has_guidance = false;
 
   bool given() const { return !file.empty(); }
 };
 
-/// Adds --exercise, --trainee and --no-guidance.
+/// Adds --exercise and --trainee.
 void add_exercise_options(CLI::App& command, ExerciseOptions& options);
+/// Adds --no-guidance to a command that shows guidance otherwise.
+void add_guidance_option(CLI::App& command, ExerciseOptions& options);
 
 /// An exercise on its scan.
 struct LoadedExercise {

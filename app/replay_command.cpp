@@ -232,7 +232,7 @@ void refuse_what_is_recorded(const ReplayOptions& options) {
       throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
   };
   for (const Field<ScanOptions>& option : fields_of<ScanOptions>()) refuse("--" + option.option);
-  for (const char* option : {"--exercise", "--trainee", "--guidance"}) refuse(option);
+  for (const char* option : {"--exercise", "--trainee"}) refuse(option);
   for (const Field<MillingSetup>& setting : fields_of<MillingSetup>()) {
     if (setting.has(kOfTheRecording)) refuse("--" + setting.option);
   }

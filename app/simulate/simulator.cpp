@@ -663,6 +663,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   command->group("In a window");
   add_scan_options(*command, options->scan);
   add_exercise_options(*command, options->exercise);
+  add_guidance_option(*command, options->exercise);
   command->option_defaults()->group("Algorithm");
   add_algorithm_option(*command, options->milling.setup.algorithm);
   add_milling_options(*command, options->milling);

@@ -40,7 +40,7 @@ poses 20 >good.csv
 poses 23 >idle.csv
 work() { "$osteomill" replay "$1.csv" --exercise tasks/hole.toml --burr-radius 1 --record "$1.h5" --quiet "${@:2}" >/dev/null; }
 value() { awk -F, -v row="$2" '$1 == row { print $2 "," $4 "," $5; exit }' "$1/debrief.csv"; }
-work good --trainee "Trainee 7" --no-guidance
+work good --trainee "Trainee 7"
 "$osteomill" replay good.h5 --verify --quiet | grep -q "^same: 1500 ticks" || fault "the recording of poses does not replay"
 "$osteomill" debrief good.h5 --out good --quiet >said
 [ "$(head -1 good/debrief.csv)" = "measure,value,unit,limit,met,source" ] || fault "$(head -1 good/debrief.csv)"
@@ -58,7 +58,7 @@ with h5py.File("good.h5") as f:
 assert s["exercise.title"] == "Hole" and s["exercise.file"] == "tasks/hole.toml", s
 assert s["exercise.trainee"] == "Trainee 7" and s["exercise.guidance"] == 0, s
 with h5py.File("idle.h5") as f:
-    assert "exercise.trainee" not in f["settings"].attrs and f["settings"].attrs["exercise.guidance"] == 1
+    assert "exercise.trainee" not in f["settings"].attrs and f["settings"].attrs["exercise.guidance"] == 0
 CHECK
 
 # An exercise that has changed since is used, with a warning.

@@ -259,9 +259,9 @@ TEST_F(VolumeFile, EveryAxisHasItsOwnUnit) {
 // The voxels in three files of 8 and in two of 12.
 TEST_F(VolumeFile, VoxelsInSeveralFilesFollowEachOther) {
   const std::string bytes = voxels<std::int16_t>();
-  for (int n = 0; n < 3; ++n)
-    write("s0" + std::to_string(8 + n) + ".raw", "x\n1234" + bytes.substr(16u * n, 16));
-  for (int n = 0; n < 2; ++n) write_gzip("z" + std::to_string(n) + ".gz", bytes.substr(24u * n, 24));
+  for (std::size_t n = 0; n < 3; ++n)
+    write("s0" + std::to_string(8 + n) + ".raw", "x\n1234" + bytes.substr(16 * n, 16));
+  for (std::size_t n = 0; n < 2; ++n) write_gzip("z" + std::to_string(n) + ".gz", bytes.substr(24 * n, 24));
   const std::string skip = "encoding: raw\nline skip: 1\nbyte skip: 4\n" + kPlaced + "data file: ";
   for (const char* files : {"LIST\ns08.raw\n\n s09.raw\r\ns010.raw\n", "LIST 3\ns08.raw\ns09.raw\ns010.raw",
                             "s0%d.raw 8 10 1\n"}) {
