@@ -208,6 +208,7 @@ namespace {
 
 // Returns the unit as one word of a help text: "mm³/(N.s)".
 std::string help_unit(std::string unit) {
+  if (unit.empty()) return "NUMBER";
   std::replace(unit.begin(), unit.end(), ' ', '.');
   for (const auto& [power, digit] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
     for (auto at = unit.find(power); at != std::string::npos; at = unit.find(power))

@@ -47,8 +47,8 @@ bool holds(const OverSeeds& all, bool loaded) {
   const bool calm = percentile(all.hp, 1) <= kMostHpOverMean &&
                     percentile(all.torque_step, 1) <= kMostTorqueStep_Nmm &&
                     percentile(all.force_step, 1) <= kMostForceStep_N;
-  const bool paid = std::isnan(all.paid.front()) ||
-                    percentile(all.paid, 0) >= 1 - kPaidWithin && percentile(all.paid, 1) <= 1 + kPaidWithin;
+  const bool paid = std::isnan(all.paid.front()) || (percentile(all.paid, 0) >= 1 - kPaidWithin &&
+                                                     percentile(all.paid, 1) <= 1 + kPaidWithin);
   const bool works = percentile(all.force, 0) >= kMinForce_N &&
                      percentile(all.removed, 0) >= kMinRemoved_mm3 &&
                      percentile(all.torque, 0) >= kMinTorque_Nmm;
