@@ -53,7 +53,7 @@ good crown crown "$tooth" crown 14.2 18 21 3 2.734 5.9 0.75 40
 holds "$(value crown taper_deg) >= 6 && $(value crown taper_deg) <= 10 && $(value crown undercut_mm3) <= 0.5" || fault crown
 holds "$(value crown reduction_p10_mm) >= 1" || fault crown
 little crown_little crown "$tooth" crown 17.6 18 21 3 2.734 5.9 0.75 40
-much crown_much crown "$tooth" crown 13.9 16 21 1.7 1.6 5.9 0.75 40
+much crown_much crown "$tooth" crown 13.5 15.5 21 1.4 1.3 5.9 0.75 40
 # The chamber's roof: the burr cuts dentine there, at (0, 0, 15.75).
 through 15.75 1.5625 4 crown_through crown "$tooth" plunge 0 0 22 14 4
 
