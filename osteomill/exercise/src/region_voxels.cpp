@@ -5,8 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <string>
-#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -241,13 +241,22 @@ VoxelSet open_space(const Volume& bone, const VoxelSet& walls) {
 }
 
 bool is_cut_through(const VoxelSet& structure, const Volume& before, const Volume& after) {
-  const VoxelBox box = structure.box().grown(1).intersected(before.geometry().all_voxels());
+  VoxelBox held;
+  bool is_cut = false;
+  structure.for_each([&](const VoxelIndex& v) {
+    held.include(v);
+    is_cut = is_cut || (before.is_bone(v) && !after.is_bone(v));
+  });
+  if (!is_cut) return false;
+  const VoxelBox box = held.grown(1).intersected(before.geometry().all_voxels());
   // Bone that was removed beside the structure opens no way through it.
   const auto is_space = [&](const Volume& within) {
     return [&](const VoxelIndex& v) { return !(structure.contains(v) ? within : after).is_bone(v); };
   };
-  std::unordered_map<std::size_t, int> number_beside;
-  const auto place = [&](const VoxelIndex& v) { return row_major(before.geometry().dims, v.i, v.j, v.k); };
+  std::vector<int> number_beside(cell_count(box.dims()), 0);
+  const auto place = [&, dims = box.dims()](const VoxelIndex& v) {
+    return row_major(dims, v.i - box.first.i, v.j - box.first.j, v.k - box.first.k);
+  };
   VoxelSet was(box), is(box);
   int number = 0;
   for_each(box, [&](const VoxelIndex& start) {
@@ -260,10 +269,10 @@ bool is_cut_through(const VoxelSet& structure, const Volume& before, const Volum
   for_each(box, [&](const VoxelIndex& start) {
     int first = 0;
     flood(is, start, is_space(after), [&](const VoxelIndex& v) {
-      const auto beside = number_beside.find(place(v));
-      if (beside == number_beside.end()) return;
-      is_joined = is_joined || (first != 0 && first != beside->second);
-      first = beside->second;
+      const int beside = number_beside[place(v)];
+      if (beside == 0) return;
+      is_joined = is_joined || (first != 0 && first != beside);
+      first = beside;
     });
   });
   return is_joined;
