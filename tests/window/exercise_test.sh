@@ -85,8 +85,8 @@ work() {
   /usr/bin/python3 - "$recording" "$exercises" <<'CHECK' || fail "the recording lacks something"
 import sys, h5py
 with h5py.File(sys.argv[1]) as f:
-    s = f["settings"].attrs
-    assert s["exercise.title"] == "A trench in layered bone" and s["exercise.trainee"] == "Trainee 7", dict(s)
+    s = {k: v.decode() if isinstance(v, bytes) else v for k, v in f["settings"].attrs.items()}
+    assert s["exercise.title"] == "A trench in layered bone" and s["exercise.trainee"] == "Trainee 7", s
     t, d = f["columns/time_s"][:], f["columns/no_go_distance_mm"][:]
     assert (d == d).all() and d.min() > 0, d
     v = f["view"]
