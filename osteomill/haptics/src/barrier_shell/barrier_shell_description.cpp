@@ -18,20 +18,8 @@ constexpr NumberRange kStiffness{0.05, 200}, kTorsion{1, 1e5}, kSkin{0.05, 1}, k
 
 const Fields& fields() {
   static const Fields all{
-      field<Settings>(
-          {.name = "translational-stiffness",
-           .unit = "N/mm",
-           .range = kStiffness,
-           .doc = "Stiffness of the spring between the device and the simulated tool, against translation",
-           .option = "stiffness"},
-          &Settings::translational_stiffness_N_per_mm),
-      field<Settings>(
-          {.name = "torsional-stiffness",
-           .unit = "N mm/rad",
-           .range = kTorsion,
-           .doc = "Stiffness of the spring between the device and the simulated tool, against rotation",
-           .option = "torsional-stiffness"},
-          &Settings::torsional_stiffness_Nmm_per_rad),
+      field<Settings>(coupling_stiffness(kStiffness), &Settings::translational_stiffness_N_per_mm),
+      field<Settings>(coupling_torsion(kTorsion), &Settings::torsional_stiffness_Nmm_per_rad),
       field<Settings>({"skin-width", "mm", kSkin,
                        "Distance from the tool's cores at which bone is felt; smaller in proportion with a "
                        "reduced rounding"},

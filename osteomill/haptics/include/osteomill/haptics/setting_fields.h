@@ -24,4 +24,22 @@ AlgorithmDescription with_settings(AlgorithmDescription description,
   return description;
 }
 
+/// Describes the stiffness of a virtual coupling against translation, for every algorithm that has one.
+inline FieldDescription coupling_stiffness(const NumberRange& range) {
+  return {.name = "translational-stiffness",
+          .unit = "N/mm",
+          .range = range,
+          .doc = "Stiffness of the spring between the device and the simulated tool, against translation",
+          .option = "stiffness"};
+}
+
+/// Describes the stiffness of a virtual coupling against rotation.
+inline FieldDescription coupling_torsion(const NumberRange& range) {
+  return {.name = "torsional-stiffness",
+          .unit = "N mm/rad",
+          .range = range,
+          .doc = "Stiffness of the spring between the device and the simulated tool, against rotation",
+          .option = "torsional-stiffness"};
+}
+
 }  // namespace osteomill
