@@ -20,9 +20,6 @@ class UpdateQueue {
   /// bricks let the tool sink unevenly, a buzz at half the haptic rate of up to 0.04 N mm (tooth, 3 N); with
   /// 1/50 0.008 N mm are left, with 1/100 0.005, as if all were updated. No more than 1/share bricks have it.
   static constexpr float kBearingShare = 0.01f;
-  /// The number of points in these bricks up to which they are updated at every call. In voxels of 0.0625 mm
-  /// and finer a wide burr rests on more, and a tick would take over 1 ms (1.65 ms for a 6 mm burr).
-  static constexpr int kBearingPointsPerTick = 3000;
   /// About the number of points that a tick would update in the bricks on which the tool rests if all took
   /// turns. (Tried: updating such a brick only once its surface has sunk by 2 um, judged by bone lost over
   /// area. It took half the time but doubled the steps of torque, 0.28 N mm for 0.14; tooth, 3 N.)
@@ -50,26 +47,28 @@ class UpdateQueue {
     supporting_count_ = 0;
     load_ = 0;
   }
-  /// Calls `use(slot)` for the supporting bricks whose turn it is: at every call if they bear kBearingShare
-  /// of the load and have kBearingPointsPerTick points at most. The others take turns, over as many calls as
-  /// all of them would need to do about kSupportingPointsPerTick points in each, a brick costing
-  /// `cost_of(slot)`. Neighbours, whose slots follow one another, have their turns in different calls.
+  /// Calls `use(slot)` for the supporting bricks whose turn it is, a brick costing `cost_of(slot)` points.
+  /// Those that bear kBearingShare of the load have it at every call, if together they cost at most
+  /// kSupportingPointsPerTick; with more, in fine voxels, a tick would take over 1 ms. The others take turns,
+  /// over as many calls as all of them would need to do that many points in each. Neighbours, whose slots
+  /// follow one another, have their turns in different calls.
   template <typename CostOf, typename Use>
   void update_supporting_in_turns(const CostOf& cost_of, const Use& use) {
     const auto bears = [&](const Supporting& brick) { return brick.load >= kBearingShare * load_; };
-    int cost = 0, bearing_cost = 0;
+    int cost = 0;
+    int bearing_cost = 0;
     for (std::size_t n = 0; n < supporting_count_; ++n) {
       const int points = cost_of(supporting_[n].slot);
       cost += points;
       if (bears(supporting_[n])) bearing_cost += points;
     }
-    const bool bearing_have_all_turns = bearing_cost <= kBearingPointsPerTick;
+    const bool is_bearing_affordable = bearing_cost <= kSupportingPointsPerTick;
     const auto turns = static_cast<std::uint32_t>(1 + cost / kSupportingPointsPerTick);
     ++turn_;
     supporting_pending_ = 0;
     for (std::size_t n = 0; n < supporting_count_; ++n) {
       const Supporting& brick = supporting_[n];
-      if ((bearing_have_all_turns && bears(brick)) || (turn_ + brick.slot) % turns == 0) {
+      if ((is_bearing_affordable && bears(brick)) || (turn_ + brick.slot) % turns == 0) {
         use(brick.slot);
       } else {
         ++supporting_pending_;

@@ -42,7 +42,7 @@ TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATic
   }
   EXPECT_EQ(turns, std::vector<int>({2, 2, 2, 2, 2, 2, 2, 2, 4}));
   // One that costs more than a tick may has turns like the others.
-  const int dear = UpdateQueue::kBearingPointsPerTick + 1;
+  const int dear = UpdateQueue::kSupportingPointsPerTick + 1;
   const int before = turns[8];
   for (int tick = 0; tick < 4; ++tick) take(dear);
   EXPECT_LT(turns[8], before + 4);
