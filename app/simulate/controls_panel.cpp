@@ -130,6 +130,9 @@ void draw_drive(MillingSetup& requested_setup, bool& changed) {
   ImGui::EndDisabled();
   changed = ui::checkbox("drag", &requested_setup.drag) || changed;
   ui::tooltip(field_of_option(fields_of<MillingSetup>(), "drag")->doc);
+  ImGui::SameLine();
+  changed = ui::checkbox("knock", &requested_setup.contact_transient.on) || changed;
+  ui::tooltip(field_of_option(fields_of<MillingSetup>(), "contact-transient")->doc);
 }
 
 void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {

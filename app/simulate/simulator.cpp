@@ -159,7 +159,6 @@ class Simulator {
         hardware_(open_device(options.device)),
         window_("osteomill", kWindowSize, options.ui_scale),
         files_(options.folder, [this](const Camera& camera) { return picture(camera); }) {
-    setup_.vibration.on = true;
     if (hardware_) setup_.guard.limits = hardware_->limits_W(setup_.guard.limits);
     view_.help = !options.no_help;
   }
@@ -657,6 +656,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   options->driver = driver;
   options->command_line = command_line;
   options->milling.setup.cutting_reaction = options->milling.setup.drag = true;
+  options->milling.setup.vibration.on = true;
   options->milling.setup.law = CuttingLaw::chips;
   CLI::App* command =
       program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");

@@ -88,6 +88,7 @@ MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities
       no_go_(volume_->labels(), setup.tool.burr_radius_mm),
       spindle_(setup.handpiece, setup.cutting.spindle_speed_rpm),
       vibration_(setup.vibration),
+      transient_(setup.contact_transient),
       guard_(setup.guard),
       points_inside_T_(points_inside(setup.tool, pressing_reach_mm(volume_->geometry()))) {
   algorithm_->prepare({volume_.get(), setup.tool, setup.tick_s});
@@ -185,6 +186,7 @@ void MillingSession::forget_contacts(const std::optional<Pose>& X_WT) noexcept {
   constexpr double kUsualTick_s = 1e-3;
   algorithm_->reset();
   reaction_.reset();
+  transient_.reset();
   if (X_WT) algorithm_->step(*X_WT, kUsualTick_s);
 }
 
@@ -210,6 +212,7 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
     const Wrench contact{step.wrench.force_N + step.burr_force_W_N, step.wrench.torque_Nmm};
     drag = shaft_drag(setup_.tool, step.X_WT, contact);
   }
+  if (setup_.contact_transient.on) step.wrench.force_N += transient_.force_N(X_WD, step.wrench.force_N, dt_s);
   if (spindle_on)
     step.wrench.force_N +=
         vibration_.force_N(step.X_WT, vibrating_N(step.burr_force_W_N), spindle_.speed_rpm(), dt_s);

@@ -227,10 +227,29 @@ std::vector<Field<GuardSettings>> guard_fields() {
 std::vector<Field<VibrationSettings>> vibration_fields() {
   using V = VibrationSettings;
   return {
-      field<V>({"vibration", "", kSwitch, "The hand feels the burr cut"}, &V::on),
+      field<V>({"vibration", "", kSwitch, "Let the hand feel the burr cut", kOfTheCutting, "vibration"},
+               &V::on),
       field<V>({"vibration.force_share", "", kNotNegative, "Share of the burr's force that vibrates"},
                &V::force_share),
       field<V>({"vibration.max_force", "N", kNotNegative, "Largest force of the vibration"}, &V::max_N),
+  };
+}
+
+}  // namespace
+
+namespace {
+
+std::vector<Field<ContactTransientSettings>> transient_fields() {
+  using C = ContactTransientSettings;
+  return {
+      field<C>({"contact_transient", "", kSwitch, "Let the hand feel a knock as a fast tool meets bone",
+                kOfTheCutting | kMayBeAbsent, "contact-transient"},
+               &C::on),
+      field<C>({"contact_transient.damping", "N s/mm", kNotNegative, "Amplitude of the knock per speed",
+                kMayBeAbsent},
+               &C::damping_N_s_per_mm),
+      field<C>({"contact_transient.max_force", "N", kNotNegative, "Largest force of the knock", kMayBeAbsent},
+               &C::max_N),
   };
 }
 
@@ -241,7 +260,8 @@ const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>() {
   static const std::vector<Field<S>> all = joined<S>(
       {fields_within<S>(&S::tool, tool_fields()), law_fields(),
        fields_within<S>(&S::cutting, cutting_fields()), removal_fields(),
-       fields_within<S>(&S::guard, guard_fields()), fields_within<S>(&S::vibration, vibration_fields())});
+       fields_within<S>(&S::guard, guard_fields()), fields_within<S>(&S::vibration, vibration_fields()),
+       fields_within<S>(&S::contact_transient, transient_fields())});
   return all;
 }
 

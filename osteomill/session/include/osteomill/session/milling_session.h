@@ -143,6 +143,7 @@ class MillingSession {
   double load_Nmm_ = 0;
   double cutting_share_ = 0;
   Vibration vibration_;
+  ContactTransient transient_;
   WrenchGuard guard_;
   std::vector<Vec3> points_inside_T_;
   double removed_mm3_ = 0;

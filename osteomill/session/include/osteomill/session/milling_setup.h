@@ -9,6 +9,7 @@
 #include "osteomill/haptics/milling_tool.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/spindle.h"
+#include "osteomill/session/contact_transient.h"
 #include "osteomill/session/wrench_guard.h"
 
 namespace osteomill {
@@ -48,6 +49,8 @@ struct MillingSetup {
   bool drag = false;
   /// The hand feels the burr cut.
   VibrationSettings vibration;
+  /// The hand feels a knock as it meets bone.
+  ContactTransientSettings contact_transient;
   /// Protects a hand unless told otherwise (GuardSettings::for_simulation).
   GuardSettings guard;
   /// The nominal length of a tick.
