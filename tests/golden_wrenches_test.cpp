@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
                          ::testing::Values(Golden{"line-proxy", 0x77daa7530d79b3b2},
                                            Golden{"surface-points", 0xe2ea466e2b30f36e},
                                            Golden{"point-shell", 0x3467afb63e917654},
-                                           Golden{"barrier-shell", 0xe8d8e67df1566385}),
+                                           Golden{"barrier-shell", 0x549cee164ea16ce5}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';

@@ -48,27 +48,19 @@ class UpdateQueue {
     load_ = 0;
   }
   /// Calls `use(slot)` for the supporting bricks whose turn it is, a brick costing `cost_of(slot)` points.
-  /// Those that bear kBearingShare of the load have it at every call, if together they cost at most
-  /// kSupportingPointsPerTick; with more, in fine voxels, a tick would take over 1 ms. The others take turns,
-  /// over as many calls as all of them would need to do that many points in each. Neighbours, whose slots
-  /// follow one another, have their turns in different calls.
+  /// Those that bear kBearingShare of the load have it at every call; if together these cost more than
+  /// kSupportingPointsPerTick, as in fine voxels, those that bear the most. The others take turns, over as
+  /// many calls as all bricks would need to do that many points in each. Neighbours, whose slots follow one
+  /// another, have their turns in different calls.
   template <typename CostOf, typename Use>
   void update_supporting_in_turns(const CostOf& cost_of, const Use& use) {
-    const auto bears = [&](const Supporting& brick) { return brick.load >= kBearingShare * load_; };
-    int cost = 0;
-    int bearing_cost = 0;
-    for (std::size_t n = 0; n < supporting_count_; ++n) {
-      const int points = cost_of(supporting_[n].slot);
-      cost += points;
-      if (bears(supporting_[n])) bearing_cost += points;
-    }
-    const bool is_bearing_affordable = bearing_cost <= kSupportingPointsPerTick;
-    const auto turns = static_cast<std::uint32_t>(1 + cost / kSupportingPointsPerTick);
+    const float least_load = bearing_load(cost_of);
+    const auto turns = static_cast<std::uint32_t>(1 + cost_from(0, cost_of) / kSupportingPointsPerTick);
     ++turn_;
     supporting_pending_ = 0;
     for (std::size_t n = 0; n < supporting_count_; ++n) {
       const Supporting& brick = supporting_[n];
-      if ((is_bearing_affordable && bears(brick)) || (turn_ + brick.slot) % turns == 0) {
+      if (brick.load >= least_load || (turn_ + brick.slot) % turns == 0) {
         use(brick.slot);
       } else {
         ++supporting_pending_;
@@ -86,6 +78,22 @@ class UpdateQueue {
   void spend_build_budget(int points) { build_budget_ -= points; }
 
  private:
+  // Returns the least load with which a brick is updated at every call.
+  template <typename CostOf>
+  float bearing_load(const CostOf& cost_of) const {
+    for (float share = kBearingShare; share < 1; share *= 2) {
+      if (cost_from(share * load_, cost_of) <= kSupportingPointsPerTick) return share * load_;
+    }
+    return std::numeric_limits<float>::infinity();
+  }
+  template <typename CostOf>
+  int cost_from(float least_load, const CostOf& cost_of) const {
+    int cost = 0;
+    for (std::size_t n = 0; n < supporting_count_; ++n)
+      if (supporting_[n].load >= least_load) cost += cost_of(supporting_[n].slot);
+    return cost;
+  }
+
   VoxelBox waiting_;
   // The box whose bricks have their turns, and the next of them.
   VoxelBox walked_;

@@ -52,6 +52,19 @@ TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATic
   EXPECT_EQ(queue.size(), 0u);
 }
 
+TEST(UpdateQueue, IfThoseThatBearCostMoreThanATickDoesThoseThatBearMostHaveAllTurns) {
+  UpdateQueue queue;
+  std::vector<int> turns(8);
+  // Loads of 1, 2, 4, ... of 255, each brick a third of a tick's points.
+  for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot, static_cast<float>(1 << slot));
+  constexpr int kTicks = 12;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    queue.update_supporting_in_turns([](std::uint32_t) { return UpdateQueue::kSupportingPointsPerTick / 3; },
+                                     [&](std::uint32_t slot) { ++turns[slot]; });
+  }
+  EXPECT_EQ(turns, std::vector<int>({4, 4, 4, 4, 4, kTicks, kTicks, kTicks}));
+}
+
 TEST(UpdateQueue, ATickMakesNoMoreThanItsShareAndGoesOnWithWhatWaits) {
   UpdateQueue queue;
   queue.spend_build_budget(1000000);
