@@ -163,7 +163,7 @@ void BarrierShell::prepare(const AlgorithmInputs& inputs) {
   const double at_shaft_mm = widest_spacing_mm(whole.cylinder_radius_mm);
   const double spacing_mm =
       std::min({settings_.point_spacing_mm, widest_spacing_mm(whole.ball_radius_mm), at_shaft_mm});
-  bricks_ = BoneBricks(*inputs.volume, spacing_mm);
+  bricks_ = BoneBricks(*inputs.volume, spacing_mm, inputs.tick_period_s);
   near_ = NearBone(kNearPoints, 2 * spacing_mm > at_shaft_mm);
   measured_ = MeasuredBone(kNearPoints);
   reset();

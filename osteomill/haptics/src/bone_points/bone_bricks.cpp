@@ -25,8 +25,11 @@ std::uint32_t content_without_points(SurfaceLattice::Occupancy occupancy) {
 
 }  // namespace
 
-BoneBricks::BoneBricks(const Volume& volume, double spacing_mm)
-    : lattice_(volume, spacing_mm), tree_(lattice_.brick_dims()), store_(kSlots, kFineChunks, kCoarseChunks) {
+BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, double tick_s)
+    : lattice_(volume, spacing_mm),
+      tree_(lattice_.brick_dims()),
+      store_(kSlots, kFineChunks, kCoarseChunks),
+      queue_(tick_s) {
   choose_point_instructions();
 }
 

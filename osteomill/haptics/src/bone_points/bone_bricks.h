@@ -24,8 +24,8 @@ class BoneBricks {
 
   BoneBricks() = default;
   /// `volume` outlives it. Fine points are at most `spacing_mm` apart, coarse ones twice that where the bone
-  /// is flat.
-  BoneBricks(const Volume& volume, double spacing_mm);
+  /// is flat. `tick_s` is the nominal length of a tick.
+  BoneBricks(const Volume& volume, double spacing_mm, double tick_s = 1e-3);
 
   const SurfaceLattice& lattice() const { return lattice_; }
   const BrickPoints& fine() const { return store_.fine(); }

@@ -172,7 +172,7 @@ TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
     bricks.begin_tick({}, {});
     all = bricks.build_and_visit(every_node, [](const VoxelIndex&, std::uint32_t) {});
     EXPECT_LE(bricks.fine().total(),
-              before + UpdateQueue::kBuiltPointsPerTick + SurfaceLattice::kMaxPointsOfBrick);
+              before + UpdateQueue::kBuiltPointsPerMs + SurfaceLattice::kMaxPointsOfBrick);
     before = bricks.fine().total();
     ASSERT_LT(ticks, 1000);
   }

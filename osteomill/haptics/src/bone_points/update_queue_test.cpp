@@ -33,16 +33,16 @@ TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATic
   };
   // One that bears nearly all, and has all turns.
   queue.add_supporting(8, 1);
-  take(UpdateQueue::kSupportingPointsPerTick / 16);
+  take(UpdateQueue::kSupportingPointsPerMs / 16);
   EXPECT_EQ(turns, std::vector<int>(9, 1));
   EXPECT_EQ(queue.size(), 0u);
   for (int tick = 0; tick < 3; ++tick) {
-    take(2 * UpdateQueue::kSupportingPointsPerTick / 9 + 1);
+    take(2 * UpdateQueue::kSupportingPointsPerMs / 9 + 1);
     EXPECT_GE(queue.size(), 5u);
   }
   EXPECT_EQ(turns, std::vector<int>({2, 2, 2, 2, 2, 2, 2, 2, 4}));
   // One that costs more than a tick may has turns like the others.
-  const int dear = UpdateQueue::kSupportingPointsPerTick + 1;
+  const int dear = UpdateQueue::kSupportingPointsPerMs + 1;
   const int before = turns[8];
   for (int tick = 0; tick < 4; ++tick) take(dear);
   EXPECT_LT(turns[8], before + 4);
@@ -59,10 +59,25 @@ TEST(UpdateQueue, IfThoseThatBearCostMoreThanATickDoesThoseThatBearMostHaveAllTu
   for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot, static_cast<float>(1 << slot));
   constexpr int kTicks = 12;
   for (int tick = 0; tick < kTicks; ++tick) {
-    queue.update_supporting_in_turns([](std::uint32_t) { return UpdateQueue::kSupportingPointsPerTick / 3; },
+    queue.update_supporting_in_turns([](std::uint32_t) { return UpdateQueue::kSupportingPointsPerMs / 3; },
                                      [&](std::uint32_t slot) { ++turns[slot]; });
   }
   EXPECT_EQ(turns, std::vector<int>({4, 4, 4, 4, 4, kTicks, kTicks, kTicks}));
+}
+
+TEST(UpdateQueue, AShorterTickDoesAsMuchLess) {
+  UpdateQueue queue(0.25e-3);
+  for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot, 1);
+  int uses = 0;
+  for (int tick = 0; tick < 8; ++tick) {
+    queue.update_supporting_in_turns([](std::uint32_t) { return UpdateQueue::kSupportingPointsPerMs / 8; },
+                                     [&](std::uint32_t) { ++uses; });
+  }
+  // Eight bricks, which a tick of 1 ms would all update, in four turns.
+  EXPECT_EQ(uses, 2 * 8);
+  queue.begin_tick();
+  queue.spend_build_budget(UpdateQueue::kBuiltPointsPerMs / 4);
+  EXPECT_FALSE(queue.has_build_budget());
 }
 
 TEST(UpdateQueue, ATickMakesNoMoreThanItsShareAndGoesOnWithWhatWaits) {
@@ -70,7 +85,7 @@ TEST(UpdateQueue, ATickMakesNoMoreThanItsShareAndGoesOnWithWhatWaits) {
   queue.spend_build_budget(1000000);
   EXPECT_TRUE(queue.has_build_budget());
   EXPECT_FALSE(queue.begin_tick());
-  queue.spend_build_budget(UpdateQueue::kBuiltPointsPerTick);
+  queue.spend_build_budget(UpdateQueue::kBuiltPointsPerMs);
   EXPECT_FALSE(queue.has_build_budget());
   queue.add({{0, 0, 0}, {1, 0, 0}});
   EXPECT_FALSE(queue.begin_tick());
