@@ -57,9 +57,9 @@ Task plunge(double radius_mm, double width = 1) {
 }
 
 // The burr's equator in a plate as thick as its radius, in half a bowl of its own shape.
-Task side_cut(double radius_mm) {
+Task side_cut(double radius_mm, int length_voxels = 220) {
   GridGeometry geometry = centred_cube(40, radius_mm / 10);
-  geometry.dims[0] = 220;
+  geometry.dims[0] = length_voxels;
   return {shape_volume(geometry,
                        [=](const Vec3& p) {
                          return std::max({-p.x(), std::abs(p.z()) - 0.5 * radius_mm, radius_mm - p.norm()});
@@ -139,7 +139,7 @@ Cut at_feed(const MillingSetup& setup, double feed_mm_s, double width = 1) {
 // A device that pushes, as hard as `push_N` has it at a time.
 std::vector<TickRecord> pushed(const Task& task, const MillingSetup& setup, double seconds,
                                const std::function<double(double time_s)>& push_N) {
-  constexpr double kSettles_per_s = 50;
+  constexpr double kSettles_per_s = 400;
   MillingSession session(std::make_shared<Volume>(task.bone), kReference, setup);
   const double stiffness_N_per_mm = setup.haptics.named.front().value;
   testing_support::PressingDevice device({Vec3::Zero(), Quat::Identity()}, task.along_W,
@@ -291,18 +291,31 @@ void add_spindles(Section& section) {
     setup.handpiece = handpiece;
     return setup;
   };
-  // Pushed harder and harder until it stalls.
-  constexpr double kTurbineBurr_mm = 0.8, kN_per_s = 8;
+  // Pushed harder in each run, through a plate that is longer than it cuts, until it stands at the end. A
+  // hand that follows the bone late lets it run down before its stall, so the torque there is that of the
+  // line through the first and the last run.
+  constexpr double kTurbineBurr_mm = 0.8, kStep_N = 0.25, kMost_N = 20, kRun_s = 1.5, kEnd_s = 0.3;
+  constexpr int kPlate_voxels = 900;
+  const Task plate = side_cut(kTurbineBurr_mm, kPlate_voxels);
   const MillingSetup turbine = driven(Handpiece::turbine, kTurbineBurr_mm, 500000);
-  double stall_Nmm = 0, lately_W = 0, power_W = 0;
-  for (const TickRecord& record : pushed(side_cut(kTurbineBurr_mm), turbine, 3, [](double time_s) {
-         return std::max(0.0, kN_per_s * (time_s - 1));
-       })) {
-    power_W = std::max(power_W, lately_W += 0.05 * (record.cutting_power_W - lately_W));
-    if (record.time_s > 1 && record.spindle_rpm == 0 && stall_Nmm == 0)
-      stall_Nmm = kTangential * kEquator * kTurbineBurr_mm * record.burr_force_W_N.norm();
+  double power_W = 0;
+  std::vector<double> speeds_rpm, torques_Nmm;
+  for (double push_N = kStep_N; push_N < kMost_N; push_N += kStep_N) {
+    const std::vector<TickRecord> records = pushed(plate, turbine, kRun_s, [=](double) { return push_N; });
+    if (records.back().spindle_rpm == 0) break;
+    double end_W = 0, end_N = 0;
+    for (const TickRecord& record : records) {
+      if (record.time_s <= kRun_s - kEnd_s) continue;
+      end_W += record.cutting_power_W * kTick_s / kEnd_s;
+      end_N += record.burr_force_W_N.norm() * kTick_s / kEnd_s;
+    }
+    power_W = std::max(power_W, end_W);
+    speeds_rpm.push_back(records.back().spindle_rpm);
+    torques_Nmm.push_back(kTangential * kEquator * kTurbineBurr_mm * end_N);
   }
-  add(section, {"S1", "air turbine, stall torque, N mm", 2.33, 2.33, 0, Use::fit, kTurbines}, stall_Nmm);
+  const double slope = (torques_Nmm.back() - torques_Nmm.front()) / (speeds_rpm.back() - speeds_rpm.front());
+  add(section, {"S1", "air turbine, stall torque, N mm", 2.33, 2.33, 0, Use::fit, kTurbines},
+      torques_Nmm.back() - slope * speeds_rpm.back());
   add(section, {"S2", "air turbine, greatest power, W", 29.6, 29.6, 0, Use::held_out, kTurbines}, power_W);
   add(section,
       {"B12, speed", "turbine, speed kept at a tangential 1.77 N, bur of 0.8 mm", 0.895, 0.895, 0,
