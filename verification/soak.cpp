@@ -17,9 +17,9 @@
 #include "osteomill/recording/run_description.h"
 #include "osteomill/session/milling_entry.h"
 #include "osteomill/session/simulated_operator.h"
+#include "osteomill/volume/density_block.h"
 #include "osteomill/volume/density_grid.h"
 
-#include "tests/support/differing_blocks.h"
 #include "verification/sections.h"
 
 namespace osteomill::verification {

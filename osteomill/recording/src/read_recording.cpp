@@ -44,7 +44,8 @@ static void pass(PipeEnd& pipe, RunDescription& run) {
 }
 static auto members_of(SessionStart& start) {
   return std::tie(start.run, start.handover.X_WT, start.handover.sent, start.handover.held_back,
-                  start.handover.spindle_rpm, start.removed_mm3, start.bricks, start.continues_from);
+                  start.handover.spindle_rpm, start.removed_mm3, start.bricks, start.continues_from,
+                  start.continues_after);
 }
 static auto members_of(RecordedSession& session) {
   return std::tie(session.first, session.start);
@@ -193,6 +194,7 @@ SessionStart read_session_start(const Hdf5File& recording, hid_t group, const st
   SessionStart start;
   start.run = run != nullptr ? *run : read_description(recording.path, group);
   read.get("goes_on_from", start.continues_from);
+  if (read.has("goes_on_after")) read.get("goes_on_after", start.continues_after);
   read.get("removed_mm3", start.removed_mm3);
   start.handover.sent = {read.get<Vec3>("force_N"), read.get<Vec3>("torque_Nmm")};
   start.handover.held_back = read.has("held_back") && read.get<std::uint64_t>("held_back") != 0;
@@ -305,17 +307,35 @@ SessionStart read_start(const fs::path& path) {
   return std::move(recording.sessions.front().start);
 }
 
-Recording read_recording_chain(const fs::path& path) {
+namespace {
+
+// Leaves of a recording what it was after so many ticks.
+void keep_first_ticks(Recording& recording, std::size_t ticks) {
+  recording.records.resize(ticks);
+  std::erase_if(recording.sessions, [&](const RecordedSession& session) { return session.first >= ticks; });
+  std::erase_if(recording.bone_hashes, [&](const BoneHash& hash) { return hash.record >= ticks; });
+  const double last_s = recording.records.back().time_s;
+  std::erase_if(recording.views, [&](const ViewSample& view) { return view.time_s > last_s; });
+  recording.complete = true;
+}
+
+// Reads a recording with all before it, at most `max_before`.
+Recording read_chain(const fs::path& path, int max_before) {
   Recording recording = read_recording(path);
   if (recording.sessions.empty() || recording.sessions.front().start.continues_from.empty()) return recording;
   const fs::path name = recording.sessions.front().start.continues_from;
   if (name != name.filename()) throw InputError(path.string(), "goes on from a recording elsewhere");
+  if (max_before == 0) throw InputError(path.string(), "goes on from too many recordings, or from itself");
   if (std::error_code error; !fs::exists(path.parent_path() / name, error))
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not beside it");
-  Recording whole = read_recording(path.parent_path() / name);
-  const bool begins = !whole.sessions.empty() && whole.sessions.front().start.continues_from.empty();
-  if (!begins || whole.description.scan_hash != recording.description.scan_hash) {
+  Recording whole = read_chain(path.parent_path() / name, max_before - 1);
+  if (whole.sessions.empty() || whole.description.scan_hash != recording.description.scan_hash)
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not what came before it");
+  if (const std::uint64_t ticks = recording.sessions.front().start.continues_after; ticks > 0) {
+    if (ticks > whole.records.size())
+      throw InputError(path.string(), fmt::format("goes on from tick {} of {}, which has {}", ticks,
+                                                  name.string(), whole.records.size()));
+    keep_first_ticks(whole, ticks);
   }
   const std::size_t before = whole.records.size();
   const std::size_t sessions_before = whole.sessions.size();
@@ -333,6 +353,13 @@ Recording read_recording_chain(const fs::path& path) {
   whole.complete = whole.complete && recording.complete;
   whole.dropped += recording.dropped;
   return whole;
+}
+
+}  // namespace
+
+Recording read_recording_chain(const fs::path& path) {
+  constexpr int kMaxBefore = 64;
+  return read_chain(path, kMaxBefore);
 }
 
 bool is_hdf5(const fs::path& path) {

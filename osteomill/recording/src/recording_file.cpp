@@ -243,6 +243,7 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   const Attributes write(path_, group.get());
   write.put("row", row);
   write.put("goes_on_from", start.continues_from);
+  if (start.continues_after > 0) write.put("goes_on_after", start.continues_after);
   write.put("removed_mm3", start.removed_mm3);
   write.put("force_N", start.handover.sent.force_N);
   write.put("torque_Nmm", start.handover.sent.torque_Nmm);

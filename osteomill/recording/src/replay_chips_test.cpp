@@ -9,10 +9,10 @@
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/recording/run_description.h"
 #include "osteomill/session/milling_session.h"
+#include "osteomill/volume/density_block.h"
 #include "osteomill/volume/density_grid.h"
 
 #include "tests/shapes.h"
-#include "tests/support/differing_blocks.h"
 #include "tests/support/recording_samples.h"
 
 namespace osteomill {

@@ -1,45 +1,28 @@
 #include "osteomill/recording/replay_recording.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "osteomill/base/input_error.h"
-#include "osteomill/milling/burr_mill.h"
-#include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/run_description.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/density_grid.h"
 #include "osteomill/volume/editable_volume.h"
 
+#include "repeated_session.h"
+
 namespace osteomill {
 
 namespace {
 
-[[noreturn]] void refuse(const Recording& recording, const std::string& reason) {
-  throw InputError(recording.path.string(), reason);
-}
-
 std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
   return fmt::format("{} x {} x {} voxels of {:.6g} x {:.6g} x {:.6g} mm", dims[0], dims[1], dims[2],
                      spacing_mm.x(), spacing_mm.y(), spacing_mm.z());
-}
-
-void require_whole(const Recording& recording) {
-  if (recording.sessions.empty()) refuse(recording, "holds no ticks");
-  if (recording.dropped > 0)
-    refuse(recording, fmt::format("lost {} ticks, so they cannot be run again", recording.dropped));
-  if (const std::string& before = recording.sessions.front().start.continues_from; !before.empty())
-    refuse(recording, "goes on from " + before + ", without which it cannot be run again");
-}
-
-std::size_t end_of(const Recording& recording, std::size_t session) {
-  return session + 1 < recording.sessions.size() ? recording.sessions[session + 1].first
-                                                 : recording.records.size();
 }
 
 // From the scan.
@@ -47,16 +30,6 @@ void begin_at(const SessionStart& start, Volume& bone) {
   EditableVolume edited(bone);
   edited.set_isovalue(start.run.isovalue);
   for (DensityBlock brick : start.bricks) edited.swap(brick);
-}
-
-// Makes an object from settings that may be out of range.
-template <typename Make>
-auto made(const Recording& recording, const Make& make) {
-  try {
-    return make();
-  } catch (const std::invalid_argument& error) {
-    refuse(recording, fmt::format("cannot be run again: {}", error.what()));
-  }
 }
 
 std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStart& start,
@@ -102,45 +75,81 @@ std::optional<std::string> difference_of(const TickRecord& recorded, const TickR
   return std::nullopt;
 }
 
-void require_same_removal(const Recording& recording, std::size_t tick, double removed_mm3) {
-  const double recorded_mm3 = recording.records[tick].removed_mm3;
-  if (removed_mm3 == recorded_mm3) return;
-  if (tick == 0) {
-    refuse(recording, fmt::format("goes on from other milling: {:.6g} mm³ had been removed when it began",
-                                  recorded_mm3));
-  }
-  refuse(recording, fmt::format("was made with another scan ({}) or version ({}): at tick {} it had removed "
-                                "{:.9g} mm³, where this one loses {:.9g}",
-                                recording.description.scan_name, recording.description.program_version, tick,
-                                recorded_mm3, removed_mm3));
-}
-
 void repeat_session(Volume& volume, const Recording& recording, std::size_t number,
                     const OnRepeatedTick& on_tick) {
-  const auto& [first, start] = recording.sessions[number];
-  const SessionSettings settings = session_settings(start.run, recording.path);
-  const MillingSettings milling = milling_settings(settings.setup);
-  BurrMill mill = made(recording, [&] {
-    return BurrMill(volume, settings.setup.tool.burr_radius_mm, settings.densities, milling);
-  });
-  begin_at(start, volume);
-  double removed_mm3 = start.removed_mm3;
+  const std::size_t first = recording.sessions[number].first;
+  begin_at(recording.sessions[number].start, volume);
+  RepeatedSession session(volume, recording, number, first);
   for (std::size_t tick = first; tick < end_of(recording, number); ++tick) {
-    const TickRecord& record = recording.records[tick];
-    VolumeChange change;
-    if (!record.paused) {
-      const Vec3 paying_W_N =
-          paying_force_W_N(milling, record.X_WT, record.burr_force_W_N, record.spindle_on);
-      const double speed_share =
-          settings.setup.handpiece == Handpiece::none ? 1 : record.spindle_rpm / milling.spindle_speed_rpm;
-      const MillingStep step = mill.step(record.X_WT.position_mm, paying_W_N, record.dt_s, speed_share);
-      removed_mm3 += step.removed_mm3;
-      change = step.change;
-    }
-    require_same_removal(recording, tick, removed_mm3);
+    VolumeChange change = session.mill_next();
     if (tick == first) change.voxels = volume.geometry().all_voxels();
     if (on_tick) on_tick(tick, volume, change);
   }
+}
+
+// Runs the ticks from `row` on, first in `session` if one goes on there. Returns the last tick's session.
+std::unique_ptr<MillingSession> run_from(std::size_t row, std::unique_ptr<MillingSession> session,
+                                         const Volume& scan, const Recording& recording,
+                                         const ReplayHooks& hooks) {
+  for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
+    const std::size_t first = recording.sessions[n].first;
+    if (first >= row) {
+      SessionStart start = recording.sessions[n].start;
+      if (hooks.transform_description) start.run = hooks.transform_description(start.run);
+      session = session_at(scan, start, recording, hooks);
+      if (hooks.on_session) hooks.on_session(start, *session);
+    }
+    for (std::size_t tick = std::max(first, row); tick < end_of(recording, n); ++tick) {
+      const TickRecord& recorded = recording.records[tick];
+      TickRecord now = replay_tick(*session, recorded);
+      now.session = recorded.session;
+      if (!hooks.on_tick(recorded, now)) return session;
+    }
+  }
+  return session;
+}
+
+// Holds the ticks of a replay against the recording, until one differs or `max_ticks` were the same.
+class Comparison {
+ public:
+  Comparison(const Recording& recording, std::size_t max_ticks,
+             const std::function<void(std::size_t ticks)>& on_progress)
+      : recording_(recording),
+        max_ticks_(max_ticks),
+        on_progress_(on_progress),
+        hash_(recording.bone_hashes.begin()) {}
+
+  // Returns whether to go on.
+  bool add(const TickRecord& recorded, const TickRecord& now) {
+    auto what = difference_of(recorded, now);
+    const bool has_hash = hash_ != recording_.bone_hashes.end() && hash_->record == verified_.ticks;
+    if (!what && has_hash && hash_->hash != now.bone_hash) what = "the bone is another";
+    if (what) {
+      verified_.difference = {verified_.ticks, recorded.time_s, *std::move(what)};
+      return false;
+    }
+    if (has_hash) {
+      ++hash_;
+      ++verified_.compared_bones;
+    }
+    ++verified_.ticks;
+    if (on_progress_) on_progress_(verified_.ticks);
+    return verified_.ticks < max_ticks_;
+  }
+  const Verification& verified() const { return verified_; }
+
+ private:
+  const Recording& recording_;
+  std::size_t max_ticks_;
+  const std::function<void(std::size_t ticks)>& on_progress_;
+  std::vector<BoneHash>::const_iterator hash_;
+  Verification verified_;
+};
+
+void require_replayable(const Volume& scan, const Recording& recording) {
+  require_whole(recording);
+  if (recording.records.empty()) refuse(recording, "holds no ticks");
+  require_made_with(recording, scan);
 }
 
 }  // namespace
@@ -158,46 +167,53 @@ void require_made_with(const Recording& recording, const Volume& scan) {
 }
 
 void replay_recording(const Volume& scan, const Recording& recording, const ReplayHooks& hooks) {
-  require_whole(recording);
-  if (recording.records.empty()) refuse(recording, "holds no ticks");
-  require_made_with(recording, scan);
-  for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
-    SessionStart start = recording.sessions[n].start;
-    if (hooks.transform_description) start.run = hooks.transform_description(start.run);
-    const auto session = session_at(scan, start, recording, hooks);
-    if (hooks.on_session) hooks.on_session(start, *session);
-    for (std::size_t row = recording.sessions[n].first; row < end_of(recording, n); ++row) {
-      const TickRecord& recorded = recording.records[row];
-      TickRecord now = replay_tick(*session, recorded);
-      now.session = recorded.session;
-      if (!hooks.on_tick(recorded, now)) return;
-    }
-  }
+  require_replayable(scan, recording);
+  run_from(0, nullptr, scan, recording, hooks);
+}
+
+std::string Difference::sentence() const {
+  return fmt::format("differs from tick {} on ({:.3f} s): {}", record, time_s, what);
 }
 
 Verification verify_recording(const Volume& scan, const Recording& recording,
                               const std::function<void(std::size_t ticks)>& on_progress) {
-  Verification verified;
-  auto hash = recording.bone_hashes.begin();
+  Comparison comparison(recording, recording.records.size(), on_progress);
   ReplayHooks hooks;
   hooks.on_tick = [&](const TickRecord& recorded, const TickRecord& now) {
-    auto what = difference_of(recorded, now);
-    const bool has_hash = hash != recording.bone_hashes.end() && hash->record == verified.ticks;
-    if (!what && has_hash && hash->hash != now.bone_hash) what = "the bone is another";
-    if (what) {
-      verified.difference = {verified.ticks, recorded.time_s, *std::move(what)};
-      return false;
-    }
-    if (has_hash) {
-      ++hash;
-      ++verified.compared_bones;
-    }
-    ++verified.ticks;
-    if (on_progress) on_progress(verified.ticks);
-    return true;
+    return comparison.add(recorded, now);
   };
   replay_recording(scan, recording, hooks);
-  return verified;
+  return comparison.verified();
+}
+
+std::size_t ticks_until(const Recording& recording, double time_s) {
+  const std::vector<TickRecord>& records = recording.records;
+  if (records.empty()) refuse(recording, "holds no ticks");
+  const double begin_s = records.front().time_s, end_s = records.back().time_s + records.back().dt_s;
+  if (!(time_s >= begin_s && time_s <= end_s))
+    refuse(recording,
+           fmt::format("has no tick at {:g} s: it goes from {:.3f} to {:.3f} s", time_s, begin_s, end_s));
+  const auto after = std::ranges::upper_bound(records, time_s, {}, &TickRecord::time_s);
+  return static_cast<std::size_t>(after - records.begin());
+}
+
+ResumedRecording resume_recording(const Volume& scan, const Recording& recording, double time_s,
+                                  const std::function<void(std::size_t ticks)>& on_progress) {
+  require_replayable(scan, recording);
+  const std::size_t ticks = ticks_until(recording, time_s);
+  Comparison comparison(recording, ticks, on_progress);
+  ReplayHooks hooks;
+  hooks.on_tick = [&](const TickRecord& recorded, const TickRecord& now) {
+    return comparison.add(recorded, now);
+  };
+  auto session = run_from(0, nullptr, scan, recording, hooks);
+  if (const auto& difference = comparison.verified().difference) refuse(recording, difference->sentence());
+  return {std::move(session), ticks, recording.records[ticks - 1]};
+}
+
+void replay_rest(ResumedRecording resumed, const Volume& scan, const Recording& recording,
+                 const ReplayHooks& hooks) {
+  run_from(resumed.ticks, std::move(resumed.session), scan, recording, hooks);
 }
 
 void repeat_milling(Volume& volume, const Recording& recording, const OnRepeatedTick& on_tick) {

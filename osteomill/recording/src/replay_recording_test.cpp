@@ -11,11 +11,11 @@
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/run_description.h"
 #include "osteomill/session/trajectory.h"
+#include "osteomill/volume/density_block.h"
 #include "osteomill/volume/density_grid.h"
 #include "osteomill/volume/editable_volume.h"
 
 #include "tests/shapes.h"
-#include "tests/support/differing_blocks.h"
 #include "tests/support/recording_samples.h"
 
 namespace osteomill {

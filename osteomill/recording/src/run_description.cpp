@@ -104,6 +104,21 @@ std::optional<double> taken_setting(const RunDescription& run, const FieldDescri
   throw InputError(path.string(), "has no setting '" + field.name + "', so its milling cannot be repeated");
 }
 
+void put_branch_point(RunDescription& run, const BranchPoint& from) {
+  run.settings.push_back({"from.recording", from.recording, ""});
+  run.settings.push_back({"from.ticks", static_cast<double>(from.ticks), ""});
+  run.settings.push_back({"from.time", from.time_s, "s"});
+}
+
+std::optional<BranchPoint> branch_point(const RunDescription& run) {
+  const auto* recording = find_setting<std::string>(run, "from.recording");
+  const auto* ticks = find_setting<double>(run, "from.ticks");
+  const auto* time_s = find_setting<double>(run, "from.time");
+  if (recording == nullptr || ticks == nullptr || time_s == nullptr || !(*ticks >= 1 && *ticks < 1e15))
+    return std::nullopt;
+  return BranchPoint{*recording, static_cast<std::uint64_t>(*ticks), *time_s};
+}
+
 void set_session_settings(RunDescription& run, const SessionSettings& session, int sample_points) {
   run.tool = session.setup.tool;
   run.tick_period_s = session.setup.tick_s;

@@ -15,4 +15,15 @@ DensityBlock::DensityBlock(const DensityGrid& grid, const VoxelIndex& first_) no
   }
 }
 
+std::vector<DensityBlock> differing_blocks(const DensityGrid& bone, const DensityGrid& scan) {
+  constexpr int kSide = DensityBlock::kVoxels;
+  std::vector<DensityBlock> blocks;
+  for_each(scan.geometry().all_voxels().bricks(kSide), [&](const VoxelIndex& brick) {
+    const VoxelIndex first = VoxelBox::of_brick(brick, kSide).first;
+    const DensityBlock block(bone, first);
+    if (block.densities != DensityBlock(scan, first).densities) blocks.push_back(block);
+  });
+  return blocks;
+}
+
 }  // namespace osteomill

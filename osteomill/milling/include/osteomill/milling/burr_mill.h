@@ -101,6 +101,27 @@ class BurrMill {
   /// Returns the unspent cutting budget, in mm^3 of reference density.
   double carry_mm3() const { return carry_mm3_; }
 
+  /// What a mill carries from step to step beside the bone, as far as its steps depend on it. (A burr that
+  /// meets more than a step has time for also depends on which voxels it has seen.)
+  struct Memory {
+    CutBone cut_bone;
+    BurrReach::Share share;
+    std::size_t found_of_round = 0;
+    double ahead_mm = 0;
+    double carry_mm3 = 0;
+    double force_free_s = 0;
+  };
+  Memory memory() const { return {cut_bone_, share_, found_of_round_, ahead_mm_, carry_mm3_, force_free_s_}; }
+  /// Goes on where another mill was on such a bone. Call before the first step.
+  void resume_from(const Memory& memory) {
+    cut_bone_ = memory.cut_bone;
+    share_ = memory.share;
+    found_of_round_ = memory.found_of_round;
+    ahead_mm_ = memory.ahead_mm;
+    carry_mm3_ = memory.carry_mm3;
+    force_free_s_ = memory.force_free_s;
+  }
+
  private:
   double rate_mm3_s(double force_N, double speed_share) const;
   void lift(double dt_s);

@@ -22,9 +22,10 @@ struct SessionStart {
   double removed_mm3 = 0;
   /// Every brick in which the bone may differ from the scan, as it is at the beginning.
   std::vector<DensityBlock> bricks;
-  /// If not empty, the session began in the recording of this name in the same folder, which ends where this
-  /// one begins; the other fields mean nothing then.
+  /// If not empty, the session began in the recording of this name in the same folder, and this one goes on
+  /// after the first `continues_after` of its ticks (0: after all). The other fields mean nothing then.
   std::string continues_from;
+  std::uint64_t continues_after = 0;
 };
 
 /// A picture that belongs to a recording, as the bytes of a PNG file.
@@ -92,8 +93,8 @@ std::vector<Recording> split_by_setup(Recording recording);
 /// read as it is. Sizes are held against the file's before memory is taken.
 Recording read_recording(const std::filesystem::path& path);
 
-/// Reads a recording that may go on from another one in its folder (SessionStart::continues_from): both as
-/// one, described as the first. Throws as read_recording.
+/// Reads a recording that may go on from another one in its folder (SessionStart::continues_from), and that
+/// from a third: all as one, described as the first. Throws as read_recording.
 Recording read_recording_chain(const std::filesystem::path& path);
 
 /// Reads what write_start wrote. The file is no input of the program's (input_files.h): it may be written

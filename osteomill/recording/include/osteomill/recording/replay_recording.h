@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,6 +42,8 @@ struct Difference {
   double time_s = 0;
   /// In one clause: "force_x_N is 1.5 where 1.25 was recorded".
   std::string what;
+  /// Returns all of it: "differs from tick 12 on (0.012 s): ...".
+  std::string sentence() const;
 };
 
 /// The result of `verify_recording`.
@@ -56,6 +60,29 @@ struct Verification {
 /// `replay_recording`.
 Verification verify_recording(const Volume& scan, const Recording& recording,
                               const std::function<void(std::size_t ticks)>& on_progress = {});
+
+/// A recording that was run again up to one of its ticks, from which somebody else may go on.
+struct ResumedRecording {
+  /// The session as it was after that tick, to the bit.
+  std::unique_ptr<MillingSession> session;
+  /// The number of the recording's ticks until then, at least 1, and the last of them.
+  std::size_t ticks = 0;
+  TickRecord last;
+};
+
+/// Returns how many of the recording's ticks had begun at a time (TickRecord::time_s). Throws InputError,
+/// naming the recording, if that is before its first tick or after its end.
+std::size_t ticks_until(const Recording& recording, double time_s);
+
+/// Replays the recording up to a time. Throws InputError, naming the recording, as `replay_recording` and
+/// `ticks_until` do, and if it does not come out again bit for bit until then. `on_progress` as for
+/// `verify_recording`. Long work.
+ResumedRecording resume_recording(const Volume& scan, const Recording& recording, double time_s,
+                                  const std::function<void(std::size_t ticks)>& on_progress = {});
+
+/// Runs the recording's remaining ticks as `replay_recording` does.
+void replay_rest(ResumedRecording resumed, const Volume& scan, const Recording& recording,
+                 const ReplayHooks& hooks);
 
 /// A function that is told of each tick of `repeat_milling`, after it: its index, the bone, and where that
 /// may have changed. The first tick of a session may have changed all of it.

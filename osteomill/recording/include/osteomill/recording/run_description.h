@@ -134,6 +134,19 @@ const Value* find_setting(const RunDescription& run, std::string_view key) {
   return nullptr;
 }
 
+/// The tick of another recording from which a run goes on.
+struct BranchPoint {
+  /// The recording as the user named it.
+  std::string recording;
+  /// The number of its ticks until then, and the time of the last of them.
+  std::uint64_t ticks = 0;
+  double time_s = 0;
+};
+/// Puts it among the run's settings.
+void put_branch_point(RunDescription& run, const BranchPoint& from);
+/// Returns what the run says; nothing if it goes on from no other.
+std::optional<BranchPoint> branch_point(const RunDescription& run);
+
 /// The key of the number of sample points that the algorithm works with.
 inline constexpr std::string_view kSamplePointsKey = "sample_points";
 

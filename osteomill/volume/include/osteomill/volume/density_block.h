@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "osteomill/base/row_major.h"
 #include "osteomill/volume/density_grid.h"
@@ -32,5 +33,9 @@ struct DensityBlock {
   /// Copies the grid's densities as they are now, from voxel `first` on. Safe in the haptic tick.
   DensityBlock(const DensityGrid& grid, const VoxelIndex& first) noexcept;
 };
+
+/// Returns the bricks of `bone` in which any density differs from that of `scan`, on the same grid. Goes
+/// through every voxel; not for the tick.
+std::vector<DensityBlock> differing_blocks(const DensityGrid& bone, const DensityGrid& scan);
 
 }  // namespace osteomill
