@@ -22,11 +22,13 @@ constexpr std::size_t kMaxRecords = 16384;
 
 }  // namespace
 
-HapticThread::HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock)
+HapticThread::HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock,
+                           double time_s)
     : clock_(std::move(clock)),
       device_(device),
       driven_(device),
       session_(std::move(session)),
+      time_s_(time_s),
       records_(std::make_unique<SpscQueue<TickRecord>>(kMaxRecords)),
       timing_(1e6 * session_->setup().tick_s) {}
 

@@ -9,6 +9,7 @@
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/run_description.h"
 #include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/editable_volume.h"
 
 namespace osteomill {
 
@@ -52,12 +53,36 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
   return {scan_hash, std::move(follower), std::move(session)};
 }
 
+PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const ResumedRecording& from,
+                                const GuardSettings& guard) {
+  const MillingSession& before = *from.session;
+  const std::uint64_t scan_hash = fingerprint_of(bone->grid());
+  const std::vector<DensityBlock> milled = differing_blocks(before.volume().grid(), bone->grid());
+  EditableVolume(*bone).set_isovalue(before.volume().isovalue());
+  std::unique_ptr<BoneFollower> follower;
+  {
+    const WorkProgress::Part meshing(0.8);
+    follower = std::make_unique<BoneFollower>(bone);
+  }
+  follower->load_milled(milled);
+  const WorkProgress::Part preparing(1);
+  MillingSetup setup = before.setup();
+  setup.guard = guard;
+  auto session = std::make_unique<MillingSession>(std::move(bone), before.densities(), setup);
+  session->count_removed_from(before.removed_mm3());
+  const SessionHandover handover{from.last.X_WT, {}, true, before.handover().spindle_rpm};
+  session->resume_from(handover);
+  return {scan_hash, std::move(follower), std::move(session), handover, from.last.time_s + from.last.dt_s};
+}
+
 LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
     : sample_points_(prepared.session->algorithm().sample_point_count()),
       scan_hash_(prepared.scan_hash),
+      begun_from_(prepared.handover),
       follower_(std::move(prepared.follower)),
-      live_(std::move(prepared.session), device) {
+      live_(std::move(prepared.session), device, {}, prepared.time_s) {
   set_listener();
+  if (begun_from_.X_WT) live_.place(*begun_from_.X_WT);
 }
 
 void LiveMilling::set_listener() {
@@ -197,7 +222,7 @@ std::string LiveMilling::start_recording(const std::filesystem::path& path, RunD
   recorded_ = std::move(description);
   const bool untouched = !live_.is_running() && live_.timing().ticks == 0;
   recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
-  if (untouched) record_session_start({});
+  if (untouched) record_session_start(begun_from_);
   set_listener();
   std::string kept = recorder_->leftover_note();
   try {

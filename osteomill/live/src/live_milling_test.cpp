@@ -1,5 +1,6 @@
 #include "osteomill/live/live_milling.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -285,6 +286,55 @@ TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   EXPECT_TRUE(again.undo());
   again.finish_preparing();
   EXPECT_EQ(bone_again(), untouched_);
+}
+
+// Another hand takes over where the burr pressed on bone, and feels nothing before it lets it rest.
+TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
+  const testing_support::TestFolder folder;
+  milling_.start_recording(folder / "a.h5", milling_.describe("ball", ""));
+  mill(0.3);
+  hand_.pull_to(pose_above(entry_, setup_.tool, -3.0));
+  EXPECT_TRUE(comes_true([&] { return milling_.state().record.wrench.force_N.norm() > 0.5; }));
+  milling_.stop();
+  milling_.stop_recording();
+  const Recording recording = read_recording(folder / "a.h5");
+  const auto pressing = std::ranges::max_element(
+      recording.records, {}, [](const TickRecord& record) { return record.wrench.force_N.norm(); });
+  ASSERT_GT(pressing->wrench.force_N.norm(), 0.5);
+  ASSERT_GT(pressing->removed_mm3, 0);
+  const ResumedRecording resumed = resume_recording(*ball_of_bone(), recording, pressing->time_s);
+  VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 20));
+  LiveMilling again(prepare_milling(ball_of_bone(), resumed, {}), hand);
+  EXPECT_EQ(again.setup().tool, setup_.tool);
+  again.start_recording(folder / "b.h5", again.describe("ball", ""));
+  again.start();
+  EXPECT_TRUE(comes_true([&] { return again.timing().ticks > 400; }));
+  again.stop();
+  again.stop_recording();
+  const Recording branch = read_recording(folder / "b.h5");
+  const TickRecord& first = branch.records.front();
+  EXPECT_EQ(first.time_s, pressing->time_s + pressing->dt_s);
+  // As exactly as an encoder has it, and out of the bone.
+  EXPECT_LT((first.X_WT.position_mm - pressing->X_WT.position_mm).norm(), 0.05);
+  EXPECT_LT((first.X_WD.position_mm - pressing->X_WT.position_mm).norm(), 0.01);
+  EXPECT_FALSE(first.driven);
+  EXPECT_TRUE(first.placed);
+  EXPECT_TRUE(is_zero(first.wrench));
+  EXPECT_EQ(branch.records.back().removed_mm3, pressing->removed_mm3) << "nobody switched the spindle on";
+  for (std::size_t n = 1; n < branch.records.size(); ++n) {
+    const Vec3 step_N = branch.records[n].wrench.force_N - branch.records[n - 1].wrench.force_N;
+    ASSERT_LE(step_N.norm(), 1e-3 * kHandWrenchRates.force_N_s + 1e-9) << "at tick " << n;
+  }
+  // The branch holds all that it takes to replay and to measure it.
+  const Verification verified = verify_recording(*ball_of_bone(), branch);
+  EXPECT_FALSE(verified.difference) << verified.difference->sentence();
+  Volume milled = *ball_of_bone();
+  repeat_milling(milled, branch);
+  EXPECT_EQ(milled.change_hash(), resumed.session->volume().change_hash());
+  EXPECT_EQ(again.follower().cuts(), 1u);
+  EXPECT_TRUE(again.undo());
+  again.finish_preparing();
+  again.follower().read([&](const Volume& bone) { EXPECT_EQ(bone.grid().densities(), untouched_); });
 }
 
 // Pressed into the bone, deep in it, and far away: each algorithm lets go without a step and feels nothing at

@@ -44,8 +44,10 @@ struct LiveState {
 /// (CrashStop).
 class HapticThread {
  public:
-  /// Takes the session over. `device` outlives this object. Does not start yet.
-  HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {});
+  /// Takes the session over. `device` outlives this object; `time_s` is the time of the first tick. Does not
+  /// start yet.
+  HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {},
+               double time_s = 0);
   ~HapticThread();
   HapticThread(const HapticThread&) = delete;
   HapticThread& operator=(const HapticThread&) = delete;
@@ -117,7 +119,7 @@ class HapticThread {
   bool spindle_ = false;
   bool paused_ = false;
   bool bone_frozen_ = false;
-  double time_s_ = 0;
+  double time_s_;
   std::uint32_t session_number_ = 0;
   Pose X_WD_place_;
   bool fading_out_ = false;

@@ -15,6 +15,7 @@
 #include "osteomill/live/bone_follower.h"
 #include "osteomill/live/haptic_thread.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/replay_recording.h"
 #include "osteomill/session/milling_setup.h"
 
 namespace osteomill {
@@ -25,6 +26,10 @@ struct PreparedMilling {
   std::uint64_t scan_hash = 0;
   std::unique_ptr<BoneFollower> follower;
   std::unique_ptr<MillingSession> session;
+  /// If it goes on from a recording: what the session took over from it, with the tool's pose, and the time
+  /// of its first tick.
+  SessionHandover handover = {};
+  double time_s = 0;
 };
 
 /// Prepares milling, in any thread, also while another bone is milled. `bone` is as scanned; what was milled
@@ -33,6 +38,13 @@ struct PreparedMilling {
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
                                 const SessionStart& before = {});
 
+/// Prepares milling that goes on from a tick of a recording: with the bone, the tool, the settings, the speed
+/// of the spindle and the time of that tick. `bone` is as scanned; what is gone of it by then can be taken
+/// back as one cut. The hand that takes over is another one, so it is protected by `guard` in the place of
+/// the recorded settings, and held back until the tool is placed where it was. Throws as the other does.
+PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const ResumedRecording& from,
+                                const GuardSettings& guard);
+
 /// A bone that is milled in real time with a device, and all that can be done to it meanwhile. It runs the
 /// haptic thread; all of its functions are for one other thread. Work that takes long (another algorithm or
 /// tool, undoing a cut) is done on a thread of its own: the tool goes on being felt, but nothing is milled
@@ -40,8 +52,8 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
 /// throws std::system_error and changes nothing.
 class LiveMilling {
  public:
-  /// Takes over what was prepared. `device` outlives this object; its handle is where the tool may begin.
-  /// Does not start yet.
+  /// Takes over what was prepared. `device` outlives this object; its handle is where the tool may begin. If
+  /// it goes on from a recording, the device is put where the tool was then. Does not start yet.
   LiveMilling(PreparedMilling prepared, Device& device);
   LiveMilling(std::shared_ptr<Volume> bone, const MillingSetup& setup, Device& device)
       : LiveMilling(prepare_milling(std::move(bone), setup), device) {}
@@ -142,6 +154,7 @@ class LiveMilling {
   // The number as the algorithm was prepared: the points in use belong to the haptic thread, and change.
   int sample_points_;
   std::uint64_t scan_hash_;
+  SessionHandover begun_from_;
   std::unique_ptr<BoneFollower> follower_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
