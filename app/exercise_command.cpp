@@ -80,6 +80,8 @@ void run_debrief(const DebriefOptions& options) {
     write_progress(beside / "progress.csv", attempt);
   });
   fmt::print("{}\n", placed.exercise.title);
+  if (const auto from = branch_point(recording.description))
+    fmt::print("goes on from {} at {:.3f} s, after {} ticks\n", from->recording, from->time_s, from->ticks);
   for (const MeasuredValue& row : rows)
     if (!row.limit.empty()) fmt::print("{}\n", row_text(row));
   fmt::print("{}\n", (folder / "debrief.csv").string());

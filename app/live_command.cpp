@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
 #include "osteomill/live/live_milling.h"
 #include "osteomill/openigtlink/bone_sender.h"
 #include "osteomill/session/milling_setup.h"
@@ -19,6 +20,7 @@
 #include "osteomill/session/virtual_hand.h"
 #include "osteomill/study/entry_pictures.h"
 
+#include "app/branch_options.h"
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/device_option.h"
@@ -37,6 +39,7 @@ constexpr double kUpdatePeriod_s = 0.02;
 struct LiveOptions {
   ScanOptions scan;
   ExerciseOptions exercise;
+  BranchOptions from;
   TrialOptions trial;
   double seconds = 60;
   std::string record;
@@ -180,19 +183,41 @@ LiveFigures run_for(LiveMilling& milling, double seconds, const std::shared_ptr<
   return figures;
 }
 
+// Resumes the recording that was named, if one was. The setup is then as recorded, except for the guard.
+std::optional<Branch> take_branch(LiveOptions& options) {
+  if (!options.from.given()) return std::nullopt;
+  const WorkProgress progress([](double share) { show_progress("resume", share); });
+  Branch branch = open_branch(options.from, options.scan, options.exercise);
+  end_progress();
+  MillingSetup& setup = options.trial.milling.setup;
+  const GuardSettings guard = setup.guard;
+  setup = branch.resumed.session->setup();
+  setup.guard = guard;
+  return branch;
+}
+
+BoneToMill to_mill(RecordedWork& work) {
+  std::optional<Vec3> entry_W_mm;
+  if (work.placed) entry_W_mm = work.placed->exercise.entry_W_mm;
+  return {std::move(work.bone), work.scan, work.exercise, entry_W_mm};
+}
+
 void run_live(LiveOptions options, const std::string& command_line) {
   ScriptSettings& script = options.trial.hand.script;
   script.milling_s = script.holding_s = 0.5 * options.seconds;
   LiveToolSource tool_source(options.device);
-  MillingSetup setup = options.trial.milling.setup;
-  auto [loaded, scan, exercise, entry_W_mm] = load_bone_to_mill(options.exercise, options.scan, setup.tool);
+  MillingSetup& setup = options.trial.milling.setup;
+  std::optional<Branch> branch = take_branch(options);
+  auto [loaded, scan, exercise, entry_W_mm] =
+      branch ? to_mill(branch->work) : load_bone_to_mill(options.exercise, options.scan, setup.tool);
   if (!options.trial.entry_W_mm) options.trial.entry_W_mm = entry_W_mm;
   warn_of_settings(setup, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const std::shared_ptr<const LabelMap> labels = bone->labels();
   const MillingEntry entry = place_entry(*bone, loaded.name, options.trial);
   Device& device = tool_source.take_tool(options.trial, setup, entry);
-  PreparedMilling prepared = prepare_milling(bone, setup);
+  PreparedMilling prepared =
+      branch ? prepare_milling(bone, branch->resumed, setup.guard) : prepare_milling(bone, setup);
   const BoneDensities densities = prepared.session->densities();
   LiveMilling milling(std::move(prepared), device);
   if (options.spindle) milling.set_spindle(true);
@@ -204,6 +229,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
     std::ranges::move(scan_settings(scan), std::back_inserter(run.settings));
     tool_source.describe(run);
     if (exercise) put_exercise(run, *exercise);
+    if (branch) put_branch_point(run, branch->from);
     const auto picture = [&](std::string_view name) {
       std::optional<std::vector<unsigned char>> png;
       milling.follower().read(
@@ -242,6 +268,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
   add_exercise_options(*command, options->exercise);
+  add_branch_options(*command, options->from);
   add_algorithm_option(*command, options->trial.milling.setup.algorithm);
   add_trial_options(*command, options->trial);
   command->remove_option(command->get_option("--seconds"));
@@ -259,6 +286,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   command->callback([=] {
     apply_config_file(*command);
     settle_law(*command, options->trial.milling.setup);
+    if (options->from.given()) refuse_recorded_options(*command);
     run_live(*options, command_line);
   });
 }

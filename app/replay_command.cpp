@@ -23,6 +23,7 @@
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/bone_densities.h"
 
+#include "app/branch_options.h"
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/exercise_options.h"
@@ -39,6 +40,7 @@ struct ReplayOptions {
   std::string input;
   ScanOptions scan;
   ExerciseOptions exercise;
+  BranchOptions from;
   MillingOptions milling;
   std::string out;
   std::string record;
@@ -209,6 +211,68 @@ void replay_with_changes(const ReplayOptions& options, const std::string& comman
   end_recorder(recorder, options.record);
 }
 
+// Begins a recording of what follows a tick of another, which has to lie beside it.
+void begin_branch(std::optional<Recorder>& recorder, const ReplayOptions& options, const Recording& recording,
+                  const BranchPoint& from, const std::string& command_line) {
+  if (options.record.empty()) return;
+  RunDescription run = recording.description;
+  for (RunSetting& setting : run.settings)
+    if (setting.key == kCommandLineKey) setting.value = command_line;
+  put_branch_point(run, from);
+  begin_recorder(recorder, options.record, run, Recorder::FirstSession::begins_when_announced);
+  const std::string name = std::filesystem::path(from.recording).filename().string();
+  recorder->begin_session(0, {.continues_from = name, .continues_after = from.ticks});
+}
+
+void require_beside(const ReplayOptions& options) {
+  const auto folder_of = [](const std::string& file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path());
+  };
+  if (!options.record.empty() && folder_of(options.record) != folder_of(options.from.recording))
+    throw InputError(options.record,
+                     "has to lie beside " + options.from.recording + ", from which it goes on");
+}
+
+// Goes on from a tick of a recording along a trajectory, or else as that recording does.
+void replay_from(const ReplayOptions& options, const std::string& command_line) {
+  require_beside(options);
+  const std::vector<TrajectoryPoint> trajectory =
+      options.input.empty() ? std::vector<TrajectoryPoint>{} : read_trajectory(options.input);
+  const Recording recording = read_recording_chain(options.from.recording);
+  const Volume scan = recorded_bone(options, recording);
+  ResumedRecording resumed = resume_recording(scan, recording, options.from.at_s);
+  std::optional<Recorder> recorder;
+  begin_branch(recorder, options, recording, {options.from.recording, resumed.ticks, resumed.last.time_s},
+               command_line);
+  Log log(options, trajectory.empty() ? recording.records.size() - resumed.ticks : trajectory.size(), scan);
+  std::uint32_t session = 0;
+  const auto add = [&](TickRecord record) {
+    record.session = session;
+    log.add(record);
+    if (recorder) recorder->push_waiting(record);
+  };
+  if (!trajectory.empty()) {
+    const double shift_s = resumed.last.time_s + resumed.last.dt_s - trajectory.front().time_s;
+    replay(*resumed.session, trajectory, [&](TickRecord record) {
+      record.time_s += shift_s;
+      add(record);
+    });
+  } else {
+    ReplayHooks hooks;
+    hooks.on_session = [&](const SessionStart& start, const MillingSession&) {
+      ++session;
+      if (recorder) recorder->begin_session(session, start);
+    };
+    hooks.on_tick = [&](const TickRecord&, const TickRecord& now) {
+      add(now);
+      return true;
+    };
+    replay_rest(std::move(resumed), scan, recording, hooks);
+  }
+  log.write();
+  end_recorder(recorder, options.record);
+}
+
 void run_replay(const ReplayOptions& options, const std::string& command_line) {
   if (!std::filesystem::exists(options.input)) throw InputError(options.input, "no such file");
   if (!is_hdf5(options.input)) {
@@ -247,11 +311,14 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   options->command = command;
   command->group("Recordings");
   command
-      ->add_option("input", options->input, "A recording, or CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
-      ->required()
+      ->add_option(
+          "input", options->input,
+          "A recording, or CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling; with --from CSV alone, or "
+          "nothing to repeat what was recorded from there")
       ->type_name("TRAJECTORY|RECORDING");
   add_scan_options(*command, options->scan, "the recording's scan, or for a trajectory the built-in tooth");
   add_exercise_options(*command, options->exercise);
+  add_branch_options(*command, options->from);
   command->option_defaults()->group("The replay");
   command->add_flag("--verify", options->verify,
                     "Check that a recording replays to the bit, or print the first tick that differs");
@@ -264,6 +331,13 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   command->callback([=] {
     apply_config_file(*command);
     settle_law(*command, options->milling.setup);
+    if (options->from.given()) {
+      refuse_recorded_options(*command);
+      if (options->verify || (options->out.empty() && options->record.empty()))
+        throw CLI::RequiredError("--out or --record");
+      return replay_from(*options, command_line);
+    }
+    if (options->input.empty()) throw CLI::RequiredError("input");
     if (is_hdf5(options->input)) refuse_what_is_recorded(*options);
     run_replay(*options, command_line);
   });

@@ -337,6 +337,7 @@ Recording read_chain(const fs::path& path, int max_before) {
                                                   name.string(), whole.records.size()));
     keep_first_ticks(whole, ticks);
   }
+  if (const auto from = branch_point(recording.description)) put_branch_point(whole.description, *from);
   const std::size_t before = whole.records.size();
   const std::size_t sessions_before = whole.sessions.size();
   for (auto session = recording.sessions.begin() + 1; session != recording.sessions.end(); ++session)

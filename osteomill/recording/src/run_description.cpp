@@ -105,6 +105,7 @@ std::optional<double> taken_setting(const RunDescription& run, const FieldDescri
 }
 
 void put_branch_point(RunDescription& run, const BranchPoint& from) {
+  std::erase_if(run.settings, [](const RunSetting& setting) { return setting.key.starts_with("from."); });
   run.settings.push_back({"from.recording", from.recording, ""});
   run.settings.push_back({"from.ticks", static_cast<double>(from.ticks), ""});
   run.settings.push_back({"from.time", from.time_s, "s"});

@@ -94,7 +94,8 @@ std::vector<Recording> split_by_setup(Recording recording);
 Recording read_recording(const std::filesystem::path& path);
 
 /// Reads a recording that may go on from another one in its folder (SessionStart::continues_from), and that
-/// from a third: all as one, described as the first. Throws as read_recording.
+/// from a third: all as one, described as the first, except for where the last goes on from (branch_point).
+/// Throws as read_recording.
 Recording read_recording_chain(const std::filesystem::path& path);
 
 /// Reads what write_start wrote. The file is no input of the program's (input_files.h): it may be written

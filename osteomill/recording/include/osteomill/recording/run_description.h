@@ -142,7 +142,7 @@ struct BranchPoint {
   std::uint64_t ticks = 0;
   double time_s = 0;
 };
-/// Puts it among the run's settings.
+/// Puts it among the run's settings, in the place of another.
 void put_branch_point(RunDescription& run, const BranchPoint& from);
 /// Returns what the run says; nothing if it goes on from no other.
 std::optional<BranchPoint> branch_point(const RunDescription& run);
