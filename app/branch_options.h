@@ -42,7 +42,7 @@ struct RecordedWork {
 RecordedWork read_recorded_work(const std::string& recording, const ScanOptions& scan,
                                 const ExerciseOptions& exercise);
 
-/// What a command works on that goes on from a recording.
+/// A recording that was resumed, for a command that goes on from it.
 struct Branch {
   RecordedWork work;
   ResumedRecording resumed;

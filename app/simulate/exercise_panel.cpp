@@ -161,7 +161,7 @@ void draw_rows(const char* name, const std::vector<MeasuredValue>& rows, bool li
   ImGui::EndTable();
 }
 
-void draw_results(ViewState& view, Simulation& simulation, const PixelSize& size) {
+void draw_results(ViewState& view, Simulation& simulation, const FilesPanel& files, const PixelSize& size) {
   ExerciseWork& work = *simulation.exercise;
   place_between_columns(size, ui::px(8), 0);
   ImGui::Begin(fmt::format("Results: {}###results", work.placed().exercise.title).c_str(), nullptr, kFixed);
@@ -175,6 +175,8 @@ void draw_results(ViewState& view, Simulation& simulation, const PixelSize& size
   if (ui::button("Back to the bone")) work.close_results();
   ImGui::SameLine();
   if (ui::button("Try again")) view.exercise_requested = work.recorded().file;
+  ImGui::SameLine();
+  if (ui::button("Play it back")) view.scan_requested = files.last_recording().string();
   ImGui::SameLine();
   if (ui::button("Start page")) view.start_page_requested = true;
   ImGui::End();
@@ -201,7 +203,7 @@ void draw_exercise(ViewState& view, Simulation& simulation, FilesPanel& files, c
   if (work.results().empty()) {
     draw_work(view, simulation, files, size);
   } else {
-    draw_results(view, simulation, size);
+    draw_results(view, simulation, files, size);
   }
 }
 

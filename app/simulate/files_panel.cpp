@@ -59,10 +59,14 @@ void FilesPanel::record(ViewState& view, Simulation& simulation, const std::stri
       view.message = "Recorded " + last_recording_.string();
       view.result = last_recording_;
     } else {
+      const bool is_beginning = simulation.milling.timing().ticks == 0;
+      recorded_before_s_ = is_beginning && simulation.from ? simulation.from->time_s : 0;
       view.message = simulation.milling.start_recording(
           name(what), simulation.describe(),
-          [this, camera = view.camera](std::string_view name) -> std::optional<std::vector<unsigned char>> {
-            if (name == kPictureAlong) return std::nullopt;
+          [this, camera = view.camera,
+           begins = is_beginning](std::string_view name) -> std::optional<std::vector<unsigned char>> {
+            // Before the first tick nothing is drawn yet.
+            if (name == kPictureAlong || (begins && name == kPictureBefore)) return std::nullopt;
             return encode_png(take_picture_(camera));
           });
       recording_since_ = std::chrono::steady_clock::now();
@@ -137,7 +141,8 @@ void FilesPanel::take_result(ViewState& view, Simulation& simulation) {
 
 std::optional<double> FilesPanel::recording_s(const Simulation& simulation) const {
   if (!simulation.milling.is_recording()) return std::nullopt;
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - recording_since_).count();
+  return recorded_before_s_ +
+         std::chrono::duration<double>(std::chrono::steady_clock::now() - recording_since_).count();
 }
 
 float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, const PixelSize& size) {
@@ -189,6 +194,10 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   const bool free = !is_busy();
   if (ui::button("Report", free && !last_recording_.empty())) make_report();
   ui::tooltip("Writes a page of figures and tables about the last recording");
+  ImGui::SameLine();
+  if (ui::button("Play back", free && !last_recording_.empty()))
+    view.scan_requested = last_recording_.string();
+  ui::tooltip("Shows the last recording, from which you may mill on at any moment");
   if (ui::button("Save scan", free)) save_scan(view, simulation);
   ImGui::SameLine();
   if (ui::button("Save surface", free)) {

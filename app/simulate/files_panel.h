@@ -73,6 +73,8 @@ class FilesPanel {
     std::filesystem::path recording;
   };
   std::chrono::steady_clock::time_point recording_since_;
+  // The time at which a recording begins that goes on from another.
+  double recorded_before_s_ = 0;
   std::future<WriteResult> work_;
   // The version of the bone that is being saved (BoneFollower::version).
   std::optional<std::uint64_t> saving_version_;

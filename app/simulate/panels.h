@@ -8,6 +8,7 @@
 
 #include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
+#include "app/simulate/playback.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
 
@@ -56,6 +57,12 @@ bool draw_loading(const std::string& what, double share_done, double passed_s, c
 /// Takes what mouse, keyboard and SpaceMouse did since the last picture to the camera and the tool, as the
 /// help tells.
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size);
+
+/// Takes what the pointer did since the last picture to the camera alone.
+void take_view_input(ViewState& view, const PixelSize& size);
+
+/// The recording that is played: what its tick holds, the time line, and buttons for all that can be done.
+void draw_playback(ViewState& view, Playback& playback, const PixelSize& size);
 
 /// Brings the tool out of bone that came back (a cut undone, another isovalue), or if it grew while it was in
 /// a hole: puts it before the bone where it is seen. Does nothing to a tool that only presses on bone.

@@ -231,6 +231,14 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
   }
 }
 
+void take_view_input(ViewState& view, const PixelSize& size) {
+  const bool on_picture = !ImGui::GetIO().WantCaptureMouse;
+  view.holding_tool = view.dragging_tool = false;
+  if (ImGui::IsMouseClicked(0)) view.dragging_view = on_picture;
+  if (ImGui::IsMouseReleased(0)) view.dragging_view = false;
+  if (on_picture || view.dragging_view) move_camera(view, size, !view.dragging_view);
+}
+
 void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
   const Pose X_WT = simulation.milling.state().record.X_WT;
   // A tool that only presses on bone keeps this core out of it.

@@ -19,7 +19,8 @@ ClipPlane plane_of(const ViewState::Cut& cut) {
   return {side * cut.normal_W, side * static_cast<double>(cut.offset_mm)};
 }
 
-void CutUpdates::update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer) {
+void CutUpdates::update(const ViewState& view, const BoneFollower& bone, const WindowLevel& grey_window,
+                        const LabelMap* labels, SceneRenderer& renderer) {
   ++pictures_;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     std::optional<Shown>& shown = shown_[n];
@@ -28,14 +29,12 @@ void CutUpdates::update(const ViewState& view, const Simulation& simulation, Sce
       continue;
     }
     const ClipPlane plane = plane_of(view.cuts[n]);
-    const std::uint64_t version = simulation.milling.follower().version();
-    const bool same_cut = shown && shown->plane == plane && shown->labels == simulation.shows_labels(view);
+    const std::uint64_t version = bone.version();
+    const bool same_cut = shown && shown->plane == plane && shown->labels == labels;
     if (same_cut && (shown->bone_version == version || pictures_ % kPicturesBetween != 0)) continue;
-    shown = {plane, simulation.shows_labels(view), version};
-    simulation.milling.follower().read([&](const Volume& bone) {
-      renderer.set_clip_face(
-          n, clip_face(bone.grid(), plane, simulation.scan.grey_window,
-                       simulation.shows_labels(view) ? simulation.shown_labels().get() : nullptr));
+    shown = {plane, labels, version};
+    bone.read([&](const Volume& now) {
+      renderer.set_clip_face(n, clip_face(now.grid(), plane, grey_window, labels));
     });
   }
 }
@@ -58,27 +57,37 @@ void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W
   cut.other_side = place_mm > most_mm - kLeast * (most_mm - least_mm);
 }
 
-ViewScene scene_of(const ViewState& view, Simulation& simulation) {
-  const LiveState& state = simulation.milling.state();
-  const TickRecord& record = state.record;
+static ViewScene scene_of(const ViewState& view, const TickRecord& record, const SessionSettings& settings) {
   ViewScene scene;
   scene.camera = view.camera;
   scene.bounds = view.box.bounds();
-  scene.tool = simulation.milling.setup().tool;
+  scene.tool = settings.setup.tool;
   scene.X_WT = record.X_WT;
   const double apart_mm = (record.X_WD.position_mm - record.X_WT.position_mm).norm();
   const double apart_rad = record.X_WD.orientation.angularDistance(record.X_WT.orientation);
   if (view.ghost && (apart_mm > kMinMove_mm || apart_rad > kMinTurn_rad)) scene.X_WD = record.X_WD;
-  if (view.arrows) {
-    scene.wrench = record.wrench;
-    scene.intersection_W = state.intersection_W;
-  }
-  scene.show_labels = simulation.shows_labels(view);
-  scene.isovalue = simulation.milling.isovalue();
-  scene.reference_density = simulation.milling.densities().reference;
+  if (view.arrows) scene.wrench = record.wrench;
+  scene.reference_density = settings.densities.reference;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     if (view.cuts[n].on) scene.cuts[n] = plane_of(view.cuts[n]);
   }
+  return scene;
+}
+
+ViewScene scene_of(const ViewState& view, Simulation& simulation) {
+  const LiveMilling& milling = simulation.milling;
+  const LiveState& state = simulation.milling.state();
+  ViewScene scene = scene_of(view, state.record, {milling.setup(), milling.densities()});
+  if (view.arrows) scene.intersection_W = state.intersection_W;
+  scene.show_labels = simulation.shows_labels(view);
+  scene.isovalue = milling.isovalue();
+  return scene;
+}
+
+ViewScene scene_of(const ViewState& view, const Playback& playback) {
+  ViewScene scene = scene_of(view, playback.record(), playback.settings());
+  scene.show_labels = view.labels && playback.has_guidance();
+  scene.isovalue = playback.run().isovalue;
   return scene;
 }
 

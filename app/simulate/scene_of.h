@@ -6,6 +6,7 @@
 
 #include "osteomill/visual/scene_renderer.h"
 
+#include "app/simulate/playback.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
 
@@ -16,17 +17,20 @@ ClipPlane plane_of(const ViewState::Cut& cut);
 
 /// Returns the scene to be drawn now.
 ViewScene scene_of(const ViewState& view, Simulation& simulation);
+ViewScene scene_of(const ViewState& view, const Playback& playback);
 
 /// Samples the grey values on the cuts again as their planes move, and a few times a second as bone is
 /// milled.
 class CutUpdates {
  public:
-  void update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer);
+  /// `labels` colour the cuts; null for none.
+  void update(const ViewState& view, const BoneFollower& bone, const WindowLevel& grey_window,
+              const LabelMap* labels, SceneRenderer& renderer);
 
  private:
   struct Shown {
     ClipPlane plane;
-    bool labels;
+    const LabelMap* labels;
     std::uint64_t bone_version;
   };
   std::array<std::optional<Shown>, kMaxClipPlanes> shown_;

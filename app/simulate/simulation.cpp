@@ -1,6 +1,7 @@
 #include "app/simulate/simulation.h"
 
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <thread>
 #include <utility>
@@ -18,6 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kHistory_s = 5;
+constexpr const char* kMilledIsovalue = "as it was milled with";
 
 HandleSettings handle_settings(const MillingSetup& setup) {
   HandleSettings handle;
@@ -25,27 +27,26 @@ HandleSettings handle_settings(const MillingSetup& setup) {
   return handle;
 }
 
-std::string isovalue_from(const ScanOptions& scan, const LoadedBone& loaded, bool milled) {
-  if (milled) return "as it was milled with";
+std::string isovalue_source(const ScanOptions& scan, const LoadedBone& loaded) {
   return scan.isovalue ? "given with --iso" : "suggested: " + loaded.isovalue_from;
 }
 
 }  // namespace
 
-static PreparedScan prepare_scan(const ScanOptions& scan, LoadedBone loaded, const MillingSetup& setup,
-                                 const SessionStart& milled) {
+using Prepare = std::function<PreparedMilling(std::shared_ptr<Volume> bone)>;
+
+static PreparedScan prepare_scan(const ScanOptions& scan, LoadedBone loaded, const MillingTool& tool,
+                                 const std::string& isovalue_from, const Prepare& prepare) {
   auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const BoneBox box = box_of_bone(*bone);
-  if (const std::string fault = tool_fault(setup.tool, box); !fault.empty())
-    throw InputError(loaded.name, fault);
+  if (const std::string fault = tool_fault(tool, box); !fault.empty()) throw InputError(loaded.name, fault);
   const DensityHistogram histogram = histogram_of(bone->grid());
   std::vector<Boundary> boundaries = boundaries_in(bone->grid());
   const WorkProgress::Part preparing(1);
-  PreparedMilling prepared = prepare_milling(bone, setup, milled);
+  PreparedMilling prepared = prepare(bone);
   const WindowLevel grey_window = window_level_of(bone->grid(), prepared.session->densities().surroundings);
-  return {{loaded.name, scan, bone->isovalue(), isovalue_from(scan, loaded, !milled.bricks.empty()),
-           loaded.in_hounsfield_units ? " HU" : "", box, histogram, std::move(boundaries), grey_window,
-           bone->labels()},
+  return {{loaded.name, scan, bone->isovalue(), isovalue_from, loaded.in_hounsfield_units ? " HU" : "", box,
+           histogram, std::move(boundaries), grey_window, bone->labels()},
           std::move(prepared),
           nullptr};
 }
@@ -56,7 +57,10 @@ PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup
     const WorkProgress::Part reading(0.4);
     return load_bone(scan);
   }();
-  return prepare_scan(scan, std::move(loaded), setup, milled);
+  const std::string isovalue_from = milled.bricks.empty() ? isovalue_source(scan, loaded) : kMilledIsovalue;
+  return prepare_scan(scan, std::move(loaded), setup.tool, isovalue_from, [&](std::shared_ptr<Volume> bone) {
+    return prepare_milling(std::move(bone), setup, milled);
+  });
 }
 
 PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& scan, MillingSetup setup) {
@@ -69,22 +73,57 @@ PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& s
   const ScanOptions source = scan_of(loaded.placed.exercise, scan);
   auto work =
       std::make_unique<ExerciseWork>(std::move(loaded.placed), loaded.bone.volume, std::move(recorded));
-  PreparedScan prepared = prepare_scan(source, std::move(loaded.bone), setup, {});
+  const std::string isovalue_from = isovalue_source(source, loaded.bone);
+  PreparedScan prepared =
+      prepare_scan(source, std::move(loaded.bone), setup.tool, isovalue_from,
+                   [&](std::shared_ptr<Volume> bone) { return prepare_milling(std::move(bone), setup); });
   prepared.exercise = std::move(work);
   return prepared;
+}
+
+PreparedScan open_for_branch(const BranchOptions& from, const ScanOptions& scan,
+                             const ExerciseOptions& exercise, const GuardSettings& guard) {
+  Branch branch = [&] {
+    const WorkProgress::Part replaying(0.7);
+    return open_branch(from, scan, exercise);
+  }();
+  RecordedWork& work = branch.work;
+  std::unique_ptr<ExerciseWork> task;
+  if (work.placed)
+    task = std::make_unique<ExerciseWork>(*std::move(work.placed), work.bone.volume, *work.exercise);
+  PreparedScan prepared = prepare_scan(
+      work.scan, std::move(work.bone), branch.resumed.session->setup().tool, kMilledIsovalue,
+      [&](std::shared_ptr<Volume> bone) { return prepare_milling(std::move(bone), branch.resumed, guard); });
+  prepared.exercise = std::move(task);
+  prepared.from = branch.from;
+  return prepared;
+}
+
+PreparedScan open_for_playback(const std::string& recording, const ScanOptions& scan,
+                               const ExerciseOptions& exercise) {
+  RecordedWork work = [&] {
+    const WorkProgress::Part reading(0.4);
+    return read_recorded_work(recording, scan, exercise);
+  }();
+  const WorkProgress::Part milling(1);
+  ScanInfo info{.name = recording, .source = work.scan};
+  return {.scan = std::move(info), .playback = std::make_unique<Playback>(std::move(work))};
 }
 
 Simulation::Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source_,
                        const std::string& command_line_, std::optional<AutosaveFile> autosave_file)
     : scan(std::move(opened.scan)),
       exercise(std::move(opened.exercise)),
+      from(std::move(opened.from)),
       command_line(command_line_),
       tool_source(tool_source_),
       hand(handle_settings(opened.milling.session->setup()), pointing_hand(), X_WT),
       device(take_tool(opened.milling.session->setup(), opened.milling.session->volume(), X_WT)),
       milling(std::move(opened.milling), device),
       autosave(scan.source, std::move(autosave_file)),
-      label_count(scan.labels) {
+      label_count(scan.labels) {}
+
+void Simulation::start() {
   milling.start();
   // Drawing and dragging begin at the tool, so wait for its first tick.
   while (history.empty() && milling.is_running()) {
@@ -109,6 +148,7 @@ RunDescription Simulation::describe() const {
   std::ranges::move(scan_settings(scan.source), std::back_inserter(run.settings));
   describe_device(run, tool_source.name, tool_source.hardware);
   if (exercise) put_exercise(run, exercise->recorded());
+  if (from) put_branch_point(run, *from);
   return run;
 }
 

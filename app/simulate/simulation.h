@@ -17,12 +17,14 @@
 #include "osteomill/visual/clip_face.h"
 #include "osteomill/volume/isovalue.h"
 
+#include "app/branch_options.h"
 #include "app/device_option.h"
 #include "app/exercise_options.h"
 #include "app/scan_options.h"
 #include "app/simulate/autosave.h"
 #include "app/simulate/bone_view.h"
 #include "app/simulate/exercise_work.h"
+#include "app/simulate/playback.h"
 
 namespace osteomill::app {
 
@@ -49,6 +51,10 @@ struct PreparedScan {
   PreparedMilling milling;
   /// Null if no exercise is worked on.
   std::unique_ptr<ExerciseWork> exercise;
+  /// Given if it goes on from a recording.
+  std::optional<BranchPoint> from = {};
+  /// A recording that is to be played; nothing is then milled.
+  std::unique_ptr<Playback> playback = {};
 };
 
 /// Opens a scan, and puts into it what was milled of it before (`milled`), if anything was. Takes seconds;
@@ -60,6 +66,15 @@ PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup
 /// throws as `load_exercise` and `open_for_milling` do.
 PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& scan, MillingSetup setup);
 
+/// Opens a recording to be milled on from one of its ticks, under this guard. Any thread; throws as
+/// `open_branch` does.
+PreparedScan open_for_branch(const BranchOptions& from, const ScanOptions& scan,
+                             const ExerciseOptions& exercise, const GuardSettings& guard);
+
+/// Opens a recording to be played. Any thread; throws as `read_recorded_work` and Playback do.
+PreparedScan open_for_playback(const std::string& recording, const ScanOptions& scan,
+                               const ExerciseOptions& exercise);
+
 /// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
 struct ToolSource {
   std::string name = kMouse;
@@ -69,13 +84,15 @@ struct ToolSource {
   bool is_pointer() const { return hardware == nullptr && name != kSimulated; }
 };
 
-/// A scan that is being milled. Begins to tick when it is made; one at a time.
+/// A scan that is being milled; one at a time.
 struct Simulation {
   /// The tool begins at `X_WT`; with the simulated operator where they begin. What was milled before may
   /// already be kept in `autosave_file`.
   Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source,
              const std::string& command_line, std::optional<AutosaveFile> autosave_file = std::nullopt);
 
+  /// Begins to tick.
+  void start();
   /// Calls LiveMilling::update, and updates the ticks' history, the counts and the autosave. Call once for
   /// each picture.
   void update();
@@ -95,6 +112,7 @@ struct Simulation {
 
   ScanInfo scan;
   std::unique_ptr<ExerciseWork> exercise;
+  std::optional<BranchPoint> from;
   std::string command_line;
   /// Warnings about this isovalue, tool and settings (isovalue_warnings,
   /// coarseness_warnings, setting_warnings).

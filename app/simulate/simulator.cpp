@@ -29,6 +29,7 @@
 #include "osteomill/visual/scene_renderer.h"
 #include "osteomill/visual/spindle_sound.h"
 
+#include "app/branch_options.h"
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/device_option.h"
@@ -134,6 +135,7 @@ class Opening {
 struct SimulatorOptions {
   ScanOptions scan;
   ExerciseOptions exercise;
+  BranchOptions from;
   MillingOptions milling;
   DeviceOption device{kMouse};
   SendOption send;
@@ -177,6 +179,8 @@ class Simulator {
         work();
       } else if (opening()) {
         wait_for_scan();
+      } else if (playback_) {
+        play();
       } else if (start_page_) {
         choose_start();
       }
@@ -200,7 +204,7 @@ class Simulator {
  private:
   bool is_driven() const {
     return options_.driver != nullptr &&
-           (simulation_ || leftover_ || start_page_ || options_.driver->starts_before_scan());
+           (simulation_ || leftover_ || start_page_ || playback_ || options_.driver->starts_before_scan());
   }
 
   bool has_unsaved() const { return simulation_ && simulation_->autosave.has_unsaved(simulation_->milling); }
@@ -257,12 +261,14 @@ class Simulator {
 
   void begin() {
     window_.begin_frame();
-    const bool settled = simulation_ && to_draw_.empty() && !exercise_begins_ &&
-                         !simulation_->milling.is_preparing() && !simulation_->milling.is_placing() &&
-                         !view_.X_W_destination && !view_.setup_changed && !view_.undo_requested &&
-                         !view_.reset_confirmed && !view_.isovalue_requested && !files_.is_busy() &&
-                         !(simulation_->exercise && simulation_->exercise->is_measuring()) &&
-                         (!opening() || view_.dialogues.current() != nullptr);
+    const bool is_played = playback_ && !opening() && to_draw_.empty() && playback_->is_verified();
+    const bool settled =
+        is_played ||
+        (simulation_ && to_draw_.empty() && !exercise_begins_ && !simulation_->milling.is_preparing() &&
+         !simulation_->milling.is_placing() && !view_.X_W_destination && !view_.setup_changed &&
+         !view_.undo_requested && !view_.reset_confirmed && !view_.isovalue_requested && !files_.is_busy() &&
+         !(simulation_->exercise && simulation_->exercise->is_measuring()) &&
+         (!opening() || view_.dialogues.current() != nullptr));
     if (is_driven()) options_.driver->give_input(seconds_since(last_picture_), settled, window_);
     last_picture_ = Clock::now();
     ImGui::NewFrame();
@@ -297,7 +303,9 @@ class Simulator {
 
   // Opens what was named, or else shows the start page.
   void begin_first() {
-    if (options_.exercise.given()) {
+    if (options_.from.given()) {
+      begin_branch(options_.from, options_.scan, options_.exercise);
+    } else if (options_.exercise.given()) {
       begin_exercise(options_.exercise, options_.scan);
     } else if (options_.scan.scan.empty() && !options_.scan.isovalue) {
       start_page_.emplace();
@@ -318,9 +326,22 @@ class Simulator {
     begin_exercise(exercise, scan_options_for(""));
   }
 
+  // Opens a scan, or a recording to be played.
   void begin_opening(const ScanOptions& scan) {
     opened_milled_.reset();
-    open(scan, {});
+    if (!is_hdf5(scan.scan)) return open(scan, {});
+    opened_scan_ = scan;
+    setup_to_open();
+    opening_.begin([recording = scan.scan, of_recording = scan_options_for("")] {
+      return open_for_playback(recording, of_recording, {});
+    });
+  }
+
+  void begin_branch(const BranchOptions& from, const ScanOptions& scan, const ExerciseOptions& exercise) {
+    opened_scan_ = scan;
+    opened_scan_.scan = from.recording;
+    const GuardSettings guard = setup_to_open().guard;
+    opening_.begin([from, scan, exercise, guard] { return open_for_branch(from, scan, exercise, guard); });
   }
 
   MillingSetup setup_to_open() {
@@ -357,7 +378,7 @@ class Simulator {
     opened_milled_.reset();
     view_.message = "Opening " + what + " was given up";
     // Without a scan or a page the window would stay empty.
-    if (!simulation_ && !start_page_) closing_ = true;
+    if (!simulation_ && !start_page_ && !playback_) closing_ = true;
   }
 
   ScanOptions scan_options_for(const std::string& scan) const {
@@ -397,31 +418,78 @@ class Simulator {
       view_.result.clear();
       sender_.reset();
       simulation_.reset();
-    } else {
+    } else if (!opened.playback) {
       view_.requested_setup = opened.milling.session->setup();
       view_.help = view_.help && note_first_help();
     }
     options_.scan = scan.source;
     start_page_.reset();
+    if (opened.playback) return take_playback(std::move(opened.playback));
+    const bool looks_on = opened.from && playback_;
+    playback_.reset();
     if (!is_builtin(scan.source.scan) && !opened.exercise) note_recent_scan(scan.source.scan);
     const PixelSize size = window_.size();
     view_.box = scan.box;
     window_.set_title(std::filesystem::path(scan.name).filename().string() + " - osteomill");
-    view_.camera = first_camera(view_.box, size);
-    if (opened.exercise) view_.camera = camera_on_target(opened.exercise->placed(), view_.box, size);
+    if (!looks_on) view_.camera = first_camera(view_.box, size);
+    if (opened.exercise && !looks_on)
+      view_.camera = camera_on_target(opened.exercise->placed(), view_.box, size);
     const Volume& bone = opened.milling.session->volume();
     // In front of the bone's upper half, so that the shaft does not hide the bone.
-    const Pose X_WT = tool_pose_before_middle(bone, opened.milling.session->setup().tool, view_.camera, size,
-                                              0.15 * size.height);
+    const Pose X_WT = opened.from ? *opened.milling.handover.X_WT
+                                  : tool_pose_before_middle(bone, opened.milling.session->setup().tool,
+                                                            view_.camera, size, 0.15 * size.height);
     const ToolSource tool_source{options_.device.device, hardware_.get()};
     simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, tool_source, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));
+    if (simulation_->from) files_.begin_recording(view_, *simulation_, "again.h5");
+    simulation_->start();
     // If nothing listens there, milling goes on without sending.
     view_.dialogues.run_reporting_errors(
         [&] { sender_ = send_bone(simulation_->milling.follower(), options_.send); });
     reset_view();
     view_.requested_setup.tool = simulation_->milling.setup().tool;
-    exercise_begins_ = simulation_->exercise != nullptr;
+    exercise_begins_ = simulation_->exercise != nullptr && !simulation_->from;
+  }
+
+  void take_playback(std::unique_ptr<Playback> playback) {
+    playback_ = std::move(playback);
+    view_.message.clear();
+    heard_ = {};
+    sound_.set(heard_, {});
+    view_.box = playback_->box();
+    view_.camera = first_camera(view_.box, window_.size());
+    window_.set_title(playback_->recording().path.filename().string() + " - osteomill");
+    reset_cuts(view_);
+    cuts_ = {};
+    to_draw_.clear();
+    const Volume& bone = playback_->work().bone.volume;
+    renderer_ =
+        std::make_unique<SceneRenderer>(playback_->follower().layout(), bone.geometry(), playback_->labels());
+    if (!options_.from.given() && options_.from.at_s > 0)
+      playback_->go_to_time(std::exchange(options_.from.at_s, 0));
+  }
+
+  // A picture of the recording that is played.
+  void play() {
+    const PixelSize size = window_.size();
+    if (size.width < 1 || size.height < 1) return;
+    if (std::exchange(view_.start_page_requested, false)) return show_start_page();
+    if (const auto asked = window_.take_dropped(); !asked.empty())
+      return begin_opening(scan_options_for(asked.back()));
+    if (const auto from = std::exchange(view_.branch_requested, std::nullopt))
+      return begin_branch(*from, scan_options_for(""), {.has_guidance = options_.exercise.has_guidance});
+    const auto now = Clock::now();
+    playback_->advance(std::chrono::duration<double>(now - std::exchange(played_, now)).count());
+    if (playback_->follows_recorded_view()) show_view(*playback_->view(), view_);
+    const Camera before = view_.camera;
+    take_view_input(view_, size);
+    if (view_.camera != before) playback_->follow_recorded_view(false);
+    take_surface(playback_->take_changed_bricks());
+    cuts_.update(view_, playback_->follower(), playback_->grey_window(), nullptr, *renderer_);
+    renderer_->draw(scene_of(view_, *playback_), size);
+    renderer_->copy_to_window();
+    draw_playback(view_, *playback_, size);
   }
 
   void reset_view() {
@@ -451,7 +519,7 @@ class Simulator {
     try {
       opened_ = opening_.get();
     } catch (const std::exception& error) {
-      if (!opened_milled_ && start_page_) {
+      if (!opened_milled_ && (start_page_ || playback_)) {
         view_.dialogues.add_error(error.what());
         return;
       }
@@ -468,10 +536,13 @@ class Simulator {
   void show_start_page() {
     ask_before("Going to the start page", [this] {
       after_writing("Writing ...", [this] {
-        files_.end_recording(view_, *simulation_);
-        simulation_->autosave.discard();
+        if (simulation_) {
+          files_.end_recording(view_, *simulation_);
+          simulation_->autosave.discard();
+        }
         sender_.reset();
         simulation_.reset();
+        playback_.reset();
         renderer_.reset();
         window_.set_title("osteomill");
         start_page_.emplace();
@@ -510,6 +581,7 @@ class Simulator {
     if (std::exchange(view_.start_page_requested, false)) show_start_page();
     if (!simulation_) return;
     open_another();
+    if (!simulation_) return;
     if (std::exchange(view_.reset_requested, false)) {
       ask_before("Resetting the bone", [this] { view_.reset_confirmed = true; });
     }
@@ -524,13 +596,14 @@ class Simulator {
     complain_of_device();
     if (view_.message.empty()) view_.message = simulation_->autosave.take_error();
     take_input(view_, *simulation_, space_mouse_, size);
-    take_surface();
+    take_surface(simulation_->milling.take_changed_bricks());
     // The recording begins with a picture of the bone.
     if (exercise_begins_ && to_draw_.empty() && renderer_->triangle_count() > 0) {
       exercise_begins_ = false;
       files_.begin_recording(view_, *simulation_, "exercise.h5");
     }
-    cuts_.update(view_, *simulation_, *renderer_);
+    cuts_.update(view_, simulation_->milling.follower(), simulation_->scan.grey_window,
+                 simulation_->shows_labels(view_) ? simulation_->shown_labels().get() : nullptr, *renderer_);
     renderer_->draw(scene_of(view_, *simulation_), size);
     renderer_->copy_to_window();
     if (std::exchange(view_.picture_requested, false)) save_picture();
@@ -559,8 +632,7 @@ class Simulator {
                            : BeatState{});
   }
 
-  void take_surface() {
-    ChangedBricks changed = simulation_->milling.take_changed_bricks();
+  void take_surface(ChangedBricks changed) {
     changed.merge(to_draw_);
     to_draw_ = std::move(changed);
     // All bricks of a large bone take longer than a picture may. But if pictures take long anyway, as
@@ -596,8 +668,8 @@ class Simulator {
   void finish() {
     window_.end_frame();
     if (is_driven()) {
-      options_.driver->read({window_, view_, simulation_.get(), files_, heard_, pictures_per_s(),
-                             renderer_ ? renderer_->triangle_count() : 0});
+      options_.driver->read({window_, view_, simulation_.get(), playback_.get(), files_, heard_,
+                             pictures_per_s(), renderer_ ? renderer_->triangle_count() : 0});
     }
     window_.show();
     pictures_.count();
@@ -629,6 +701,9 @@ class Simulator {
   ScanOptions opened_scan_;
   Clock::time_point opening_since_;
   int changes_before_ = 0;
+  // A recording that is played; nothing is milled then.
+  std::unique_ptr<Playback> playback_;
+  Clock::time_point played_ = Clock::now();
   std::unique_ptr<SceneRenderer> renderer_;
   // Changed bricks of the surface.
   ChangedBricks to_draw_;
@@ -658,12 +733,17 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   options->milling.setup.cutting_reaction = options->milling.setup.drag = true;
   options->milling.setup.vibration.on = true;
   options->milling.setup.law = CuttingLaw::chips;
-  CLI::App* command =
-      program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");
+  CLI::App* command = program.add_subcommand(
+      "simulate",
+      "Open the window: see the bone, take the burr, mill; or play a recording in the scan's place");
   command->group("In a window");
   add_scan_options(*command, options->scan);
   add_exercise_options(*command, options->exercise);
   add_guidance_option(*command, options->exercise);
+  add_branch_options(*command, options->from);
+  // A recording in the place of the scan is played from there.
+  CLI::Option* const at = command->get_option("--at");
+  at->remove_needs(command->get_option("--from"));
   command->option_defaults()->group("Algorithm");
   add_algorithm_option(*command, options->milling.setup.algorithm);
   add_milling_options(*command, options->milling);
@@ -684,6 +764,9 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   command->callback([=] {
     apply_config_file(*command);
     settle_law(*command, options->milling.setup);
+    if (options->from.given()) refuse_recorded_options(*command);
+    if (at->count() > 0 && !options->from.given() && !is_hdf5(options->scan.scan))
+      throw CLI::RequiredError("--at: --from, or a recording to be played,");
     Simulator(*options).run();
   });
 }

@@ -8,6 +8,7 @@
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/visual/scene.h"
 
+#include "app/branch_options.h"
 #include "app/simulate/bone_view.h"
 #include "app/simulate/dialogues.h"
 
@@ -54,6 +55,8 @@ struct ViewState {
   /// The text in the field for the scan to open, and the scan to be opened once its button was pressed.
   std::array<char, 4096> scan_path{};
   std::string scan_requested;
+  /// The tick of a recording to mill on from, as a button asked for.
+  std::optional<BranchOptions> branch_requested;
   /// The exercise to be opened, and whether the start page is to be shown, as a button asked for.
   std::string exercise_requested;
   bool start_page_requested = false;

@@ -6,6 +6,7 @@
 
 #include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
+#include "app/simulate/playback.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
 #include "app/simulate/window.h"
@@ -18,6 +19,8 @@ struct WindowContents {
   ViewState& view;
   /// Null while no scan is open.
   Simulation* simulation;
+  /// Null while no recording is played.
+  const Playback* playback;
   const FilesPanel& files;
   const SpindleState& sound;
   double pictures_per_s;

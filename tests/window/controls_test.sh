@@ -363,10 +363,16 @@ END
 shows labelled "label colours"
 ! cmp -s labelled.png plain.png || fault "the colours of the labels are not seen"
 
+# --- The last recording is opened to be played; playback_test.sh works that page ----------------------------------
+window ball.nrrd --no-help <<'END'
+wait 0.3 ;; click Record ;; wait 0.5 ;; click Stop recording ;; settle ;; click Play back ;; close
+END
+
 # --- Nothing was left out -----------------------------------------------------------------------------------------
-# Of the labels that were drawn, and of those that stand in the code; exercise_test.sh works the two pages of exercises.
+# Of the labels that were drawn, and of those that stand in the code; exercise_test.sh works the two pages of exercises, and
+# playback_test.sh that of a recording.
 { sed -n 's/^drawn //p' controls
-  grep -hoE --exclude=exercise_panel.cpp --exclude=start_page.cpp \
+  grep -hoE --exclude=exercise_panel.cpp --exclude=start_page.cpp --exclude=playback_panel.cpp \
     'ui::(button|checkbox|radio|slider|text_field|header)\([^;]*' "$source_folder"/*.cpp |
     grep -oE '"[^"]+"' | tr -d '"' | sed 's/##.*//; /^ place$/d; /^%/d; /^$/d'; } | sort -u >labels
 # Those of a haptic device are worked if there is one.

@@ -314,13 +314,13 @@ TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
   const Recording branch = read_recording(folder / "b.h5");
   const TickRecord& first = branch.records.front();
   EXPECT_EQ(first.time_s, pressing->time_s + pressing->dt_s);
-  // As exactly as an encoder has it, and out of the bone.
+  // An encoder rounds it, and the tool is out of the bone.
   EXPECT_LT((first.X_WT.position_mm - pressing->X_WT.position_mm).norm(), 0.05);
   EXPECT_LT((first.X_WD.position_mm - pressing->X_WT.position_mm).norm(), 0.01);
   EXPECT_FALSE(first.driven);
   EXPECT_TRUE(first.placed);
   EXPECT_TRUE(is_zero(first.wrench));
-  EXPECT_EQ(branch.records.back().removed_mm3, pressing->removed_mm3) << "nobody switched the spindle on";
+  EXPECT_EQ(branch.records.back().removed_mm3, pressing->removed_mm3) << "no one switched the spindle on";
   for (std::size_t n = 1; n < branch.records.size(); ++n) {
     const Vec3 step_N = branch.records[n].wrench.force_N - branch.records[n - 1].wrench.force_N;
     ASSERT_LE(step_N.norm(), 1e-3 * kHandWrenchRates.force_N_s + 1e-9) << "at tick " << n;

@@ -309,7 +309,7 @@ SessionStart read_start(const fs::path& path) {
 
 namespace {
 
-// Leaves of a recording what it was after so many ticks.
+// Leaves of a recording its first ticks.
 void keep_first_ticks(Recording& recording, std::size_t ticks) {
   recording.records.resize(ticks);
   std::erase_if(recording.sessions, [&](const RecordedSession& session) { return session.first >= ticks; });

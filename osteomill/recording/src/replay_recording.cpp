@@ -187,13 +187,15 @@ Verification verify_recording(const Volume& scan, const Recording& recording,
 }
 
 std::size_t ticks_until(const Recording& recording, double time_s) {
+  // People name times with six digits at the most.
+  constexpr double kRounding_s = 1e-6;
   const std::vector<TickRecord>& records = recording.records;
   if (records.empty()) refuse(recording, "holds no ticks");
   const double begin_s = records.front().time_s, end_s = records.back().time_s + records.back().dt_s;
-  if (!(time_s >= begin_s && time_s <= end_s))
+  if (!(time_s >= begin_s - kRounding_s && time_s <= end_s + kRounding_s))
     refuse(recording,
            fmt::format("has no tick at {:g} s: it goes from {:.3f} to {:.3f} s", time_s, begin_s, end_s));
-  const auto after = std::ranges::upper_bound(records, time_s, {}, &TickRecord::time_s);
+  const auto after = std::ranges::upper_bound(records, time_s + kRounding_s, {}, &TickRecord::time_s);
   return static_cast<std::size_t>(after - records.begin());
 }
 

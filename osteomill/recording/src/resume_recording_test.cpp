@@ -149,7 +149,7 @@ TEST_F(SeveralSessions, GoOnToTheBitFromTwentyRandomTicks) {
     ASSERT_EQ(resumed.ticks, at + 1);
     EXPECT_EQ(resumed.session->volume().change_hash(), ticks_[at].bone_hash);
     std::size_t next = at + 1;
-    // The same hand as at first, in the session that was resumed.
+    // Moves the hand as at first, in the session that was resumed.
     for (; next < ticks_.size() && ticks_[next].session == ticks_[at].session && next < at + 50; ++next) {
       TickRecord now = tick(*resumed.session, static_cast<int>(next));
       now.session = ticks_[next].session;

@@ -88,7 +88,28 @@ void add_scene(Lines& lines, const ViewState& view, const ViewScene& scene, cons
 
 }  // namespace
 
+static std::string playback_text(Lines lines, const WindowContents& window) {
+  const Playback& playback = *window.playback;
+  add_scene(lines, window.view, scene_of(window.view, playback), window.window.size());
+  lines.add("time_s", fmt::format("{:.6f}", playback.record().time_s));
+  lines.add("tick", playback.tick());
+  lines.add("playing", playback.is_playing());
+  lines.add("speed", playback.speed());
+  lines.add("recorded_camera", playback.follows_recorded_view());
+  lines.add("verdict", playback.verdict());
+  lines.add("force_N", fmt::format("{:.3f}", playback.record().wrench.force_N.norm()));
+  playback.follower().read([&](const Volume& bone) { lines.add("bone", bone.change_hash()); });
+  lines.add("marks", fmt::format("{} {} {} {} {}", playback.marks().cuts.size(),
+                                 playback.marks().contacts.size(), playback.marks().no_go.size(),
+                                 playback.marks().faults.size(), playback.marks().steps.size()));
+  lines.add("dialogue",
+            window.view.dialogues.current() != nullptr ? window.view.dialogues.current()->text : "");
+  add_controls(lines);
+  return lines.text();
+}
+
 std::string state_text(const std::string& name, const WindowContents& window) {
+  if (window.playback != nullptr && window.simulation == nullptr) return playback_text(Lines(name), window);
   const ViewState& view = window.view;
   Simulation& simulation = *window.simulation;
   const FilesPanel& files = window.files;

@@ -211,7 +211,7 @@ void UiScript::read(const WindowContents& contents) {
   next();
   if (action.name == "screenshot") {
     write_png(action.text, contents.window.picture());
-  } else if (contents.simulation == nullptr) {
+  } else if (contents.simulation == nullptr && (contents.playback == nullptr || action.name != "state")) {
     fmt::print("{}\n", action.text);
   } else if (action.name == "state") {
     fmt::print("{}", state_text(action.text, contents));

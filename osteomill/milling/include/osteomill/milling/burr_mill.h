@@ -101,8 +101,8 @@ class BurrMill {
   /// Returns the unspent cutting budget, in mm^3 of reference density.
   double carry_mm3() const { return carry_mm3_; }
 
-  /// What a mill carries from step to step beside the bone, as far as its steps depend on it. (A burr that
-  /// meets more than a step has time for also depends on which voxels it has seen.)
+  /// The state that a mill carries from step to step beside the bone. (The steps of a burr that meets more
+  /// than they have time for also depend on the voxels that it has seen.)
   struct Memory {
     CutBone cut_bone;
     BurrReach::Share share;

@@ -48,7 +48,7 @@ class RecordedBone {
     std::size_t ticks;
     BurrMill::Memory mill;
   };
-  // Bricks after so many ticks.
+  // Bricks after these numbers of ticks.
   using Versions = std::vector<std::pair<std::size_t, std::unique_ptr<DensityBlock>>>;
 
   void mill_next(const OnChange& changed);

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "osteomill/live/bone_follower.h"
+#include "osteomill/recording/recorded_bone.h"
+#include "osteomill/recording/view_sample.h"
+#include "osteomill/visual/camera.h"
+#include "osteomill/visual/clip_face.h"
+
+#include "app/branch_options.h"
+#include "app/simulate/bone_view.h"
+#include "app/simulate/view_state.h"
+
+namespace osteomill::app {
+
+/// Times of a recording to be marked, s.
+struct PlaybackMarks {
+  /// From and to.
+  using Spans = std::vector<std::pair<double, double>>;
+  /// The burr cuts; the tool touches bone; it touches what it must not; not the wrench that was asked for was
+  /// sent (slow changes do not count).
+  Spans cuts, contacts, no_go, faults;
+  /// The beginnings of steps of the exercise, and of sessions with another burr, algorithm or bone.
+  std::vector<std::pair<double, std::string>> steps;
+};
+PlaybackMarks marks_of(const Recording& recording);
+
+/// A recording that is played: no haptic thread runs, all that is shown was recorded, and the bone is milled
+/// again. Meanwhile another thread replays the recording, as `replay --verify` does. For the window's thread.
+class Playback {
+ public:
+  /// Opens the recording at its first tick. Throws InputError as RecordedBone does. Long work; any thread.
+  explicit Playback(RecordedWork work);
+  ~Playback();
+
+  const RecordedWork& work() const { return work_; }
+  const Recording& recording() const { return work_.recording; }
+  const PlaybackMarks& marks() const { return marks_; }
+  double begin_s() const { return recording().records.front().time_s; }
+  double end_s() const { return recording().records.back().time_s; }
+
+  /// Returns the number of the tick that is shown.
+  std::size_t tick() const { return bone_.ticks() - 1; }
+  const TickRecord& record() const { return recording().records[tick()]; }
+  const SessionSettings& settings() const { return settings_[record().session]; }
+  const RunDescription& run() const { return recording().sessions[record().session].start.run; }
+  /// Returns the view that the trainee had then; null if none was recorded.
+  const ViewSample* view() const;
+
+  void go_to_tick(std::size_t tick);
+  void go_to_time(double time_s);
+  /// Lets time pass, if it plays.
+  void advance(double passed_s);
+  bool is_playing() const { return is_playing_; }
+  /// Plays, from the beginning if it has come to its end, or pauses.
+  void play(bool on);
+  double speed() const { return speed_; }
+  void set_speed(double speed) { speed_ = speed; }
+  bool follows_recorded_view() const { return follows_view_ && view() != nullptr; }
+  void follow_recorded_view(bool on) { follows_view_ = on; }
+
+  /// Returns whether the recording comes out again to the bit, as far as that is known.
+  std::string verdict() const;
+  bool is_verified() const {
+    return verified_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }
+
+  const BoneFollower& follower() const { return follower_; }
+  ChangedBricks take_changed_bricks() { return follower_.take_changed_bricks(); }
+  const BoneBox& box() const { return box_; }
+  const WindowLevel& grey_window() const { return grey_window_; }
+  /// Returns the labels that colour the bone: the exercise's, or else its own; null if there are none.
+  const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
+  /// Returns whether the trainee saw them.
+  bool has_guidance() const { return view() == nullptr || view()->has_guidance; }
+
+ private:
+  RecordedWork work_;
+  PlaybackMarks marks_;
+  std::vector<SessionSettings> settings_;
+  BoneBox box_;
+  WindowLevel grey_window_;
+  std::shared_ptr<const LabelMap> labels_;
+  RecordedBone bone_;
+  BoneFollower follower_;
+  double isovalue_;
+  bool is_playing_ = false;
+  bool follows_view_ = true;
+  double speed_ = 1;
+  double time_s_ = 0;
+  std::atomic<std::size_t> checked_{0};
+  std::atomic<bool> stopped_{false};
+  std::shared_future<std::string> verified_;
+};
+
+/// Sets the camera and the cuts as they were in a view.
+void show_view(const ViewSample& sample, ViewState& view);
+
+}  // namespace osteomill::app
