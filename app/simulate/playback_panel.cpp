@@ -91,6 +91,7 @@ void draw_time_line(Playback& playback) {
   draw_steps(axis, marks);
   ImGui::PopStyleVar();
   draw_cursor(axis, playback.record().time_s, top_px, ImGui::GetCursorScreenPos().y);
+  ImGui::Dummy({0, ui::px(1)});
 }
 
 // Plots some seconds about the tick that is shown, from 0 to a round number.
