@@ -139,7 +139,10 @@ void StartPage::draw_scans(std::optional<StartChoice>& choice) {
   ImGui::PushItemWidth(ui::px(360));
   const bool entered = ui::text_field("scan##start", scan_.data(), scan_.size());
   ImGui::PopItemWidth();
-  ui::tooltip("Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window");
+  ui::tooltip(
+      "Path of a DICOM folder, of a NRRD, MetaImage or NIfTI file, or of a recording to be played; or drop "
+      "it "
+      "onto the window");
   ImGui::SameLine();
   if ((ui::button("Open##start") || entered) && scan_[0] != 0) choice = StartChoice{"", "", scan_.data()};
   ImGui::SameLine();

@@ -329,7 +329,8 @@ Recording read_chain(const fs::path& path, int max_before) {
   if (std::error_code error; !fs::exists(path.parent_path() / name, error))
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not beside it");
   Recording whole = read_chain(path.parent_path() / name, max_before - 1);
-  if (whole.sessions.empty() || whole.description.scan_hash != recording.description.scan_hash)
+  if (whole.sessions.empty() || whole.description.scan_hash != recording.description.scan_hash ||
+      whole.description.labels.size() != recording.description.labels.size())
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not what came before it");
   if (const std::uint64_t ticks = recording.sessions.front().start.continues_after; ticks > 0) {
     if (ticks > whole.records.size())

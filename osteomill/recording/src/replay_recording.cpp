@@ -196,7 +196,8 @@ std::size_t ticks_until(const Recording& recording, double time_s) {
     refuse(recording,
            fmt::format("has no tick at {:g} s: it goes from {:.3f} to {:.3f} s", time_s, begin_s, end_s));
   const auto after = std::ranges::upper_bound(records, time_s + kRounding_s, {}, &TickRecord::time_s);
-  return static_cast<std::size_t>(after - records.begin());
+  // At least 1, also if a file's times are in no order.
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - records.begin(), 1));
 }
 
 ResumedRecording resume_recording(const Volume& scan, const Recording& recording, double time_s,
