@@ -91,7 +91,7 @@ void ExerciseWork::measure(const std::filesystem::path& recording, const std::fi
   folder_ = folder;
   results_.clear();
   work_ = std::async(std::launch::async, [placed = placed_, scan = scan_, recording, folder] {
-    const Attempt attempt = make_attempt(*placed, *scan, read_recording_chain(recording));
+    const Attempt attempt = make_attempt(*placed, *scan, read_recording(recording));
     std::vector<MeasuredValue> rows = measure_attempt(attempt);
     write_folder_atomically(folder, [&](const std::filesystem::path& beside) {
       write_measured(beside / "debrief.csv", rows);
