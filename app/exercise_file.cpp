@@ -217,12 +217,15 @@ class ExerciseReader {
   }
 
   NoGoStructure no_go(const toml::table& table) const {
-    require_known(table, "no_go", with_region({"name", "warn_mm"}));
+    require_known(table, "no_go", with_region({"name", "warn_mm", "guard_mm"}));
     NoGoStructure structure;
     structure.name = required_text(table, "no_go", "name");
     structure.region = region(table);
     if (structure.region.shapes.empty()) structure.region.shapes.push_back(LabelShape{structure.name});
     structure.warn_mm = number(table, "warn_mm", NumberRange::not_negative()).value_or(structure.warn_mm);
+    // As far as distances from voxels are known, with the widest burr.
+    constexpr NumberRange kGuard{.min = 0, .max = 5};
+    structure.guard_mm = number(table, "guard_mm", kGuard);
     return structure;
   }
 

@@ -26,6 +26,7 @@
 #include "app/branch_options.h"
 #include "app/commands.h"
 #include "app/config_file.h"
+#include "app/exercise_file.h"
 #include "app/exercise_options.h"
 #include "app/milling_options.h"
 #include "app/progress.h"
@@ -124,6 +125,18 @@ void replay_trajectory(ReplayOptions options, const std::string& command_line) {
   end_recorder(recorder, options.record);
 }
 
+// Puts the structures into the bone off which the burr was held, if any were, as the recording's exercise has
+// them.
+void put_guards(const Recording& recording, Volume& bone) {
+  const auto exercise = recorded_exercise(recording.description);
+  if (!exercise || find_setting<double>(recording.description, kGuardsKey) == nullptr) return;
+  if (text_fingerprint(exercise->file) != exercise->fingerprint) {
+    throw InputError(exercise->file, "has changed since " + recording.path.string() +
+                                         " was made, whose burr was held off its structures");
+  }
+  bone.set_no_go(place_exercise(read_exercise_file(exercise->file), bone).distances);
+}
+
 // Reads the scan that is named, or else the recording's, as it was read for the recording.
 Volume recorded_bone(const ReplayOptions& options, const Recording& recording) {
   LoadedBone bone = read_bone(scan_of(recording.description, options.scan));
@@ -131,6 +144,7 @@ Volume recorded_bone(const ReplayOptions& options, const Recording& recording) {
   const auto& labels = bone.volume.labels();
   if (labels && labels->fingerprint() != recording.description.label_map_hash)
     throw InputError(recording.path.string(), "was made with other labels");
+  put_guards(recording, bone.volume);
   return std::move(bone.volume);
 }
 

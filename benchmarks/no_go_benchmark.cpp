@@ -33,7 +33,7 @@ NoGoDistances nerves(const GridGeometry& scan) {
           VoxelBox{{middle.i - 2, middle.j - 2, middle.k - 2}, {middle.i + 2, middle.j + 2, middle.k + 2}},
           [&](const VoxelIndex& v) { nerve.insert(v); });
     }
-    distances.emplace_back(nerve, scan);
+    distances.push_back({StructureDistance(nerve, scan)});
   }
   return distances;
 }

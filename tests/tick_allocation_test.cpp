@@ -57,7 +57,7 @@ std::shared_ptr<const LabelMap> labels_of(const GridGeometry& grid) {
 NoGoDistances structures_in(const GridGeometry& grid) {
   VoxelSet nerve(VoxelBox{{30, 0, 20}, {31, 63, 21}});
   for_each(nerve.box(), [&](const VoxelIndex& v) { nerve.insert(v); });
-  return {StructureDistance(nerve, grid), StructureDistance(SphereShape{{0, 0, -4}, 1})};
+  return {{StructureDistance(nerve, grid)}, {StructureDistance(SphereShape{{0, 0, -4}, 1})}};
 }
 
 // Comes down, mills, leans the shaft on the edge; also a jump across the bone, a pose that is not finite, and

@@ -53,7 +53,7 @@ void ExerciseWork::update(const Volume& bone) {
 std::optional<StructureReading> ExerciseWork::nearest(const Vec3& burr_W, double burr_radius_mm) const {
   std::optional<StructureReading> nearest;
   for (std::size_t n = 0; n < placed_->distances->size(); ++n) {
-    const double distance_mm = (*placed_->distances)[n].from(burr_W) - burr_radius_mm;
+    const double distance_mm = (*placed_->distances)[n].distance.from(burr_W) - burr_radius_mm;
     if (!nearest || distance_mm < nearest->distance_mm) nearest = {n, distance_mm};
   }
   return nearest;

@@ -83,3 +83,24 @@ sed '5s/\[-2\.5/[90/g' tasks/hole.toml >tasks/far.toml
 refused "tasks/far.toml: line 4: the cylinder lies outside the scan" exercise tasks/far.toml --check
 sed 's/^title/titl/' tasks/hole.toml >tasks/typo.toml
 refused "tasks/typo.toml: line 1: an exercise has no titl; did you mean title[?]" exercise tasks/typo.toml --check
+
+# A guard holds the burr off, replays to the bit with the exercise and not without, and is of one algorithm only.
+sed 's/^name = "pulp horn"/&\nguard_mm = 0.5/; s/^title = .*/title = "Guarded"/' tasks/hole.toml >tasks/guarded.toml
+"$osteomill" exercise tasks/guarded.toml --check | grep -q "warning below 3 mm, burr held off by 0.5 mm" || fault "--check says no guard"
+poses 16 >deep.csv
+guarded() { "$osteomill" replay deep.csv --exercise tasks/guarded.toml --burr-radius 1 --quiet "$@"; }
+work deep; "$osteomill" debrief deep.h5 --out deep --quiet >/dev/null
+value deep no_go_min_distance_mm | awk -F, '{ exit !($1 < 0.3) }' || fault "without a guard the burr does not come near"
+guarded --record guarded.h5 --out guarded.csv >/dev/null
+awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) c[$n] = n; next }
+  { d = sqrt(($c["tool_x_mm"] + 2.5) ^ 2 + ($c["tool_y_mm"] + 2.7) ^ 2 + ($c["tool_z_mm"] - 17) ^ 2) - 2; if (NR == 2 || d < least) least = d }
+  END { exit !(least > 0.45 && least < 0.6) }' guarded.csv || fault "the burr is not held at its guard"
+"$osteomill" replay guarded.h5 --verify --quiet | grep -q "^same: 1500 ticks" || fault "a guarded recording does not replay"
+cp tasks/guarded.toml kept.toml
+sed -i 's/guard_mm = 0.5/guard_mm = 0.4/' tasks/guarded.toml
+refused "tasks/guarded.toml: has changed since guarded.h5 was made" replay guarded.h5 --verify
+cp kept.toml tasks/guarded.toml
+code=0; guarded --algorithm point-shell --record x.h5 >said 2>error || code=$?
+[ $code -eq 2 ] && grep -q "point-shell cannot hold the burr off structures" error || fault "another algorithm: $code, $(cat error)"
+sed 's/guard_mm = 0.5/guard_mm = 9/' kept.toml >tasks/wide.toml
+refused "tasks/wide.toml: line 10: guard_mm is not a number from 0 to 5" exercise tasks/wide.toml --check

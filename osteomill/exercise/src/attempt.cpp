@@ -227,8 +227,8 @@ Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const R
   attempt.thickness_left_mm = thickness_left_mm(exercise, scan, attempt.after);
   attempt.distances_mm.reserve(attempt.ticks.size() * exercise.structures.size());
   for (const AttemptTick& tick : attempt.ticks) {
-    for (const StructureDistance& structure : *exercise.distances) {
-      attempt.distances_mm.push_back(tick.is_placed ? structure.from(tick.burr_W) - tick.burr_radius_mm
+    for (const auto& [distance, guard_mm] : *exercise.distances) {
+      attempt.distances_mm.push_back(tick.is_placed ? distance.from(tick.burr_W) - tick.burr_radius_mm
                                                     : std::numeric_limits<double>::quiet_NaN());
     }
   }

@@ -64,8 +64,8 @@ PlacedStructure place_structure(const NoGoStructure& structure, const PlacedExer
   VoxelSet voxels = region_voxels(structure.region, scan, exercise.file);
   if (voxels.empty())
     refuse(exercise, structure.region.line, fmt::format("{} holds no voxel of the scan", structure.name));
-  const StructureDistance& distance =
-      distances.emplace_back(distance_of(structure.region, voxels, scan.geometry()));
+  distances.push_back({distance_of(structure.region, voxels, scan.geometry()), structure.guard_mm});
+  const StructureDistance& distance = distances.back().distance;
   std::size_t shared = 0;
   double least_mm = std::numeric_limits<double>::infinity();
   placed.target.for_each([&](const VoxelIndex& v) {
@@ -77,7 +77,7 @@ PlacedStructure place_structure(const NoGoStructure& structure, const PlacedExer
            fmt::format("the target overlaps {}, which must not be touched, by {:.4g} mm³", structure.name,
                        placed.volume_mm3(shared)));
   }
-  return {structure.name, structure.warn_mm, std::move(voxels), least_mm};
+  return {structure.name, structure.warn_mm, structure.guard_mm, std::move(voxels), least_mm};
 }
 
 std::string limits_text(const ExerciseItem& item, const std::string& unit) {
@@ -152,6 +152,7 @@ std::vector<std::string> describe(const PlacedExercise& placed) {
     lines.push_back(fmt::format("no-go {}: {}, {:.2f} mm from the target, warning below {:g} mm",
                                 structure.name, volume(structure.voxels), structure.from_target_mm,
                                 structure.warn_mm));
+    if (structure.guard_mm) lines.back() += fmt::format(", burr held off by {:g} mm", *structure.guard_mm);
   }
   if (exercise.entry_W_mm)
     lines.push_back(fmt::format("entry: {:g}, {:g}, {:g} mm", exercise.entry_W_mm->x(),

@@ -25,6 +25,15 @@ std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
                      spacing_mm.x(), spacing_mm.y(), spacing_mm.z());
 }
 
+// Throws if the burr was held off structures that the scan does not have.
+void require_guards(const Volume& scan, const Recording& recording) {
+  const auto* recorded = find_setting<double>(recording.description, kGuardsKey);
+  const int guards = scan.no_go() ? guard_count(*scan.no_go()) : 0;
+  if (recorded != nullptr && *recorded != guards)
+    refuse(recording, fmt::format("held the burr off {:g} structures of its exercise, of which {} are here",
+                                  *recorded, guards));
+}
+
 // From the scan.
 void begin_at(const SessionStart& start, Volume& bone) {
   EditableVolume edited(bone);
@@ -150,6 +159,7 @@ void require_replayable(const Volume& scan, const Recording& recording) {
   require_whole(recording);
   if (recording.records.empty()) refuse(recording, "holds no ticks");
   require_made_with(recording, scan);
+  require_guards(scan, recording);
 }
 
 }  // namespace

@@ -154,6 +154,8 @@ RunDescription describe_run(const Volume& bone, const ScanIdentity& scan, const 
     run.label_map_hash = labels->fingerprint();
   }
   run.settings.push_back({std::string(kCommandLineKey), command_line, ""});
+  if (const int guards = bone.no_go() ? guard_count(*bone.no_go()) : 0; guards > 0)
+    run.settings.push_back({std::string(kGuardsKey), static_cast<double>(guards), ""});
   set_session_settings(run, session, sample_points);
   return run;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include "osteomill/haptics/sample_points.h"
@@ -25,9 +26,13 @@ const Vec3 kNotANumber = Vec3::Constant(std::numeric_limits<double>::quiet_NaN()
 const Wrench kNotFinite{kNotANumber, Vec3::Zero()};
 const Pose kNoPose{kNotANumber, Quat::Identity()};
 
-// The bone, if the tool can work in it.
-std::shared_ptr<Volume> workable(const MillingTool& tool, std::shared_ptr<Volume> bone) {
-  require_workable(tool, bone->geometry());
+// The bone, if the tool can work in it, and the algorithm holds the burr off structures that have a guard.
+std::shared_ptr<Volume> workable(const MillingSetup& setup, std::shared_ptr<Volume> bone) {
+  require_workable(setup.tool, bone->geometry());
+  if (bone->no_go() && guard_count(*bone->no_go()) > 0 && !setup.algorithm.has_guards) {
+    throw std::invalid_argument(setup.algorithm.id.name +
+                                " cannot hold the burr off structures, as their guard_mm asks");
+  }
   return bone;
 }
 
@@ -78,7 +83,7 @@ Vec3 Vibration::force_N(const Pose& X_WT, double cutting_N, double spindle_rpm, 
 
 MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities,
                                const MillingSetup& setup)
-    : volume_(workable(setup.tool, std::move(bone))),
+    : volume_(workable(setup, std::move(bone))),
       setup_(setup),
       densities_(densities),
       algorithm_(make_algorithm(setup.algorithm, setup.haptics)),

@@ -1,5 +1,6 @@
 #include "osteomill/volume/nearest_voxels.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -17,9 +18,30 @@ struct Parabola {
   double until = 0;
 };
 
+// The distance along an axis that counts between voxels `apart` of each other.
+double counted(int apart, NearestVoxels::To to) {
+  return to == NearestVoxels::To::centres ? apart : std::max(0.0, std::abs(apart) - 0.5);
+}
+
+// Returns from which place on a parabola is lower than one before it. To faces, both fall between their feet
+// as if these were a voxel nearer to each other, one of them is level within half a voxel of its foot, and
+// beyond they are shifted by half a voxel.
+double crossing(const Parabola& before, int foot, float height, double step_mm, NearestVoxels::To to) {
+  const int apart = foot - before.foot;
+  const double rise =
+      0.5 * (static_cast<double>(height) - static_cast<double>(before.height)) / (step_mm * step_mm);
+  const double middle = 0.5 * (foot + before.foot);
+  if (to == NearestVoxels::To::centres) return middle + rise / apart;
+  const double squares = 2 * std::abs(rise);
+  if (squares <= (apart - 1) * (apart - 1)) return apart > 1 ? middle + rise / (apart - 1) : middle;
+  if (squares >= apart * apart) return middle + std::copysign(0.5, rise) + rise / apart;
+  const double beside = 0.5 + std::sqrt(squares);
+  return rise > 0 ? before.foot + beside : foot - beside;
+}
+
 }  // namespace
 
-NearestVoxels::NearestVoxels(const VoxelSet& set, const VoxelBox& box, const Vec3& spacing_mm)
+NearestVoxels::NearestVoxels(const VoxelSet& set, const VoxelBox& box, const Vec3& spacing_mm, To to)
     : box_(box), spacing_mm_(spacing_mm) {
   if (box.empty()) return;
   dims_ = box.dims();
@@ -35,11 +57,11 @@ NearestVoxels::NearestVoxels(const VoxelSet& set, const VoxelBox& box, const Vec
     nearest_[place] = static_cast<std::int32_t>(place);
     found_ = true;
   });
-  for (std::size_t axis = 0; axis < 3 && found_; ++axis) sweep(axis, squares_mm2);
+  for (std::size_t axis = 0; axis < 3 && found_; ++axis) sweep(axis, to, squares_mm2);
 }
 
 // Finds along each line of the box, at every voxel, the least of all squares plus their distance squared.
-void NearestVoxels::sweep(std::size_t axis, std::vector<float>& squares_mm2) {
+void NearestVoxels::sweep(std::size_t axis, To to, std::vector<float>& squares_mm2) {
   const std::size_t stride = axis == 0 ? 1
                              : axis == 1
                                  ? static_cast<std::size_t>(dims_[0])
@@ -62,9 +84,7 @@ void NearestVoxels::sweep(std::size_t axis, std::vector<float>& squares_mm2) {
       double from = -1;
       while (parabolas > 0) {
         const Parabola& last = envelope[parabolas - 1];
-        from = 0.5 * (n + last.foot) + 0.5 *
-                                           (static_cast<double>(height) - static_cast<double>(last.height)) /
-                                           (step * step * (n - last.foot));
+        from = crossing(last, n, height, step, to);
         if (parabolas == 1 || from > envelope[parabolas - 2].until) break;
         --parabolas;
       }
@@ -76,7 +96,7 @@ void NearestVoxels::sweep(std::size_t axis, std::vector<float>& squares_mm2) {
     for (int n = 0; n < length; ++n) {
       while (envelope[at].until < n) ++at;
       const Parabola& lowest = envelope[at];
-      const double apart_mm = step * (n - lowest.foot);
+      const double apart_mm = step * counted(n - lowest.foot, to);
       const std::size_t place = first + stride * static_cast<std::size_t>(n);
       squares_mm2[place] = lowest.height + static_cast<float>(apart_mm * apart_mm);
       nearest_[place] = before[static_cast<std::size_t>(lowest.foot)];

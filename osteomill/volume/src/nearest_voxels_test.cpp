@@ -32,6 +32,16 @@ TEST(NearestVoxels, FindsTheNearestOfAllVoxelsOnAGridOfUnequalSpacing) {
       ASSERT_NEAR(nearest.distance_mm(v), least_mm, 1e-6);
       ASSERT_TRUE(set.contains(nearest.nearest_to(v)));
     });
+    const NearestVoxels to_faces(set, box, spacing_mm, NearestVoxels::To::faces);
+    const auto to_cube_mm = [&](const VoxelIndex& from, const VoxelIndex& one) {
+      const Vec3 apart = Vec3(from.i - one.i, from.j - one.j, from.k - one.k).cwiseAbs();
+      return (apart.array() - 0.5).cwiseMax(0).matrix().cwiseProduct(spacing_mm).norm();
+    };
+    for_each(box, [&](const VoxelIndex& v) {
+      double least_mm = std::numeric_limits<double>::infinity();
+      for (const VoxelIndex& one : all) least_mm = std::min(least_mm, to_cube_mm(v, one));
+      ASSERT_NEAR(to_cube_mm(v, to_faces.nearest_to(v)), least_mm, 1e-6);
+    });
   }
 }
 

@@ -67,8 +67,8 @@ TEST(StructureDistance, MeasuresSolidsExactly) {
 }
 
 TEST(NoGoDistances, GiveThatOfTheNearestStructureLessTheBurrsRadius) {
-  const NoGoDistances structures{StructureDistance(SphereShape{{0, 0, 0}, 1}),
-                                 StructureDistance(BoxShape{{5, -1, -1}, {6, 1, 1}})};
+  const NoGoDistances structures{{StructureDistance(SphereShape{{0, 0, 0}, 1})},
+                                 {StructureDistance(BoxShape{{5, -1, -1}, {6, 1, 1}})}};
   EXPECT_DOUBLE_EQ(no_go_distance_mm(structures, {3.5, 0, 0}, 0.5), 1);
   EXPECT_DOUBLE_EQ(no_go_distance_mm(structures, {1.25, 0, 0}, 0.5), -0.25);
   EXPECT_TRUE(std::isnan(no_go_distance_mm({}, {0, 0, 0}, 0.5)));

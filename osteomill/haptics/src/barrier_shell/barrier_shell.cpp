@@ -166,6 +166,7 @@ void BarrierShell::prepare(const AlgorithmInputs& inputs) {
   bricks_ = BoneBricks(*inputs.volume, spacing_mm, inputs.tick_period_s);
   near_ = NearBone(kNearPoints, 2 * spacing_mm > at_shaft_mm);
   measured_ = MeasuredBone(kNearPoints);
+  guards_ = Guards(inputs.volume->no_go().get(), inputs.tool);
   reset();
 }
 
@@ -192,6 +193,7 @@ void BarrierShell::begin_outside(const Pose& X_WD) {
   ramp_ = 0;
   ramp_from_ = {};
   has_energy_ = false;
+  guards_.begin_at(X_WT_.position_mm);
   if (started_inside_bone_) return;
   gather(X_WT_, {});
   has_begun_ = !near_.is_incomplete();
@@ -199,7 +201,8 @@ void BarrierShell::begin_outside(const Pose& X_WD) {
   const EnergySum &ball = measured_.ball.sum, &cylinder = measured_.cylinder.sum;
   const double nearest_mm = std::min(ball.nearest_mm, cylinder.nearest_mm);
   core_inset_mm_ = std::max(0.0, kStartGapShare * barrier_.width_mm - nearest_mm);
-  if (ball.touching + cylinder.touching == 0 && X_WT_ == X_WD) ramp_ = 1;
+  if (ball.touching + cylinder.touching == 0 && X_WT_ == X_WD && guards_.are_clear(X_WT_.position_mm, 0))
+    ramp_ = 1;
 }
 
 void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
@@ -223,6 +226,7 @@ BarrierShell::State BarrierShell::evaluate(const Pose& X_WT, const Pose& X_WD) {
               ball.gradient.head<3>()};
   state.sum += ball;
   state.sum += cylinder;
+  if (!guards_.empty()) state.barrier_Nmm += guards_.add_to(state.sum, X_WT);
   ++counts_.passes;
   counts_.max_points = std::max<std::uint64_t>(counts_.max_points, near_.point_count());
   return state;
@@ -245,6 +249,7 @@ bool BarrierShell::path_is_clear(const Pose& X_WD, const MoveBound& bound) {
   const MoveSize move_size = size_of(move);
   return near_.is_empty() && share_within(bound, move) >= 1 && move_size.move_mm <= kMaxFreeMove.move_mm &&
          move_size.turn_rad <= kMaxFreeMove.turn_rad &&
+         guards_.are_clear(X_WT_.position_mm, move_size.move_mm) &&
          check_clearance(bricks_, cores(), barrier_.width_mm, X_WT_, move_size);
 }
 
@@ -286,8 +291,14 @@ NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   if (near_.is_incomplete()) return {.move_T = Vector6::Zero(), .is_last = true};
   const double within_leeway = share_with_leeway(step_size);
   step.move_T *= within_leeway;
-  const double certified = certified_share(measured_.max_use(step.move_T, barrier_));
+  double certified = certified_share(measured_.max_use(step.move_T, barrier_));
   step.move_T *= certified;
+  if (!guards_.empty()) {
+    const Vec3 move_W_mm = best.X_WT.orientation * Vec3(step.move_T.head<3>());
+    const double kept = guards_.share_kept(best.X_WT.position_mm, move_W_mm);
+    step.move_T *= kept;
+    certified *= kept;
+  }
   step.reaches_device = best.sum.touching == 0 && !step.is_damped && within_leeway >= 1 && certified >= 1;
   return step;
 }
@@ -378,6 +389,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
     has_energy_ = true;
     near_.list_supporting(measured_, barrier_.width_mm, bricks_);
     grow_cores(state.sum.nearest_mm, dt_s);
+    guards_.follow(X_WT_.position_mm);
     last_move_ = size_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);
   }

@@ -7,6 +7,7 @@
 #include "osteomill/haptics/haptic_algorithm.h"
 
 #include "barrier_shell/coupling.h"
+#include "barrier_shell/guards.h"
 #include "barrier_shell/near_bone.h"
 #include "bone_points/bone_bricks.h"
 #include "tool_move.h"
@@ -32,9 +33,10 @@ struct NewtonStep;
 /// the tool keep away from the isosurface's points by a barrier that grows without bound; each tick a few
 /// Newton steps lower the sum of barrier and virtual coupling, and each step is certified free of penetration
 /// before it is taken. Incremental potential contact (Li et al. 2020) for a tool on a volume that changes.
+/// Structures of the volume that have a guard add a barrier each (Guards).
 ///
 /// `X_WT` of a step is the simulated tool, the wrench the coupling's; `contacts` counts the points that a
-/// core meets, `burr_force_W_N` is what the ball presses with.
+/// core meets and the guards, `burr_force_W_N` is what the ball presses with.
 class BarrierShell final : public HapticAlgorithm {
  public:
   /// Settings within their ranges.
@@ -73,6 +75,7 @@ class BarrierShell final : public HapticAlgorithm {
   BoneBricks bricks_;
   NearBone near_;
   MeasuredBone measured_;
+  Guards guards_;
 
   bool has_pose_ = false;
   Pose X_WT_;

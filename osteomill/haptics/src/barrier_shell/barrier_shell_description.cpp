@@ -56,7 +56,8 @@ AlgorithmDescription description() {
       {.id = {"barrier-shell", "4 barrier-shell", "#1565c0"},
        .summary = "The tool rests on a soft skin of the bone's points that nothing pushes through",
        .resolution_setting = "point-spacing",
-       .resolution_name = "spacing"},
+       .resolution_name = "spacing",
+       .has_guards = true},
       fields());
 }
 

@@ -49,6 +49,8 @@ struct NoGoStructure {
   /// The distance of the burr's surface below which the trainee is warned. None of the facial nerves was
   /// damaged at 3 mm, while 1 and 2 mm failed (Voormolen et al.).
   double warn_mm = 3;
+  /// The distance at which the burr's surface is held off; nothing if it is not.
+  std::optional<double> guard_mm = {};
 };
 
 struct ExerciseStep {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace osteomill {
 struct PlacedStructure {
   std::string name;
   double warn_mm = 3;
+  std::optional<double> guard_mm = {};
   VoxelSet voxels;
   /// The shortest distance of the target from the structure, mm.
   double from_target_mm = 0;

@@ -84,6 +84,8 @@ struct AlgorithmDescription {
   /// The setting by which its resolution is chosen, and what people call that; empty if there is none.
   std::string resolution_setting = {};
   std::string resolution_name = {};
+  /// Whether it holds the burr off structures that have a guard (WatchedStructure::guard_mm).
+  bool has_guards = false;
   std::vector<SettingDescription> settings = {};
   /// Makes it with a value for each of `settings`, all within their ranges. Throws std::invalid_argument if
   /// values do not go together.

@@ -33,7 +33,8 @@ struct ReplayHooks {
 /// Runs the recording's ticks again through the same code as any session's: what the device, its spindle and
 /// its operator did comes from the recording, all else is computed. Every session begins from the bone, the
 /// tool and the wrench that it began from. Throws InputError, naming the recording, if that cannot be: it is
-/// of another scan, lost ticks, or what it goes by is unknown here or out of range.
+/// of another scan, lost ticks, held the burr off structures that `scan` does not have, or what it goes by is
+/// unknown here or out of range.
 void replay_recording(const Volume& scan, const Recording& recording, const ReplayHooks& hooks);
 
 /// The first tick in which a recording and its replay differ (Verification).

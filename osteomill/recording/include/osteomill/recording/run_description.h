@@ -37,6 +37,10 @@ inline constexpr std::string_view kNotReachedKey = "not_reached";
 /// all of its recordings, and in no others. Recordings that are not part of a comparison have none.
 inline constexpr std::string_view kComparisonKey = "comparison";
 
+/// The key of the number of structures off which the burr was held (WatchedStructure::guard_mm); a recording
+/// without any has none.
+inline constexpr std::string_view kGuardsKey = "exercise.guards";
+
 /// The key of the stiffness of a simulated hand, in N/mm.
 inline constexpr std::string_view kHandStiffnessKey = "hand.stiffness";
 /// The key of the damping of a simulated hand, in N s/mm.

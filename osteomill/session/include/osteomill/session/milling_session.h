@@ -64,7 +64,8 @@ class MillingSession {
  public:
   /// Makes a session ready to tick; takes as long as the algorithm's preparation. A session that has milled
   /// the same bone takes no further tick while this one lives. Throws std::invalid_argument if a setting is
-  /// out of range or the tool cannot work (`require_workable`).
+  /// out of range, the tool cannot work (`require_workable`), or structures of the bone have a guard that the
+  /// algorithm does not hold.
   MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
 
   /// Runs one haptic tick, all of it: reads the device's pose, computes and sends the wrench, removes as much

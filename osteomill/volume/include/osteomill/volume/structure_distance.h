@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -32,6 +33,12 @@ double distance_mm(const SphereShape& sphere, const Vec3& point_W) noexcept;
 /// Returns the distance of a point from a cylinder, mm; 0 inside. Safe in the haptic tick.
 double distance_mm(const CylinderShape& cylinder, const Vec3& point_W) noexcept;
 
+/// A distance, and the direction in which it grows times how much it grows along that.
+struct DistanceSlope {
+  double distance_mm = 0;
+  Vec3 gradient_W = Vec3::Zero();
+};
+
 /// The distance of any point from a structure. A box, sphere or cylinder is measured exactly. A structure of
 /// voxels is measured to the cubes of those voxels that are nearest to the eight voxels around the point;
 /// farther than `kReach_mm` from the structure's box, the distance may come out up to 1.42 times as long.
@@ -47,9 +54,19 @@ class StructureDistance {
 
   /// Returns the distance of a finite point, mm; 0 inside. Safe in the haptic tick.
   double from(const Vec3& point_W) const noexcept;
+  /// Returns the distance without steps and its gradient; both 0 inside. A solid's are exact. Between voxels'
+  /// centres the distance is interpolated: if the true one is d, it is at most `max_excess_mm(d)` more.
+  /// Farther than `kReach_mm` from the structure's box it is that of the nearest point within that reach.
+  /// Safe in the haptic tick.
+  DistanceSlope slope_from(const Vec3& point_W) const noexcept;
+  /// Returns by how much `slope_from` may exceed a true distance. Safe in the haptic tick.
+  double max_excess_mm(double distance_mm) const noexcept;
 
  private:
   double from_voxels(const Vec3& point_W) const noexcept;
+  double voxel_distance2_mm2(const Vec3& point, const VoxelIndex& near) const noexcept;
+  VoxelIndex cell_corner(const Vec3& point) const noexcept;
+  DistanceSlope slope_from_voxels(const Vec3& point_W) const noexcept;
 
   // The distance from voxels counts if there are any.
   Solid solid_;
@@ -57,8 +74,19 @@ class StructureDistance {
   NearestVoxels nearest_;
 };
 
-/// The structures of a bone that no burr may touch, each by its distance.
-using NoGoDistances = std::vector<StructureDistance>;
+/// A structure that no burr may touch.
+struct WatchedStructure {
+  StructureDistance distance;
+  /// The distance at which an algorithm that guards structures holds the burr's surface off it; nothing if it
+  /// does not.
+  std::optional<double> guard_mm = {};
+};
+
+/// The structures of a bone that no burr may touch.
+using NoGoDistances = std::vector<WatchedStructure>;
+
+/// Returns how many of the structures have a guard.
+int guard_count(const NoGoDistances& structures);
 
 /// Returns the distance of a burr's surface from the nearest structure, mm: negative if the burr reaches into
 /// one, not a number if there are none or the burr has no place. Safe in the haptic tick.
