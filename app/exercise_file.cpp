@@ -52,7 +52,7 @@ class ExerciseReader {
     if (const toml::node* crown = all.get("crown"))
       exercise.crown_axis_W = crown_axis(table(*crown, "crown"));
     if (const toml::node* entry = all.get("entry")) exercise.entry_W_mm = point(*entry, "entry");
-    exercise.burr_radii_mm = burr_radii(all);
+    exercise.burrs = burrs(all);
     exercise.time_s = number(all, "time_s", NumberRange::positive());
     for (const toml::table* one : tables(all, "step")) exercise.steps.push_back(step(*one));
     for (const toml::table* one : tables(all, "item")) exercise.items.push_back(item(*one, exercise));
@@ -223,7 +223,7 @@ class ExerciseReader {
     structure.region = region(table);
     if (structure.region.shapes.empty()) structure.region.shapes.push_back(LabelShape{structure.name});
     structure.warn_mm = number(table, "warn_mm", NumberRange::not_negative()).value_or(structure.warn_mm);
-    // As far as distances from voxels are known, with the widest burr.
+    // Distances from voxels are known to 12 mm, which leaves room for the widest burr.
     constexpr NumberRange kGuard{.min = 0, .max = 5};
     structure.guard_mm = number(table, "guard_mm", kGuard);
     return structure;
@@ -236,15 +236,26 @@ class ExerciseReader {
     return axis_W.normalized();
   }
 
-  std::vector<double> burr_radii(const toml::table& all) const {
-    std::vector<double> radii_mm;
+  std::vector<AllowedBurr> burrs(const toml::table& all) const {
+    std::vector<AllowedBurr> burrs;
     const toml::node* node = all.get("tools");
-    if (node == nullptr) return radii_mm;
+    if (node == nullptr) return burrs;
     if (!node->is_array() || node->as_array()->empty())
-      refuse(*node, "tools is not a list of burr radii, mm");
-    for (const toml::node& one : *node->as_array())
-      radii_mm.push_back(number_in(one, "a burr radius of tools", NumberRange::positive()));
-    return radii_mm;
+      refuse(*node, "tools is not a list of burrs: names, or radii in mm");
+    for (const toml::node& one : *node->as_array()) {
+      const auto name = one.value_exact<std::string>();
+      burrs.push_back(
+          name ? AllowedBurr{named_burr(one, *name)}
+               : AllowedBurr{nullptr, number_in(one, "a burr radius of tools", NumberRange::positive())});
+    }
+    return burrs;
+  }
+  const NamedBurr* named_burr(const toml::node& node, const std::string& name) const {
+    const NamedBurr* burr = find_burr(name);
+    if (burr != nullptr) return burr;
+    Keys names;
+    for (const NamedBurr& one : named_burrs()) names.emplace_back(one.name);
+    refuse(node, fmt::format("there is no burr {}{}", name, did_you_mean(name, names)));
   }
 
   ExerciseStep step(const toml::table& table) const {

@@ -15,7 +15,7 @@ constexpr const char* kWhole = R"(title = "Access cavity"
 task = "Open the pulp's roof"
 scan = "builtin:tooth"
 iso = 700
-tools = [0.5, 1]
+tools = [0.5, 1, "diamond-2"]
 time_s = 600
 entry = [0, 0, 20.5]
 [target]
@@ -72,7 +72,10 @@ TEST_F(ExerciseFile, HoldsWhatWasWritten) {
   EXPECT_EQ(exercise.title, "Access cavity");
   EXPECT_EQ(exercise.scan, "builtin:tooth");
   EXPECT_EQ(exercise.isovalue, 700);
-  EXPECT_EQ(exercise.burr_radii_mm, (std::vector<double>{0.5, 1}));
+  ASSERT_EQ(exercise.burrs.size(), 3u);
+  EXPECT_EQ(exercise.burrs[0].radius_mm, 0.5);
+  EXPECT_EQ(exercise.burrs[1].radius_mm, 1);
+  EXPECT_EQ(exercise.burrs[2].named, find_burr("diamond-2"));
   EXPECT_EQ(exercise.time_s, 600);
   ASSERT_EQ(exercise.target.shapes.size(), 1u);
   const auto& cylinder = std::get<CylinderShape>(exercise.target.shapes.front());

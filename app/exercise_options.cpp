@@ -73,38 +73,35 @@ LoadedExercise load_exercise(const std::string& file, const ScanOptions& options
 }
 
 BoneToMill load_bone_to_mill(const ExerciseOptions& exercise, const ScanOptions& options,
-                             const MillingTool& tool) {
+                             const MillingSetup& setup) {
   if (!exercise.given()) return {load_bone(options), options, {}, {}};
   LoadedExercise loaded = load_exercise(exercise.file, options);
   const Exercise& task = loaded.placed.exercise;
-  require_allowed_burr(task, tool.burr_radius_mm);
+  require_allowed_burr(task, setup);
   return {std::move(loaded.bone), scan_of(task, options), to_be_recorded(task, exercise), task.entry_W_mm};
 }
 
-void require_allowed_burr(const Exercise& exercise, double burr_radius_mm) {
-  constexpr double kSame_mm = 1e-6;
-  const std::vector<double>& radii_mm = exercise.burr_radii_mm;
-  if (radii_mm.empty()) return;
-  if (std::ranges::any_of(radii_mm, [&](double one) { return std::abs(one - burr_radius_mm) <= kSame_mm; }))
+void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup) {
+  const std::vector<AllowedBurr>& burrs = exercise.burrs;
+  if (burrs.empty() || std::ranges::any_of(burrs, [&](const AllowedBurr& one) { return one.is_in(setup); }))
     return;
-  throw InputError(exercise.file.string(),
-                   fmt::format("its tools are burrs of {} mm radius, not {:g} mm; --burr-radius sets one",
-                               fmt::join(radii_mm, ", "), burr_radius_mm));
+  std::vector<std::string> names;
+  for (const AllowedBurr& one : burrs)
+    names.push_back(one.named != nullptr ? one.named->name : fmt::format("{:g} mm radius", one.radius_mm));
+  throw InputError(
+      exercise.file.string(),
+      fmt::format("its tools are burrs of {}, not {:g} mm; --burr-name or --burr-radius sets one",
+                  fmt::join(names, ", "), setup.tool.burr_radius_mm));
 }
 
-MillingTool with_burr(MillingTool tool, double burr_radius_mm) {
-  constexpr double kShaft_share = 0.6;
-  tool.burr_radius_mm = burr_radius_mm;
-  tool.shaft_radius_mm = std::min(MillingTool{}.shaft_radius_mm, kShaft_share * burr_radius_mm);
-  return tool;
-}
-
-MillingTool allowed_tool(const Exercise& exercise, const MillingTool& tool) {
-  const std::vector<double>& radii_mm = exercise.burr_radii_mm;
-  if (radii_mm.empty()) return tool;
-  const double nearest_mm = *std::ranges::min_element(
-      radii_mm, {}, [&](double one) { return std::abs(one - tool.burr_radius_mm); });
-  return nearest_mm == tool.burr_radius_mm ? tool : with_burr(tool, nearest_mm);
+void take_allowed_burr(const Exercise& exercise, MillingSetup& setup) {
+  const std::vector<AllowedBurr>& burrs = exercise.burrs;
+  if (burrs.empty() || std::ranges::any_of(burrs, [&](const AllowedBurr& one) { return one.is_in(setup); }))
+    return;
+  const auto apart_mm = [own_mm = setup.tool.burr_radius_mm](const AllowedBurr& one) {
+    return std::abs((one.named != nullptr ? one.named->tool.burr_radius_mm : one.radius_mm) - own_mm);
+  };
+  std::ranges::min_element(burrs, {}, apart_mm)->put_into(setup);
 }
 
 RecordedExercise to_be_recorded(const Exercise& exercise, const ExerciseOptions& options) {

@@ -7,8 +7,8 @@
 
 #include "osteomill/exercise/placed_exercise.h"
 #include "osteomill/exercise/recorded_exercise.h"
-#include "osteomill/haptics/milling_tool.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/session/milling_setup.h"
 
 #include "app/scan_options.h"
 
@@ -53,19 +53,16 @@ struct BoneToMill {
 /// Loads the exercise's bone if one is given, else the scan's. Throws as `load_exercise`,
 /// `require_allowed_burr` and `load_bone`.
 BoneToMill load_bone_to_mill(const ExerciseOptions& exercise, const ScanOptions& options,
-                             const MillingTool& tool);
+                             const MillingSetup& setup);
 
 /// Returns `options` with the exercise's scan, isovalue and labels in the place of the user's own. Throws
 /// CLI::ValidationError if the user has named any of these.
 ScanOptions scan_of(const Exercise& exercise, const ScanOptions& options);
 
-/// Throws InputError, naming the exercise, if its burrs do not include one of this radius.
-void require_allowed_burr(const Exercise& exercise, double burr_radius_mm);
-
-/// Returns the tool with another burr, and with a shaft that is thinner than it.
-MillingTool with_burr(MillingTool tool, double burr_radius_mm);
-/// Returns the tool with that burr of the exercise which is nearest to its own.
-MillingTool allowed_tool(const Exercise& exercise, const MillingTool& tool);
+/// Throws InputError, naming the exercise, if its burrs do not include the setup's.
+void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup);
+/// Puts that burr of the exercise into the setup which is nearest to its own, unless it has one of them.
+void take_allowed_burr(const Exercise& exercise, MillingSetup& setup);
 
 /// Returns what a recording says of the exercise.
 RecordedExercise to_be_recorded(const Exercise& exercise, const ExerciseOptions& options);

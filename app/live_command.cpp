@@ -209,7 +209,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   MillingSetup& setup = options.trial.milling.setup;
   std::optional<Branch> branch = take_branch(options);
   auto [loaded, scan, exercise, entry_W_mm] =
-      branch ? to_mill(branch->work) : load_bone_to_mill(options.exercise, options.scan, setup.tool);
+      branch ? to_mill(branch->work) : load_bone_to_mill(options.exercise, options.scan, setup);
   if (!options.trial.entry_W_mm) options.trial.entry_W_mm = entry_W_mm;
   warn_of_settings(setup, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));

@@ -221,13 +221,16 @@ std::string help_unit(std::string unit) {
 
 void add_number(CLI::App& command, const FieldDescription& field, const std::string& shown_default,
                 const std::function<void(double)>& take) {
+  // A longer list would push the help aside.
+  constexpr std::size_t kListed = 8;
   const std::string name = "--" + field.option;
   if (!field.choices.empty()) {
     command
         .add_option_function<std::string>(
             name, [field, take](const std::string& text) { take(value_of(field, text)); }, field.doc)
         ->check(one_of(field.option, field.choices))
-        ->type_name(fmt::format("{}", fmt::join(field.choices, "|")))
+        ->type_name(field.choices.size() > kListed ? "NAME"
+                                                   : fmt::format("{}", fmt::join(field.choices, "|")))
         ->default_str(shown_default);
     return;
   }

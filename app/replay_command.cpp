@@ -101,7 +101,7 @@ void end_recorder(std::optional<Recorder>& recorder, const std::string& path) {
 void replay_trajectory(ReplayOptions options, const std::string& command_line) {
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.input);
   auto [bone, scan, exercise, entry_W_mm] =
-      load_bone_to_mill(options.exercise, options.scan, options.milling.setup.tool);
+      load_bone_to_mill(options.exercise, options.scan, options.milling.setup);
   warn_of_settings(options.milling.setup, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   const std::uint64_t scan_hash = options.record.empty() ? 0 : fingerprint_of(bone.volume.grid());

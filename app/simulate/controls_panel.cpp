@@ -8,6 +8,8 @@
 #include <fmt/core.h>
 #include <imgui.h>
 
+#include "osteomill/milling/named_burrs.h"
+
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/widgets.h"
@@ -103,10 +105,43 @@ bool is_dental(Handpiece handpiece) {
   return handpiece == Handpiece::turbine || handpiece == Handpiece::electric;
 }
 
-void draw_tool(MillingSetup& requested_setup, bool& sound, bool& changed) {
+// Draws the list of burrs with a name, a column for each kind.
+bool choose_named_burr(MillingSetup& requested_setup) {
+  const NamedBurr* chosen = find_burr(requested_setup.tool, requested_setup.burr);
+  const NamedBurr* now = chosen;
+  if (ui::button("Burr by name")) ImGui::OpenPopup("##burrs");
+  ImGui::SameLine();
+  ImGui::TextUnformatted(chosen != nullptr ? chosen->label : "own sizes");
+  if (!ImGui::BeginPopup("##burrs")) return false;
+  std::string_view kind;
+  for (const NamedBurr& burr : named_burrs()) {
+    if (burr.kind != kind) {
+      if (!kind.empty()) {
+        ImGui::EndGroup();
+        ImGui::SameLine();
+      }
+      kind = burr.kind;
+      ImGui::BeginGroup();
+      ImGui::TextDisabled("%s", burr.kind);
+    }
+    if (ui::entry(burr.label, &burr == chosen)) chosen = &burr;
+  }
+  ImGui::EndGroup();
+  ImGui::EndPopup();
+  if (chosen == now) return false;
+  requested_setup.tool = chosen->tool;
+  requested_setup.burr = chosen->edge;
+  return true;
+}
+
+// An exercise that names its burrs offers them itself.
+void draw_tool(MillingSetup& requested_setup, bool has_choice, bool& sound, bool& changed) {
   if (!ui::header("Tool", true)) return;
+  ImGui::BeginDisabled(!has_choice);
+  changed = choose_named_burr(requested_setup) || changed;
   changed = settle_field("burr-radius", requested_setup, 0.5f, 4.0f, 1) || changed;
   changed = settle_field("shaft-radius", requested_setup, 0.3f, 3.0f, 1) || changed;
+  ImGui::EndDisabled();
   const float max_rpm = is_dental(requested_setup.handpiece) ? 400000.0f : 120000.0f;
   changed = settle_field("spindle-speed", requested_setup, 5000, max_rpm, 0) || changed;
   changed = ui::checkbox("vibration", &requested_setup.vibration.on) || changed;
@@ -289,7 +324,8 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   draw_isovalue(view, simulation);
   draw_session(view, simulation.milling, simulation.tool_source.is_pointer());
   draw_algorithm(view.requested_setup, changed);
-  draw_tool(view.requested_setup, view.sound, changed);
+  const bool has_choice = !simulation.exercise || simulation.exercise->placed().exercise.burrs.empty();
+  draw_tool(view.requested_setup, has_choice, view.sound, changed);
   draw_drive(view.requested_setup, changed);
   draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);
   draw_cuts(view, simulation);

@@ -54,24 +54,39 @@ void draw_distance(const Simulation& simulation, const TickRecord& record) {
   ImGui::SetWindowFontScale(1);
 }
 
+// Goes on in the same line if a widget with this label has room there.
+void stay_in_line(const std::string& label) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float right_px = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  const float width_px =
+      ImGui::CalcTextSize(label.c_str()).x + ImGui::GetFrameHeight() + 2 * style.ItemSpacing.x;
+  if (ImGui::GetItemRectMax().x + width_px <= right_px) ImGui::SameLine();
+}
+
 // The burrs that the exercise allows.
 void draw_burrs(ViewState& view, const Exercise& exercise) {
-  for (const double radius_mm : exercise.burr_radii_mm) {
-    const std::string label = fmt::format("round {:g} mm##burr", 2 * radius_mm);
-    if (ui::radio(label.c_str(), std::abs(view.requested_setup.tool.burr_radius_mm - radius_mm) < 1e-6)) {
-      view.requested_setup.tool = with_burr(view.requested_setup.tool, radius_mm);
-      view.setup_changed = true;
-      ++view.changes;
+  MillingSetup& setup = view.requested_setup;
+  bool is_changed = false, has_own_edge = true;
+  for (const AllowedBurr& burr : exercise.burrs) {
+    const std::string label = burr.label();
+    if (&burr != &exercise.burrs.front()) stay_in_line(label);
+    if (ui::radio((label + "##burr").c_str(), burr.is_in(setup))) {
+      burr.put_into(setup);
+      is_changed = true;
     }
-    ImGui::SameLine();
+    has_own_edge = has_own_edge && burr.named != nullptr;
   }
-  bool diamond = view.requested_setup.burr == BurrEdge::diamond;
-  if (ui::checkbox("diamond##burr", &diamond)) {
-    view.requested_setup.burr = diamond ? BurrEdge::diamond : BurrEdge::cutting;
-    view.setup_changed = true;
-    ++view.changes;
+  if (exercise.burrs.empty() || !has_own_edge) {
+    if (!exercise.burrs.empty()) stay_in_line("diamond");
+    bool diamond = setup.burr == BurrEdge::diamond;
+    if (ui::checkbox("diamond##burr", &diamond)) {
+      setup.burr = diamond ? BurrEdge::diamond : BurrEdge::cutting;
+      is_changed = true;
+    }
+    ui::tooltip("A burr set with diamonds, which grinds; else one with teeth, which cuts");
   }
-  ui::tooltip("A burr set with diamonds, which grinds; else one with teeth, which cuts");
+  view.setup_changed = view.setup_changed || is_changed;
+  view.changes += is_changed ? 1 : 0;
 }
 
 void draw_switches(ExerciseWork& work) {

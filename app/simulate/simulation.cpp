@@ -68,7 +68,7 @@ PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& s
     const WorkProgress::Part reading(0.4);
     return load_exercise(exercise.file, scan);
   }();
-  setup.tool = allowed_tool(loaded.placed.exercise, setup.tool);
+  take_allowed_burr(loaded.placed.exercise, setup);
   RecordedExercise recorded = to_be_recorded(loaded.placed.exercise, exercise);
   const ScanOptions source = scan_of(loaded.placed.exercise, scan);
   auto work =

@@ -76,6 +76,10 @@ bool slider(const char* label, float* value, float min, float max, const char* f
   return remember(label, ImGui::SliderFloat(label, value, min, max, format, flags));
 }
 
+bool entry(const char* label, bool chosen) {
+  return remember(label, ImGui::Selectable(label, chosen, 0, {px(130), 0}) && !chosen);
+}
+
 bool text_field(const char* label, char* text, std::size_t size) {
   return remember(label, ImGui::InputText(label, text, size, ImGuiInputTextFlags_EnterReturnsTrue));
 }

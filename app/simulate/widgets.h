@@ -42,6 +42,8 @@ bool checkbox(const char* label, bool* value);
 bool radio(const char* label, bool chosen);
 bool slider(const char* label, float* value, float min, float max, const char* format,
             ImGuiSliderFlags flags = 0);
+/// Draws a line of a list. Returns true if it was chosen and was not before.
+bool entry(const char* label, bool chosen);
 /// Draws a text field. Returns true if Enter was pressed in it.
 bool text_field(const char* label, char* text, std::size_t size);
 bool header(const char* label, bool open);

@@ -104,3 +104,23 @@ code=0; guarded --algorithm point-shell --record x.h5 >said 2>error || code=$?
 [ $code -eq 2 ] && grep -q "point-shell cannot hold the burr off structures" error || fault "another algorithm: $code, $(cat error)"
 sed 's/guard_mm = 0.5/guard_mm = 9/' kept.toml >tasks/wide.toml
 refused "tasks/wide.toml: line 10: guard_mm is not a number from 0 to 5" exercise tasks/wide.toml --check
+
+# Burrs by name.
+sed 's/^tools = .*/tools = ["diamond-2", 0.75]/' tasks/hole.toml >tasks/named.toml
+named() { "$osteomill" replay good.csv --exercise tasks/named.toml --record named.h5 --quiet "$@"; }
+named --burr-name diamond-2 >/dev/null
+"$osteomill" replay named.h5 --verify --quiet | grep -q "^same: 1500 ticks" || fault "a recording of a named burr does not replay"
+/usr/bin/python3 - <<'CHECK' || fault "the recording does not name its burr"
+import h5py
+with h5py.File("named.h5") as f:
+    name = f["settings"].attrs["burr_name"]
+    assert (name.decode() if isinstance(name, bytes) else name) == "diamond-2" and f["settings"].attrs["milling.burr"] == 1
+    assert f.attrs["burr_radius_mm"] == 1 and abs(f.attrs["shaft_radius_mm"] - 0.6) < 1e-12
+CHECK
+named --burr-radius 0.75 >/dev/null
+code=0; named --burr-name cutting-2 >said 2>error || code=$?
+[ $code -eq 1 ] && grep -q "its tools are burrs of diamond-2, 0.75 mm radius" error || fault "another burr: $code, $(cat error)"
+sed 's/diamond-2"/diamond-2.2"/' tasks/named.toml >tasks/no-burr.toml
+refused "tasks/no-burr.toml: line 3: there is no burr diamond-2.2; did you mean diamond-2" exercise tasks/no-burr.toml --check
+code=0; named --burr-name diamnd-2 >said 2>error || code=$?
+[ $code -eq 2 ] && grep -q "diamond-2" error || fault "a burr without a name: $code, $(cat error)"

@@ -164,6 +164,8 @@ click 2 surface-points ;; settle ;; state surface-points
 drag stiffness 30 ;; settle ;; state surface-points-stiffness
 click 3 point-shell ;; settle ;; state point-shell
 drag stiffness -20 ;; settle ;; state point-shell-stiffness
+click Burr by name ;; wait 0.2 ;; screenshot controls-7-burrs.png ;; click no. 4 (1.4 mm) ;; settle ;; state named
+click Burr by name ;; wait 0.2 ;; click cutting 3 mm ;; settle ;; state named-again
 drag burr radius -10 ;; settle ;; state burr
 drag shaft radius -10 ;; settle ;; state shaft
 drag spindle speed 30 ;; settle ;; state rpm
@@ -203,7 +205,8 @@ for algorithm in line-proxy surface-points point-shell; do
   # The first drag after an algorithm was chosen counts.
   changed $algorithm $algorithm-stiffness stiffness
 done
-changed point-shell-stiffness burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
+is named burr_mm 0.70; is named-again burr_mm 1.50; is named shaft_mm 0.42
+changed named-again burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
 is rpm vibration true; is no-vibration vibration false
 hides no-pull turbine; shows drives turbine
 # The speed is not the usual one of a drive any more, so a drive keeps it.
@@ -374,7 +377,7 @@ END
 { sed -n 's/^drawn //p' controls
   grep -hoE --exclude=exercise_panel.cpp --exclude=start_page.cpp --exclude=playback_panel.cpp \
     'ui::(button|checkbox|radio|slider|text_field|header)\([^;]*' "$source_folder"/*.cpp |
-    grep -oE '"[^"]+"' | tr -d '"' | sed 's/##.*//; /^ place$/d; /^%/d; /^$/d'; } | sort -u >labels
+    grep -oE '"[^"]+"' | tr -d '"' | sed 's/##.*//; /^ place$/d; /^%/d; /^$/d'; } | sed '/[0-9] mm)\{0,1\}$/d' | sort -u >labels
 # Those of a haptic device are worked if there is one.
 { sed -n 's/^worked //p' controls; sed -n 's/^click //p' "$here/device_test.sh"; } | sort -u >worked
 cat "$here/device_test.sh" >>worked_lines

@@ -157,8 +157,9 @@ std::vector<std::string> describe(const PlacedExercise& placed) {
   if (exercise.entry_W_mm)
     lines.push_back(fmt::format("entry: {:g}, {:g}, {:g} mm", exercise.entry_W_mm->x(),
                                 exercise.entry_W_mm->y(), exercise.entry_W_mm->z()));
-  if (!exercise.burr_radii_mm.empty())
-    lines.push_back(fmt::format("tools: burrs of {} mm radius", fmt::join(exercise.burr_radii_mm, ", ")));
+  std::vector<std::string> burrs;
+  for (const AllowedBurr& burr : exercise.burrs) burrs.push_back(burr.label());
+  if (!burrs.empty()) lines.push_back(fmt::format("tools: burrs {}", fmt::join(burrs, ", ")));
   if (exercise.time_s) lines.push_back(fmt::format("time: {:g} s", *exercise.time_s));
   for (std::size_t n = 0; n < exercise.steps.size(); ++n) {
     lines.push_back(fmt::format("step {}: {} ({} of bone, done at {:g} %)", n + 1,

@@ -9,6 +9,7 @@
 #include <sys/utsname.h>
 
 #include "osteomill/base/input_error.h"
+#include "osteomill/milling/named_burrs.h"
 
 namespace osteomill {
 
@@ -125,6 +126,9 @@ void set_session_settings(RunDescription& run, const SessionSettings& session, i
   run.tick_period_s = session.setup.tick_s;
   set_algorithm(run, session.setup, sample_points);
   put_fields(run, session);
+  std::erase_if(run.settings, [](const RunSetting& one) { return one.key == kBurrNameKey; });
+  if (const NamedBurr* burr = find_burr(session.setup.tool, session.setup.burr))
+    run.settings.push_back({std::string(kBurrNameKey), burr->name, ""});
 }
 
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path) {

@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "osteomill/milling/named_burrs.h"
+
 namespace osteomill {
 
 namespace {
@@ -141,6 +143,28 @@ Field<S> handpiece_field() {
           }};
 }
 
+// A burr by its name. Comes before the sizes of the tool and the kind of burr, which win if they are set as
+// well, and which are what recordings have.
+Field<S> burr_name_field() {
+  std::vector<std::string> names = names_of(named_burrs());
+  names.insert(names.begin(), "own");
+  const int last = static_cast<int>(names.size()) - 1;
+  return {{"", "", NumberRange::count(0, last),
+           "Burr by name, with its sizes, its shaft and its kind: surgical as cutting-2 or diamond-2.5 (mm), "
+           "dental as dental-014 (ISO size); docs/exercises.md lists all",
+           kOfTheTool | kOfTheRecording, "burr-name", std::move(names)},
+          [](const S& s) {
+            const NamedBurr* burr = find_burr(s.tool, s.burr);
+            return burr == nullptr ? 0.0 : static_cast<double>(burr - named_burrs().data() + 1);
+          },
+          [](S& s, double value) {
+            if (value < 1) return;
+            const NamedBurr& burr = named_burrs()[static_cast<std::size_t>(value) - 1];
+            s.tool = burr.tool;
+            s.burr = burr.edge;
+          }};
+}
+
 Field<S> chip_field(const char* name, const char* unit, const NumberRange& range, const char* doc,
                     const char* option, double S::*member) {
   return field<S>({name, unit, range, doc, kOfTheCutting | kOfTheRecording | kMayBeAbsent, option}, member);
@@ -257,11 +281,15 @@ std::vector<Field<ContactTransientSettings>> transient_fields() {
 
 template <>
 const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>() {
-  static const std::vector<Field<S>> all = joined<S>(
-      {fields_within<S>(&S::tool, tool_fields()), law_fields(),
-       fields_within<S>(&S::cutting, cutting_fields()), removal_fields(),
-       fields_within<S>(&S::guard, guard_fields()), fields_within<S>(&S::vibration, vibration_fields()),
-       fields_within<S>(&S::contact_transient, transient_fields())});
+  static const std::vector<Field<S>> all =
+      joined<S>({{burr_name_field()},
+                 fields_within<S>(&S::tool, tool_fields()),
+                 law_fields(),
+                 fields_within<S>(&S::cutting, cutting_fields()),
+                 removal_fields(),
+                 fields_within<S>(&S::guard, guard_fields()),
+                 fields_within<S>(&S::vibration, vibration_fields()),
+                 fields_within<S>(&S::contact_transient, transient_fields())});
   return all;
 }
 

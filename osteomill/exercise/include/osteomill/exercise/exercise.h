@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "osteomill/milling/named_burrs.h"
+#include "osteomill/session/milling_setup.h"
 #include "osteomill/volume/structure_distance.h"
 
 namespace osteomill {
@@ -74,6 +76,19 @@ struct ExerciseItem {
   int line = 0;
 };
 
+/// A burr that may be used: one by its name, or any of this radius.
+struct AllowedBurr {
+  const NamedBurr* named = nullptr;
+  double radius_mm = 0;
+
+  /// Returns whether the setup has it.
+  bool is_in(const MillingSetup& setup) const;
+  /// Puts it into the setup: one by name as it is, or else its radius with a shaft that is thinner than it.
+  void put_into(MillingSetup& setup) const;
+  /// Returns what people call it: "diamond 2 mm", "round 1.5 mm".
+  std::string label() const;
+};
+
 /// A task on a scan, and what counts as doing it well.
 struct Exercise {
   /// The file; errors name it, and its paths are relative to its folder.
@@ -94,8 +109,8 @@ struct Exercise {
   /// The unit vector along which a prepared crown is taken off; nothing if none is prepared.
   std::optional<Vec3> crown_axis_W;
   std::optional<Vec3> entry_W_mm;
-  /// The radii of the burrs that may be used, mm; empty for any.
-  std::vector<double> burr_radii_mm;
+  /// The burrs that may be used; empty for any.
+  std::vector<AllowedBurr> burrs;
   std::optional<double> time_s;
   std::vector<ExerciseStep> steps;
   std::vector<ExerciseItem> items;

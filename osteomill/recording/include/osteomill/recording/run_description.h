@@ -41,6 +41,9 @@ inline constexpr std::string_view kComparisonKey = "comparison";
 /// without any has none.
 inline constexpr std::string_view kGuardsKey = "exercise.guards";
 
+/// The key of the burr's name (NamedBurr), for people; a recording of a burr without a name has none.
+inline constexpr std::string_view kBurrNameKey = "burr_name";
+
 /// The key of the stiffness of a simulated hand, in N/mm.
 inline constexpr std::string_view kHandStiffnessKey = "hand.stiffness";
 /// The key of the damping of a simulated hand, in N s/mm.
