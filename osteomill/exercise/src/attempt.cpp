@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "osteomill/base/work_progress.h"
 #include "osteomill/exercise/region_voxels.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/volume/nearest_voxels.h"
@@ -78,18 +79,22 @@ class StrokeFinder {
   bool begun_ = false;
 };
 
-// Returns the bone left over a structure, given the space that is open from outside before and after.
+// Returns the bone left over a structure, given the space that was open from outside before, and what milling
+// opened. Looks only about that.
 std::vector<double> thickness_over(const PlacedExercise& exercise, const VoxelSet& structure,
-                                   const VoxelSet& open_before, const VoxelSet& open_after) {
+                                   const VoxelSet& open_before, const VoxelSet& opened) {
   const Vec3& spacing_mm = exercise.scan.spacing_mm;
   constexpr double kReach_mm = 8;
-  const auto reach = static_cast<int>(std::ceil(kReach_mm / spacing_mm.minCoeff()));
-  const VoxelBox box = structure.box().grown(reach).intersected(exercise.scan.all_voxels());
-  // Space that is open when the exercise begins is no work of the trainee's.
-  const NearestVoxels before(open_before, box, spacing_mm), after(open_after, box, spacing_mm);
   const double voxel_mm = spacing_mm.minCoeff();
+  const auto reach = static_cast<int>(std::ceil(kReach_mm / voxel_mm)) + 1;
+  const VoxelBox near = structure.box().intersected(opened.box().grown(reach));
   std::vector<double> left_mm;
-  structure.for_each([&](const VoxelIndex& v) {
+  if (opened.box().empty() || near.empty()) return left_mm;
+  // Space that is open when the exercise begins is no work of the trainee's.
+  const VoxelBox box = near.grown(reach).intersected(exercise.scan.all_voxels());
+  const NearestVoxels before(open_before, box, spacing_mm), after(opened, box, spacing_mm);
+  for_each(near, [&](const VoxelIndex& v) {
+    if (!structure.contains(v)) return;
     const double now_mm = after.distance_mm(v);
     if (!(now_mm <= kReach_mm) || now_mm > before.distance_mm(v) - voxel_mm) return;
     // A voxel within the structure lies behind its surface.
@@ -199,15 +204,16 @@ std::vector<AttemptTick> attempt_ticks(const Recording& recording) {
 }
 
 std::vector<std::vector<double>> thickness_left_mm(const PlacedExercise& exercise, const Volume& before,
-                                                   const Volume& after) {
+                                                   const Volume& after, const VoxelSet& removed) {
   std::vector<std::vector<double>> left_mm;
   if (exercise.structures.empty()) return left_mm;
   VoxelSet walls(exercise.scan.all_voxels());
   for (const PlacedStructure& structure : exercise.structures)
     structure.voxels.for_each([&](const VoxelIndex& v) { walls.insert(v); });
-  const VoxelSet open_before = open_space(before, walls), open_after = open_space(after, walls);
+  const VoxelSet open_before = open_space(before, walls);
+  const VoxelSet opened = opened_space(after, open_before, removed, walls);
   for (const PlacedStructure& structure : exercise.structures)
-    left_mm.push_back(thickness_over(exercise, structure.voxels, open_before, open_after));
+    left_mm.push_back(thickness_over(exercise, structure.voxels, open_before, opened));
   return left_mm;
 }
 
@@ -217,6 +223,7 @@ Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const R
   RemovalTimes times(scan);
   SeenContacts seen(recording.views);
   repeat_milling(after, recording, [&](std::size_t n, const Volume& bone, const VolumeChange& change) {
+    WorkProgress::done(n, ticks.size());
     times.add(bone, change.voxels, ticks[n].time_s);
     seen.add(bone, recording.records[n], ticks[n]);
   });
@@ -224,7 +231,7 @@ Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const R
   VoxelSet removed = removed_voxels(scan, after);
   Attempt attempt{&exercise, &scan, std::move(after), std::move(removed), std::move(ticks),
                   {},        {},    times.take(),     recording.views};
-  attempt.thickness_left_mm = thickness_left_mm(exercise, scan, attempt.after);
+  attempt.thickness_left_mm = thickness_left_mm(exercise, scan, attempt.after, attempt.removed);
   attempt.distances_mm.reserve(attempt.ticks.size() * exercise.structures.size());
   for (const AttemptTick& tick : attempt.ticks) {
     for (const auto& [distance, guard_mm] : *exercise.distances) {

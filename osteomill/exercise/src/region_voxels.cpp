@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/volume/nearest_voxels.h"
@@ -215,7 +216,9 @@ void flood(VoxelSet& found, const VoxelIndex& start, const IsSpace& is_space, co
     pending.push_back(v);
   };
   enter(start);
-  while (!pending.empty()) {
+  constexpr std::size_t kBetweenReports = 1 << 20;
+  for (std::size_t visited = 1; !pending.empty(); ++visited) {
+    if (visited % kBetweenReports == 0) WorkProgress::done(0);
     const VoxelIndex v = pending.back();
     pending.pop_back();
     use(v);
@@ -238,6 +241,33 @@ VoxelSet open_space(const Volume& bone, const VoxelSet& walls) {
       flood(open, v, is_space, [](const VoxelIndex&) {});
   });
   return open;
+}
+
+VoxelSet opened_space(const Volume& bone, const VoxelSet& open_before, const VoxelSet& removed,
+                      const VoxelSet& walls) {
+  const VoxelBox all = bone.geometry().all_voxels();
+  const auto is_space = [&](const VoxelIndex& v) { return !bone.is_bone(v) && !walls.contains(v); };
+  const auto is_reached = [&](const VoxelIndex& v) {
+    const auto is_open = [&](int i, int j, int k) {
+      const VoxelIndex beside{v.i + i, v.j + j, v.k + k};
+      return !all.contains(beside) || open_before.contains(beside);
+    };
+    return is_open(-1, 0, 0) || is_open(1, 0, 0) || is_open(0, -1, 0) || is_open(0, 1, 0) ||
+           is_open(0, 0, -1) || is_open(0, 0, 1);
+  };
+  VoxelSet open = open_before;
+  std::vector<VoxelIndex> found;
+  VoxelBox box;
+  removed.for_each([&](const VoxelIndex& v) {
+    if (!is_reached(v)) return;
+    flood(open, v, is_space, [&](const VoxelIndex& one) {
+      found.push_back(one);
+      box.include(one);
+    });
+  });
+  VoxelSet opened(box);
+  for (const VoxelIndex& v : found) opened.insert(v);
+  return opened;
 }
 
 bool is_cut_through(const VoxelSet& structure, const Volume& before, const Volume& after) {

@@ -66,9 +66,9 @@ std::vector<AttemptTick> attempt_ticks(const Recording& recording);
 
 /// Returns for each structure the bone that milling left over it, mm, at each voxel of its surface over which
 /// it became thinner by a voxel or more: from face to face, between the structure and the space that is open
-/// from outside, at most 8 mm. Long work.
+/// from outside, at most 8 mm. `removed` is the bone that is gone. Long work.
 std::vector<std::vector<double>> thickness_left_mm(const PlacedExercise& exercise, const Volume& before,
-                                                   const Volume& after);
+                                                   const Volume& after, const VoxelSet& removed);
 
 /// Runs the recording's milling again on the exercise's scan. Throws InputError, naming the recording, as
 /// `repeat_milling` does. `exercise` and `scan` outlive the attempt. Long work.

@@ -20,6 +20,9 @@ VoxelSet removed_voxels(const Volume& before, const Volume& after);
 /// Returns the voxels without bone that are connected to the border of the scan by their faces. Voxels of
 /// `walls` are in no way part of it. Long work.
 VoxelSet open_space(const Volume& bone, const VoxelSet& walls = {});
+/// Returns the voxels that are such space because the bone of `removed` is gone, given the space before.
+VoxelSet opened_space(const Volume& bone, const VoxelSet& open_before, const VoxelSet& removed,
+                      const VoxelSet& walls);
 
 /// Returns whether milling opened a way through a structure: removed bone within it joins spaces beside it
 /// that nothing within it joined before. Long work.
