@@ -138,7 +138,6 @@ bool choose_named_burr(MillingSetup& requested_setup) {
 void draw_tool(MillingSetup& requested_setup, bool has_choice, bool& sound, bool& changed) {
   if (!ui::header("Tool", true)) return;
   ImGui::BeginDisabled(!has_choice);
-  changed = choose_named_burr(requested_setup) || changed;
   changed = settle_field("burr-radius", requested_setup, 0.5f, 4.0f, 1) || changed;
   changed = settle_field("shaft-radius", requested_setup, 0.3f, 3.0f, 1) || changed;
   ImGui::EndDisabled();
@@ -153,8 +152,12 @@ void draw_tool(MillingSetup& requested_setup, bool has_choice, bool& sound, bool
   ui::checkbox("sound", &sound);
 }
 
-void draw_drive(MillingSetup& requested_setup, bool& changed) {
+void draw_drive(MillingSetup& requested_setup, bool has_choice, bool& changed) {
   if (!ui::header("Burr and drive", false)) return;
+  ImGui::BeginDisabled(!has_choice);
+  changed = choose_named_burr(requested_setup) || changed;
+  ImGui::EndDisabled();
+  ImGui::Separator();
   changed = choose_field("handpiece", requested_setup) || changed;
   ImGui::Separator();
   changed = choose_field("law", requested_setup) || changed;
@@ -326,7 +329,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   draw_algorithm(view.requested_setup, changed);
   const bool has_choice = !simulation.exercise || simulation.exercise->placed().exercise.burrs.empty();
   draw_tool(view.requested_setup, has_choice, view.sound, changed);
-  draw_drive(view.requested_setup, changed);
+  draw_drive(view.requested_setup, has_choice, changed);
   draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);
   draw_cuts(view, simulation);
   files.draw(view, simulation);

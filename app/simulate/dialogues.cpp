@@ -71,6 +71,22 @@ Dialogue report_question(Dialogue::Action report, Dialogue::Action close) {
       {}};
 }
 
+Dialogue unfinished_question(Dialogue::Action measure, Dialogue::Action close) {
+  return {"Close osteomill",
+          "The exercise is not finished. Shall it be measured before the window closes?",
+          {{"Measure and close", std::move(measure)}, {"Close without", std::move(close)}, {"Stay", {}}},
+          {},
+          {}};
+}
+
+Dialogue measuring_message(std::function<bool()> is_measured, Dialogue::Action close) {
+  return {"Close osteomill",
+          "The exercise is being measured.",
+          {{"Close without results", close}, {"Stay", {}}},
+          std::move(is_measured),
+          close};
+}
+
 Dialogue leftover_question(const SessionStart& leftover, Dialogue::Action open, Dialogue::Action remove,
                            Dialogue::Action later) {
   return {

@@ -61,6 +61,11 @@ Dialogue unsaved_question(const std::string& what, std::function<bool()> is_save
 /// Asks whether to make the report of what was recorded before the window closes.
 Dialogue report_question(Dialogue::Action report, Dialogue::Action close);
 
+/// Asks whether to measure an exercise that is not finished before the window closes.
+Dialogue unfinished_question(Dialogue::Action measure, Dialogue::Action close);
+/// Asks to wait until an exercise has been measured, or to close the window without results.
+Dialogue measuring_message(std::function<bool()> is_measured, Dialogue::Action close);
+
 /// Asks what to do with unsaved milled bone of an earlier run of the program that ended without asking.
 Dialogue leftover_question(const SessionStart& leftover, Dialogue::Action open, Dialogue::Action remove,
                            Dialogue::Action later);

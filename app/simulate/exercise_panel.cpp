@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <GLFW/glfw3.h>
 #include <fmt/core.h>
@@ -114,14 +115,6 @@ void place_between_columns(const PixelSize& size, float y_px, float from_below) 
                                       {width_px, static_cast<float>(size.height) - ui::px(16)});
 }
 
-void finish_exercise(ViewState& view, Simulation& simulation, FilesPanel& files) {
-  simulation.milling.set_spindle(false);
-  files.end_recording(view, simulation);
-  // On a full disk there is no recording.
-  if (!simulation.milling.is_recording() && !files.last_recording().empty())
-    simulation.exercise->measure(files.last_recording(), files.name("debrief"));
-}
-
 void draw_work(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size) {
   ExerciseWork& work = *simulation.exercise;
   const Exercise& exercise = work.placed().exercise;
@@ -143,7 +136,7 @@ void draw_work(ViewState& view, Simulation& simulation, FilesPanel& files, const
   if (work.is_measuring()) {
     ImGui::TextUnformatted("Measuring ...");
   } else if (simulation.milling.is_recording()) {
-    if (ui::button("Finish")) finish_exercise(view, simulation, files);
+    if (ui::button("Finish")) view.finish_requested = true;
     ui::tooltip("Ends the recording, measures it and shows the results");
   } else if (ui::button("Work on")) {
     files.begin_recording(view, simulation, "exercise.h5");
@@ -199,6 +192,14 @@ void draw_results(ViewState& view, Simulation& simulation, const FilesPanel& fil
 
 }  // namespace
 
+void finish_exercise(ViewState& view, Simulation& simulation, FilesPanel& files) {
+  simulation.milling.set_spindle(false);
+  files.end_recording(view, simulation);
+  // On a full disk there is no recording.
+  if (!simulation.milling.is_recording() && !files.last_recording().empty())
+    simulation.exercise->measure(files.last_recording(), files.name("debrief"));
+}
+
 std::string distance_text(const Simulation& simulation, const TickRecord& record) {
   const ExerciseWork& work = *simulation.exercise;
   const auto reading = work.nearest(record.X_WT.position_mm, simulation.milling.setup().tool.burr_radius_mm);
@@ -211,7 +212,6 @@ std::string distance_text(const Simulation& simulation, const TickRecord& record
 void draw_exercise(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size) {
   if (!simulation.exercise) return;
   ExerciseWork& work = *simulation.exercise;
-  view.dialogues.run_reporting_errors([&] { work.take_result(); });
   if (const auto sample = work.next_view(view, size, simulation.milling.state().record.time_s))
     simulation.milling.record_view(*sample);
   take_exercise_keys(work);
@@ -220,6 +220,8 @@ void draw_exercise(ViewState& view, Simulation& simulation, FilesPanel& files, c
   } else {
     draw_results(view, simulation, files, size);
   }
+  if (!work.is_measuring() && std::exchange(view.finish_requested, false))
+    finish_exercise(view, simulation, files);
 }
 
 }  // namespace osteomill::app

@@ -11,6 +11,9 @@ namespace osteomill::app {
 /// exercise.
 void draw_exercise(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
+/// Ends the recording, and begins to measure it. Not while another one is measured.
+void finish_exercise(ViewState& view, Simulation& simulation, FilesPanel& files);
+
 /// Returns the text on the nearest structure: "facial nerve 2.3 mm"; empty without structures or guidance.
 std::string distance_text(const Simulation& simulation, const TickRecord& record);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "osteomill/base/atomic_file.h"
+#include "osteomill/base/work_progress.h"
 
 #include "app/simulate/scene_of.h"
 
@@ -90,7 +91,10 @@ std::optional<ViewSample> ExerciseWork::next_view(const ViewState& view, const P
 void ExerciseWork::measure(const std::filesystem::path& recording, const std::filesystem::path& folder) {
   folder_ = folder;
   results_.clear();
-  work_ = std::async(std::launch::async, [placed = placed_, scan = scan_, recording, folder] {
+  work_ = std::async(std::launch::async, [this, placed = placed_, scan = scan_, recording, folder] {
+    const WorkProgress watched([this](double) {
+      if (is_given_up_) throw WorkStopped();
+    });
     const Attempt attempt = make_attempt(*placed, *scan, read_recording(recording));
     std::vector<MeasuredValue> rows = measure_attempt(attempt);
     write_folder_atomically(folder, [&](const std::filesystem::path& beside) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <future>
@@ -33,6 +34,10 @@ class ExerciseWork {
  public:
   /// `scan` is the bone before it is milled.
   ExerciseWork(PlacedExercise placed, const Volume& scan, RecordedExercise recorded);
+  /// Gives up what is still being measured, and waits for that.
+  ~ExerciseWork() { is_given_up_ = true; }
+  ExerciseWork(const ExerciseWork&) = delete;
+  ExerciseWork& operator=(const ExerciseWork&) = delete;
 
   const PlacedExercise& placed() const { return *placed_; }
   /// Returns what a recording says of the exercise, guidance as it is now.
@@ -88,6 +93,7 @@ class ExerciseWork {
   double next_view_s_ = 0;
   std::filesystem::path folder_;
   std::vector<MeasuredValue> results_;
+  std::atomic<bool> is_given_up_ = false;
   std::future<std::vector<MeasuredValue>> work_;
 };
 

@@ -188,8 +188,13 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
     view.message.clear();
   }
   if (!ui::header("Record and save", true)) return;
-  if (ui::button(simulation.milling.is_recording() ? "Stop recording##r" : "Record##r"))
-    record(view, simulation);
+  if (ui::button(simulation.milling.is_recording() ? "Stop recording##r" : "Record##r")) {
+    // A recording of an exercise ends in its results.
+    if (simulation.exercise && simulation.milling.is_recording())
+      view.finish_requested = true;
+    else
+      record(view, simulation);
+  }
   ImGui::SameLine();
   const bool free = !is_busy();
   if (ui::button("Report", free && !last_recording_.empty())) make_report();

@@ -188,13 +188,20 @@ class Simulator {
       finish();
     }
     if (options_.driver != nullptr) options_.driver->finish();
+    std::filesystem::path results;
     if (simulation_) {
+      if (simulation_->exercise && !simulation_->exercise->results().empty())
+        results = simulation_->exercise->folder() / "debrief.csv";
       files_.close(view_, *simulation_);
       simulation_->autosave.discard();
     }
     for (const std::string& complaint : view_.dialogues.errors())
       app::print_error(fmt::format("osteomill: {}\n", complaint));
-    if (reported_) {
+    if (!results.empty()) {
+      fmt::print("{}\n{}\n", files_.last_recording().string(), results.string());
+    } else if (simulation_ && simulation_->exercise && !files_.last_recording().empty()) {
+      fmt::print("{0}\nIts results: osteomill debrief {0} --out results\n", files_.last_recording().string());
+    } else if (reported_) {
       fmt::print("{}\n{}\n", files_.last_recording().string(), view_.message);
     } else if (!files_.last_recording().empty()) {
       fmt::print("{0}\nIts report: osteomill report {0} --out report\n", files_.last_recording().string());
@@ -239,7 +246,27 @@ class Simulator {
     });
   }
 
+  // Waits for the results before it closes the window, unless the trainee gives them up.
+  void close_when_measured() {
+    const auto is_measured = [this] { return !simulation_->exercise->is_measuring(); };
+    view_.dialogues.add(measuring_message(is_measured, [this] { closing_ = true; }));
+  }
+
+  void close_exercise() {
+    if (simulation_->exercise->is_measuring()) return close_when_measured();
+    if (!simulation_->milling.is_recording()) {
+      closing_ = true;
+      return;
+    }
+    const auto measure = [this] {
+      finish_exercise(view_, *simulation_, files_);
+      close_when_measured();
+    };
+    view_.dialogues.add(unfinished_question(measure, [this] { closing_ = true; }));
+  }
+
   void close() {
+    if (simulation_ && simulation_->exercise) return close_exercise();
     if (!simulation_ || !files_.has_unreported(*simulation_)) {
       closing_ = true;
       return;
@@ -255,6 +282,8 @@ class Simulator {
     if (window_.take_close_asked()) ask_before("Closing the window", [this] { close(); });
     // Also while the window is too small to be drawn.
     if (simulation_) files_.take_result(view_, *simulation_);
+    if (simulation_ && simulation_->exercise)
+      view_.dialogues.run_reporting_errors([this] { simulation_->exercise->take_result(); });
     view_.dialogues.proceed();
     return closing_ || (options_.driver != nullptr && options_.driver->wants_to_close());
   }
@@ -563,7 +592,7 @@ class Simulator {
   }
 
   void drop_requests() {
-    view_.undo_requested = view_.reset_confirmed = false;
+    view_.undo_requested = view_.reset_confirmed = view_.finish_requested = false;
     view_.isovalue_requested.reset();
   }
 

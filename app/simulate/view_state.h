@@ -60,6 +60,8 @@ struct ViewState {
   /// The exercise to be opened, and whether the start page is to be shown, as a button asked for.
   std::string exercise_requested;
   bool start_page_requested = false;
+  /// Whether the exercise is to be finished, as a button asked for.
+  bool finish_requested = false;
   /// By how many steps text is to become larger; negative: smaller.
   int text_steps = 0;
   bool reset_requested = false;

@@ -164,8 +164,6 @@ click 2 surface-points ;; settle ;; state surface-points
 drag stiffness 30 ;; settle ;; state surface-points-stiffness
 click 3 point-shell ;; settle ;; state point-shell
 drag stiffness -20 ;; settle ;; state point-shell-stiffness
-click Burr by name ;; wait 0.2 ;; screenshot controls-7-burrs.png ;; click no. 4 (1.4 mm) ;; settle ;; state named
-click Burr by name ;; wait 0.2 ;; click cutting 3 mm ;; settle ;; state named-again
 drag burr radius -10 ;; settle ;; state burr
 drag shaft radius -10 ;; settle ;; state shaft
 drag spindle speed 30 ;; settle ;; state rpm
@@ -182,6 +180,8 @@ click drag ;; settle ;; state no-drag
 screenshot controls-6-drive.png
 click constant-energy ;; settle ;; state constant ;; click chips ;; settle ;; state chips
 click none ;; settle ;; state no-drive
+click Burr by name ;; wait 0.2 ;; screenshot controls-7-burrs.png ;; click diamond 014 (1.4 mm) ;; settle ;; state named
+click Burr by name ;; wait 0.2 ;; click cutting 3 mm ;; settle ;; state named-again
 click Burr and drive
 drag isovalue 20 ;; settle ;; wait 0.2 ;; state isovalue
 press control ;; click isovalue ;; release control ;; type 500 ;; key enter ;; settle ;; wait 0.2 ;; state typed
@@ -205,8 +205,7 @@ for algorithm in line-proxy surface-points point-shell; do
   # The first drag after an algorithm was chosen counts.
   changed $algorithm $algorithm-stiffness stiffness
 done
-is named burr_mm 0.70; is named-again burr_mm 1.50; is named shaft_mm 0.42
-changed named-again burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
+changed point-shell-stiffness burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
 is rpm vibration true; is no-vibration vibration false
 hides no-pull turbine; shows drives turbine
 # The speed is not the usual one of a drive any more, so a drive keeps it.
@@ -215,6 +214,7 @@ same rpm turbine rpm
 is drives burr 0; is diamond burr 1; is cutting burr 0
 is cutting wear 0; more cutting worn wear
 is worn drag 1; is no-drag drag 0
+is named burr_mm 0.70; is named shaft_mm 0.42; is named burr 1; is named-again burr_mm 1.50; is named-again burr 0
 is no-drag law 1; is constant law 0; is chips law 1
 is no-vibration cutting_reaction true; is no-pull cutting_reaction false
 more no-vibration isovalue isovalue; is typed isovalue 500

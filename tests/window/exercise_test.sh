@@ -31,7 +31,7 @@ key space ;; key t ;; wait 0.3 ;; state milled ;; screenshot milled.png
 say finished ;; await finished ;; settle ;; wait 0.3 ;; state results ;; screenshot results.png
 click All measures ;; wait 0.2 ;; screenshot measures.png
 click Back to the bone ;; wait 0.2 ;; state back ;; click Work on ;; settle ;; wait 0.3 ;; state again
-click Finish ;; settle ;; wait 0.3 ;; click Try again ;; wait 0.2 ;; settle ;; click Discard ;; wait 1 ;; settle ;; wait 0.5 ;; state anew
+click Bone ;; click Algorithm ;; click Tool ;; click View ;; click Stop recording ;; settle ;; wait 0.3 ;; state stopped ;; click Try again ;; wait 0.2 ;; settle ;; click Discard ;; wait 1 ;; settle ;; wait 0.5 ;; state anew
 click Finish ;; settle ;; wait 0.3 ;; click Start page ;; wait 0.5 ;; screenshot start-again.png
 click Built-in tooth ;; wait 0.5 ;; settle ;; state tooth ;; close
 END
@@ -74,6 +74,7 @@ work() {
   awk -v a="$(value begun step_percent)" -v b="$(value milled step_percent)" 'BEGIN { exit !(b > a) }' || fail "the step does not go on"
   value milled distance | grep -qE '^deep layer [0-9.]+ mm$' || fail "no distance"
   [ "$(value results results)" -gt 40 ] && is results recording false
+  [ "$(value stopped results)" -gt 40 ] && is stopped recording false
   is back results 0; is again recording true; is anew step_percent 0.0; is tooth scan "built-in tooth"
   local debrief recording
   debrief=$(value results debrief)/debrief.csv
@@ -97,3 +98,18 @@ CHECK
 }
 work 1280x800 570
 work 1024x600 570
+
+# A window that is closed before the end asks whether to measure; closed without, it names the recording.
+closing() {
+  rm -rf out
+  printf '%s\n' "wait 0.5" settle "wait 0.5" "$@" >actions
+  xvfb-run -a -s "-screen 0 1280x800x24" timeout 120 "$driver" simulate --exercise "$exercises/layers.toml" --out out --script actions \
+    >said 2>errors || fail "exit code $? of a window that is closed"
+  ! grep -q still-there said || fail "it did not close"
+}
+closing quit "wait 0.3" "screenshot closing.png" "click Stay" "wait 0.3" "say stayed" quit "wait 0.3" \
+  "click Measure and close" "wait 60" "say still-there"
+grep -q ^stayed said && grep -q "debrief/debrief.csv$" said && [ -s out/*-debrief/debrief.csv ] || fail "it was not measured"
+closing quit "wait 0.3" "click Close without" "wait 60" "say still-there"
+grep -q "^Its results: osteomill debrief out/.*-exercise.h5" said && [ -s out/*-exercise.h5 ] || fail "the recording is not named"
+[ -z "${OSTEOMILL_PICTURES:-}" ] || cp closing.png "$OSTEOMILL_PICTURES/exercise-closing.png"

@@ -12,6 +12,7 @@
 #include "osteomill/base/atomic_file.h"
 #include "osteomill/base/csv_field.h"
 #include "osteomill/base/distribution.h"
+#include "osteomill/base/work_progress.h"
 #include "osteomill/exercise/region_voxels.h"
 
 #include "crown.h"
@@ -296,7 +297,8 @@ void add_bone(std::vector<Measure>& all) {
        removed_outside_mm3});
   all.push_back(
       {"removed_outside_percent", "%", "100 removed_outside_mm3 / volume of T", "", removed_outside_percent});
-  all.push_back({"removed_mm3", "mm³", "volume of R", "", removed_mm3});
+  all.push_back({"removed_mm3", "mm³", "volume of R", "", removed_mm3}); the window and every tick have it by density",
+                 "", removed_mm3});
   all.push_back({"dice_percent", "%", "200 |R ∩ T| / (|R| + |T|)", "Dice 1945", dice_percent});
   all.push_back({"keep_removed_mm3", "mm³", "volume of R within the bone to be kept; empty without such bone",
                  "", keep_removed_mm3});
@@ -491,6 +493,7 @@ std::vector<MeasuredValue> measure_attempt(const Attempt& attempt) {
   const Exercise& exercise = attempt.exercise->exercise;
   std::vector<MeasuredValue> rows;
   for (const Measure& measure : all_measures()) {
+    WorkProgress::done(1);
     add_rows(rows, measure, "", measure.value(attempt), exercise);
     const std::vector<std::string> parts = parts_of(measure, exercise);
     for (std::size_t n = 0; n < parts.size(); ++n)
