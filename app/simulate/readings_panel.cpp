@@ -207,7 +207,11 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
   row("late ticks", fmt::format("{} of {}", timing.late_ticks + timing.missed_ticks, timing.ticks));
   row("pictures", fmt::format("{:.0f} / s", pictures_per_s));
   draw_faults(simulation.history);
-  row("removed", fmt::format("{:.2f} mm³", state.record.removed_mm3));
+  row("removed", fmt::format("{:.2f} mm³ by density", state.record.removed_mm3));
+  ui::tooltip(
+      "Volume that what was removed would have at the scan's usual density of bone: half as dense counts "
+      "half. "
+      "The results of an exercise count the voxels that are no longer bone instead");
   const double set_rpm = simulation.milling.setup().cutting.spindle_speed_rpm;
   row("spindle", fmt::format("{:.0f} of {:.0f} rpm", std::max(state.record.spindle_rpm, 0.0), set_rpm));
   ui::tooltip("The spindle's speed, and the one that it is set to");

@@ -297,7 +297,7 @@ void add_bone(std::vector<Measure>& all) {
        removed_outside_mm3});
   all.push_back(
       {"removed_outside_percent", "%", "100 removed_outside_mm3 / volume of T", "", removed_outside_percent});
-  all.push_back({"removed_mm3", "mm³", "volume of R", "", removed_mm3}); the window and every tick have it by density",
+  all.push_back({"removed_mm3", "mm³", "volume of R, by voxels; the window and every tick have it by density",
                  "", removed_mm3});
   all.push_back({"dice_percent", "%", "200 |R ∩ T| / (|R| + |T|)", "Dice 1945", dice_percent});
   all.push_back({"keep_removed_mm3", "mm³", "volume of R within the bone to be kept; empty without such bone",
