@@ -14,6 +14,7 @@
 
 #include "app/commands.h"
 #include "app/exercise_options.h"
+#include "app/exercise_picture.h"
 #include "app/progress.h"
 
 namespace osteomill::app {
@@ -24,6 +25,7 @@ struct ExerciseCommandOptions {
   std::string file;
   bool check = false;
   bool measures = false;
+  std::string picture;
 };
 
 void run_exercise(const ExerciseCommandOptions& options) {
@@ -32,8 +34,15 @@ void run_exercise(const ExerciseCommandOptions& options) {
     if (options.file.empty()) return;
   }
   if (options.file.empty()) throw CLI::RequiredError("file");
-  if (!options.check) throw CLI::RequiredError("--check");
+  if (!options.check && options.picture.empty()) throw CLI::RequiredError("--check or --picture");
+  if (!options.picture.empty()) output_path(options.picture);
   const auto [bone, placed] = load_exercise(options.file, {});
+  if (!options.picture.empty()) {
+    constexpr PixelSize kStartPage{300, 240};
+    write_png(options.picture, exercise_picture(placed, bone.volume, kStartPage));
+    fmt::print("{}\n", options.picture);
+  }
+  if (!options.check) return;
   const std::array<int, 3>& dims = bone.volume.geometry().dims;
   const std::vector<std::string> lines = describe(placed);
   fmt::print("{}\nscan: {}, {} x {} x {} voxels, isovalue {:g}\n", lines.front(), bone.name, dims[0], dims[1],
@@ -96,6 +105,11 @@ void add_exercise_command(CLI::App& program) {
   command->group("Exercises");
   command->add_option("file", options->file, "The exercise, TOML; docs/exercises.md");
   command->add_flag("--check", options->check, "Print what it holds, or the first fault with its line");
+  command
+      ->add_option(
+          "--picture", options->picture,
+          "Picture to draw for the start page, PNG; there it stands beside the exercise under its name")
+      ->type_name("FILE");
   command->add_flag("--measures", options->measures, "Print all measures as a Markdown table");
   add_quiet_option(*command);
   command->callback([=] { run_exercise(*options); });
