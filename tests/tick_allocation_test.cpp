@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -116,6 +117,30 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
                            name[name.find('-')] = '_';
                            return name;
                          });
+
+TEST(TickAllocation, AGuardThatHoldsTheBurrAllocatesNothing) {
+  Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
+                                                testing_support::ball(Vec3::Zero(), 3));
+  VoxelSet nerve(VoxelBox{{31, 0, 50}, {32, 63, 51}});
+  for_each(nerve.box(), [&](const VoxelIndex& v) { nerve.insert(v); });
+  volume.set_no_go(
+      std::make_shared<NoGoDistances>(NoGoDistances{{StructureDistance(nerve, volume.geometry()), 0.5}}));
+  const BoneDensities densities = estimate_densities(volume);
+  MillingSession session(std::make_shared<Volume>(std::move(volume)), densities, {});
+  PosedDevice device;
+  double nearest_mm = 10, strongest_N = 0;
+  const long before = allocations_of_this_thread();
+  for (int n = 0; n < 1000; ++n) {
+    device.put({{0.0002 * n, 0, 9 - 0.004 * n}, Quat::Identity()});
+    const TickRecord record = session.tick(device, {.time_s = n * 1e-3, .spindle_on = true});
+    nearest_mm = std::fmin(nearest_mm, record.no_go_distance_mm);
+    strongest_N = std::max(strongest_N, record.wrench.force_N.norm());
+  }
+  EXPECT_EQ(allocations_of_this_thread() - before, 0);
+  EXPECT_GT(nearest_mm, 0.45);
+  EXPECT_LT(nearest_mm, 0.6);
+  EXPECT_GT(strongest_N, 2);
+}
 
 // The whole loop of the haptic thread, with the hand-over to the follower, the vibration, and commands coming
 // in.

@@ -77,7 +77,7 @@ bool slider(const char* label, float* value, float min, float max, const char* f
 }
 
 bool entry(const char* label, bool chosen) {
-  return remember(label, ImGui::Selectable(label, chosen, 0, {px(130), 0}) && !chosen);
+  return remember(label, ImGui::Selectable(label, chosen, 0, {px(150), 0}) && !chosen);
 }
 
 bool text_field(const char* label, char* text, std::size_t size) {

@@ -106,8 +106,9 @@ void NearestVoxels::sweep(std::size_t axis, To to, std::vector<float>& squares_m
 
 VoxelIndex NearestVoxels::nearest_to(const VoxelIndex& v) const noexcept {
   const std::size_t place = row_major(dims_, v.i - box_.first.i, v.j - box_.first.j, v.k - box_.first.k);
-  const auto [i, j, k] = cell_at(dims_, static_cast<std::size_t>(nearest_[place]));
-  return {box_.first.i + i, box_.first.j + j, box_.first.k + k};
+  // Divides 32 bits, which takes a fraction of the time of 64.
+  const std::int32_t near = nearest_[place], row = near / dims_[0], layer = row / dims_[1];
+  return {box_.first.i + near - row * dims_[0], box_.first.j + row - layer * dims_[1], box_.first.k + layer};
 }
 
 double NearestVoxels::distance_mm(const VoxelIndex& v) const noexcept {

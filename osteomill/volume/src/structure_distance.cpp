@@ -68,10 +68,13 @@ double StructureDistance::from(const Vec3& point_W) const noexcept {
 
 DistanceSlope StructureDistance::slope_from(const Vec3& point_W) const noexcept {
   if (nearest_.found()) return slope_from_voxels(point_W);
-  const Vec3 out = std::visit(
-      [&](const auto& solid) -> Vec3 { return point_W - nearest_point_W(solid, point_W); }, solid_);
-  const double distance_mm = out.norm();
-  return {distance_mm, distance_mm > 0 ? Vec3(out / distance_mm) : Vec3::Zero()};
+  return std::visit(
+      [&](const auto& solid) -> DistanceSlope {
+        const double distance = distance_mm(solid, point_W);
+        if (!(distance > 0)) return {};
+        return {distance, (point_W - nearest_point_W(solid, point_W)).normalized()};
+      },
+      solid_);
 }
 
 // With n the direction to a point at distance d, |r| more along a and |a| away, |d n + a| is at most

@@ -52,6 +52,56 @@ TEST(StructureDistance, IsWithinHalfAVoxelOfABruteForceSearchAtTenThousandPoses)
   EXPECT_LT(worst_mm, 0.15);
 }
 
+TEST(StructureDistance, InterpolatesWithoutStepsAndNoFartherThanItSays) {
+  GridGeometry scan;
+  scan.dims = {40, 40, 40};
+  scan.spacing_mm = {0.3, 0.3, 0.5};
+  scan.direction = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  VoxelSet grains(VoxelBox{{12, 12, 12}, {28, 28, 28}});
+  std::vector<VoxelIndex> voxels;
+  for (int n = 0; n < 60; ++n) {
+    const VoxelIndex v{12 + static_cast<int>(17 * share(random)), 12 + static_cast<int>(17 * share(random)),
+                       12 + static_cast<int>(17 * share(random))};
+    if (!grains.contains(v)) voxels.push_back(v);
+    grains.insert(v);
+  }
+  const StructureDistance distance(grains, scan);
+  for (int n = 0; n < 10000; ++n) {
+    const Vec3 point_W =
+        scan.world_from_voxel(Vec3(39 * share(random), 39 * share(random), 39 * share(random)));
+    const DistanceSlope slope = distance.slope_from(point_W);
+    const double true_mm = to_the_cubes_mm(voxels, scan, point_W);
+    if (true_mm > 0) {
+      ASSERT_LE(slope.distance_mm, true_mm + distance.max_excess_mm(true_mm) + 1e-5);
+    }
+    const Vec3 beside_W = point_W + 1e-4 * Vec3(share(random), share(random), share(random));
+    ASSERT_NEAR(distance.slope_from(beside_W).distance_mm, slope.distance_mm, 3e-4);
+    const double rise_mm = distance.slope_from(point_W + 1e-7 * slope.gradient_W).distance_mm;
+    ASSERT_NEAR((rise_mm - slope.distance_mm) / 1e-7, slope.gradient_W.squaredNorm(), 1e-3);
+  }
+}
+
+TEST(StructureDistance, HasTheSlopeOfItsDifferencesFromASolid) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> share(-4, 4);
+  for (const StructureDistance& solid :
+       {StructureDistance(SphereShape{{0.5, 0, 0}, 2}), StructureDistance(BoxShape{{-1, -2, -1}, {1, 1, 2}}),
+        StructureDistance(CylinderShape{{0, 0, -1}, {1, 1, 2}, 1})}) {
+    for (int n = 0; n < 1000; ++n) {
+      const Vec3 point_W(share(random), share(random), share(random));
+      const DistanceSlope slope = solid.slope_from(point_W);
+      ASSERT_NEAR(slope.distance_mm, solid.from(point_W), 1e-9);
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 step = 1e-6 * Vec3::Unit(axis);
+        ASSERT_NEAR(slope.gradient_W[axis], (solid.from(point_W + step) - solid.from(point_W - step)) / 2e-6,
+                    1e-3);
+      }
+    }
+  }
+}
+
 TEST(StructureDistance, MeasuresSolidsExactly) {
   const StructureDistance sphere(SphereShape{{1, 2, 3}, 2});
   EXPECT_DOUBLE_EQ(sphere.from({6, 2, 3}), 3);
