@@ -63,6 +63,7 @@ CHECK
 
 # An exercise that has changed since is used, with a warning.
 cp tasks/hole.toml tasks/other.toml
+cp tasks/hole.toml tasks/good.toml
 echo '# later' >>tasks/hole.toml
 "$osteomill" debrief good.h5 --out good >/dev/null 2>error
 grep -q "tasks/hole.toml: is not the exercise as it was" error || fault "$(cat error)"
@@ -83,6 +84,14 @@ sed '5s/\[-2\.5/[90/g' tasks/hole.toml >tasks/far.toml
 refused "tasks/far.toml: line 4: the cylinder lies outside the scan" exercise tasks/far.toml --check
 sed 's/^title/titl/' tasks/hole.toml >tasks/typo.toml
 refused "tasks/typo.toml: line 1: an exercise has no titl; did you mean title[?]" exercise tasks/typo.toml --check
+
+# The picture of the start page, if there is OpenGL.
+if "$osteomill" exercise tasks/other.toml --picture none/hole.png --quiet >/dev/null 2>&1; then fault "a picture in no folder"; fi
+if "$osteomill" exercise tasks/good.toml --picture hole.png --quiet >said 2>error; then
+  [ "$(head -c 24 hole.png | tail -c 8 | od -An -tu1 | xargs)" = "0 0 1 44 0 0 0 240" ] || fault "the picture is not 300 x 240"
+else
+  grep -q OpenGL error || fault "$(cat error)"
+fi
 
 # A guard holds the burr off, replays to the bit with the exercise and not without, and is of one algorithm only.
 sed 's/^name = "pulp horn"/&\nguard_mm = 0.5/; s/^title = .*/title = "Guarded"/' tasks/hole.toml >tasks/guarded.toml

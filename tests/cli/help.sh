@@ -15,7 +15,7 @@ help=$("$osteomill" compare --help)
 for group in "Scan:" "Tool:" "Cutting:" "The hand and its device:" "Options:"; do
   grep -qx "$group" <<<"$help" || fault "compare --help has no group $group"
 done
-[ "$(sed -n '/^Tool:/,/^$/p' <<<"$help" | grep -c '^  --')" -eq 3 ] || fault "a tool has three sizes"
+[ "$(sed -n '/^Tool:/,/^$/p' <<<"$help" | grep -c '^  --')" -eq 4 ] || fault "a tool has a name and three sizes"
 sed -n '/^Tool:/,/^$/p' <<<"$help" | grep -q -- '--burr-radius mm .*\[1.5\]' || fault "neither unit nor default is told"
 cpu=$(taskset -cp $$ | sed 's/.*: //; s/[-,].*//')
 taskset -c "$cpu" "$osteomill" compare --help | sed -n '/--threads /,/\]/p' | grep -q '\[1\]$' || fault "one processor has more than one thread"
