@@ -35,9 +35,9 @@ void run_exercise(const ExerciseCommandOptions& options) {
   }
   if (options.file.empty()) throw CLI::RequiredError("file");
   if (!options.check && options.picture.empty()) throw CLI::RequiredError("--check or --picture");
-  if (!options.picture.empty()) output_path(options.picture);
   const auto [bone, placed] = load_exercise(options.file, {});
   if (!options.picture.empty()) {
+    output_path(options.picture);
     constexpr PixelSize kStartPage{300, 240};
     write_png(options.picture, exercise_picture(placed, bone.volume, kStartPage));
     fmt::print("{}\n", options.picture);

@@ -29,7 +29,7 @@ milling=made/line-proxy-milling.h5 holding=made/line-proxy-holding.h5
 for command in simulate compare live rates replay report info mesh save exercise debrief; do
   for option in $("$osteomill" $command --help | grep -oE '^  --[a-z-]+ (FILE|FOLDER)' | awk '{ print $1 }'); do
     case "$command $option" in
-      *" --labels" | *" --label-table" | *" --config" | *" --after" | *" --out" | *" --record" | *" --exercise") ;;
+      *" --labels" | *" --label-table" | *" --config" | *" --after" | *" --out" | *" --record" | *" --exercise" | *" --picture") ;;
       *) fault "$command $option: add it to this test" ;;
     esac
   done
@@ -67,6 +67,7 @@ kept "$holding ball.nhdr" a.csv replay "$holding" --out out/a.csv
 printf 'title = "t"\nscan = "ball.nhdr"\niso = 750\n[target]\nbox = { min = [-99, -99, -99], max = [99, 99, 99] }\n' >e.toml
 kept "poses.csv $scan e.toml" a.h5 replay poses.csv --exercise e.toml --record out/a.h5
 "$osteomill" replay poses.csv --exercise e.toml --record e.h5 --quiet >/dev/null
+kept "$scan e.toml" a.png exercise e.toml --picture out/a.png
 kept "e.h5 $scan e.toml" debrief.csv debrief e.h5 --out out
 kept "$milling $holding" report.html report "$milling" "$holding" --out out
 kept "$milling" line-proxy-milling.csv report "$milling" --csv --out out

@@ -8,6 +8,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/exercise/region_voxels.h"
 #include "osteomill/exercise/src/exercise_samples.h"
+#include "osteomill/recording/replay_recording.h"
 
 namespace osteomill {
 namespace {
@@ -48,6 +49,24 @@ TEST(PlaceExercise, FacesOutOfTheBoneAndColoursWhatTheTraineeIsShown) {
   EXPECT_EQ(name_at({0, 0, -1}), "target");
   EXPECT_EQ(name_at({0, 0, -5.5}), "nerve");
   EXPECT_EQ(name_at({0, 0, -3}), "");
+}
+
+TEST(PlaceExercise, GivesGuardsToTheBoneWithoutWhichARecordingDoesNotReplay) {
+  Volume bone = bone_below_zero(0.25);
+  const Volume plain = bone;
+  Exercise exercise = exercise_with_target(region_of({BoxShape{{3, 3, -2}, {5, 5, 0}}}));
+  exercise.no_go.push_back({"nerve", region_of({SphereShape{{0, 0, -1.5}, 0.5}}), 3, 0.5});
+  bone.set_no_go(place_exercise(exercise, bone).distances);
+  const Recording recording = record_poses(bone, way({0, 0, 2}, {0, 0, -2}, 0.004), 1);
+  EXPECT_NEAR(recording.records.back().no_go_distance_mm, 0.5, 0.05);
+  EXPECT_GT(recording.records.back().wrench.force_N.z(), 2);
+  EXPECT_FALSE(verify_recording(bone, recording, {}).difference);
+  try {
+    verify_recording(plain, recording, {});
+    FAIL() << "it replays without its structures";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("held the burr off 1 structures"), std::string::npos);
+  }
 }
 
 TEST(PlaceExercise, AllowsTheMarginAroundTheTargetAndNothingBeyond) {
