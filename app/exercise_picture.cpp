@@ -38,14 +38,6 @@ VoxelBox box_of(const VoxelSet& voxels) {
   return box;
 }
 
-// Returns the axis of W along which a direction leads, the vertical one for what is seen from above, as in
-// the window.
-Vec3 main_axis(const Vec3& direction_W) {
-  Eigen::Index axis = 2;
-  if (std::abs(direction_W.z()) <= 0.5) direction_W.head<2>().cwiseAbs().maxCoeff(&axis);
-  return std::copysign(1.0, direction_W[axis]) * Vec3::Unit(axis);
-}
-
 }  // namespace
 
 Image exercise_picture(const PlacedExercise& placed, const Volume& scan, const PixelSize& size) {
@@ -53,7 +45,7 @@ Image exercise_picture(const PlacedExercise& placed, const Volume& scan, const P
   const auto corners = corners_W(placed.scan, box_of(placed.target));
   const Vec3 middle_W = 0.5 * (corners.front() + corners.back());
   const double radius_mm = kAround * 0.5 * (corners.back() - corners.front()).norm();
-  const Vec3 outward_W = main_axis(placed.outward_W);
+  const Vec3& outward_W = placed.outward_W;
   const Vec3 up_W = std::abs(outward_W.z()) > 0.5 ? Vec3::UnitY() : Vec3::UnitZ();
   const Vec3 aside_W = up_W.cross(outward_W).normalized();
   const Vec3 front_W = aside_W.cross(outward_W);

@@ -32,6 +32,7 @@ VoxelSet within_margin(const VoxelSet& target, const GridGeometry& scan, double 
   return allowed;
 }
 
+// Walls of fissures tilt the sum, so an axis is taken: the vertical one for what is worked from above.
 Vec3 outward_of(const VoxelSet& target, const Volume& scan) {
   Vec3 sum_W = Vec3::Zero();
   target.for_each([&](const VoxelIndex& v) {
@@ -44,7 +45,10 @@ Vec3 outward_of(const VoxelSet& target, const Volume& scan) {
       }
     }
   });
-  return sum_W.norm() > 0 ? sum_W.normalized() : Vec3::UnitZ();
+  if (!(sum_W.norm() > 0)) return Vec3::UnitZ();
+  Eigen::Index axis = 2;
+  if (std::abs(sum_W.z()) <= 0.5 * sum_W.norm()) sum_W.head<2>().cwiseAbs().maxCoeff(&axis);
+  return std::copysign(1.0, sum_W[axis]) * Vec3::Unit(axis);
 }
 
 // One solid is measured exactly; all else, by its voxels.

@@ -35,6 +35,17 @@ TEST(PlaceExercise, TakesTheBoneOfTheTargetAndNotTheAirAboveIt) {
   EXPECT_NEAR(volume_mm3(bone, placed.target), std::numbers::pi * 4 * 3, 0.02 * std::numbers::pi * 12);
 }
 
+TEST(PlaceExercise, FacesUpFromAFissureOfWhichItHasOneWall) {
+  // A slit of 1 mm, 6 mm deep, beside which the target has a much wider wall than surface.
+  const auto below = plane(Vec3::Zero(), Vec3::UnitZ());
+  const Volume bone = shape_volume(centred_cube(64, 0.25), [&](const Vec3& p) {
+    return std::max(below(p), std::min({0.5 - std::abs(p.y()), p.z() + 6}));
+  });
+  const PlacedExercise placed =
+      place_exercise(exercise_with_target(region_of({BoxShape{{-3, -5, -3}, {3, -0.5, 0}}})), bone);
+  EXPECT_EQ(placed.outward_W, Vec3::UnitZ());
+}
+
 TEST(PlaceExercise, FacesOutOfTheBoneAndColoursWhatTheTraineeIsShown) {
   const Volume bone = bone_below_zero(0.25);
   Exercise exercise = exercise_with_target(region_of({BoxShape{{-2, -2, -2}, {2, 2, 0}}}));

@@ -28,7 +28,7 @@ struct PlacedExercise {
   GridGeometry scan;
   /// The bone to be removed.
   VoxelSet target;
-  /// The direction into which the target's surface faces, of length 1.
+  /// The axis of W, or its opposite, into which the target's surface faces.
   Vec3 outward_W = Vec3::UnitZ();
   /// Every voxel that may be removed: the target, and all within the margin around it.
   VoxelSet allowed;
