@@ -154,6 +154,7 @@ std::string base64(std::string_view bytes) {
 
 std::string html(const Section& section, int level) {
   std::string text;
+  if (!section.id.empty()) text += fmt::format("<div id=\"{}\">\n", html_escaped(section.id));
   if (!section.title.empty()) text += fmt::format("<h{0}>{1}</h{0}>\n", level, html_escaped(section.title));
   for (const std::string& notice : section.notices) text += in_tag("p class=\"notice\"", notice);
   for (const std::string& paragraph : section.paragraphs) text += in_tag("p", paragraph);
@@ -163,17 +164,25 @@ std::string html(const Section& section, int level) {
     text +=
         fmt::format("<pre>{}\n</pre>\n", html_escaped(fmt::format("{}", fmt::join(section.commands, "\n"))));
   for (const Section& part : section.parts) text += html(part, level + 1);
+  if (!section.id.empty()) text += "</div>\n";
   return text;
 }
 
 std::string html(const Page& page) {
   std::string body;
   for (const Section& section : page.sections) body += html(section);
+  if (!page.data.empty()) {
+    // In JSON, "<" only stands in texts; as it is, one of them could end the element.
+    body += "<script type=\"application/json\" id=\"debrief-data\">";
+    for (const char c : page.data) body += c == '<' ? "\\u003c" : std::string(1, c);
+    body += "</script>\n";
+  }
+  for (const std::string_view script : page.scripts) body += fmt::format("<script>{}</script>\n", script);
   return valid_utf8(fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
-      "<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n{2}</body></html>\n",
-      html_escaped(page.title), kStyle, body));
+      "<style>{1}{3}</style></head>\n<body>\n<h1>{0}</h1>\n{2}</body></html>\n",
+      html_escaped(page.title), kStyle, body, page.style));
 }
 
 std::filesystem::path write_page(const std::filesystem::path& out_dir, const std::string& name,

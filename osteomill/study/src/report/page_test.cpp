@@ -36,6 +36,21 @@ TEST(Html, ACellIsTextInPieces) {
       << page;
 }
 
+TEST(Html, ATextAmongThePagesDataCannotEndItsScript) {
+  const Page page{.title = "Task",
+                  .sections = {{.title = "Course", .id = "course"}},
+                  .style = ".x > .y {}",
+                  .scripts = {"go(1 < 2);"},
+                  .data = R"json({"name":"</script><script>alert(1)"})json"};
+  const std::string text = html(page);
+  EXPECT_NE(text.find(R"json({"name":"\u003c/script>\u003cscript>alert(1)"}</script>)json"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("<div id=\"course\">\n<h2>Course</h2>\n</div>"), std::string::npos) << text;
+  EXPECT_NE(text.find("<script>go(1 < 2);</script>"), std::string::npos) << text;
+  EXPECT_NE(text.find(".x > .y {}</style>"), std::string::npos) << text;
+}
+
 TEST(PlainText, HasItsColumnsBelowEachOther) {
   const Table table{{"a", "bb"}, {{"µm", "x\ny"}, {"long", Cell({{"1"}, {"2"}})}}};
   EXPECT_EQ(plain_text(table), "a     bb\nµm    x\n      y\nlong  12\n");

@@ -48,6 +48,8 @@ struct CaptionedFigure {
 /// A part of a Page, shown in the order of its fields; what is empty is not shown. All text is plain.
 struct Section {
   std::string title;
+  /// The element's name for a page's scripts; none if empty.
+  std::string id = {};
   /// Sentences that a reader must know before believing the rest.
   std::vector<std::string> notices;
   std::vector<std::string> paragraphs;
@@ -62,6 +64,12 @@ struct Section {
 struct Page {
   std::string title;
   std::vector<Section> sections;
+  /// The program's own rules and scripts, which are not escaped: further rules of the style sheet, and
+  /// scripts that run when all the rest is there.
+  std::string_view style = {};
+  std::vector<std::string_view> scripts = {};
+  /// JSON for the scripts, in the element `debrief-data`; it may hold any text.
+  std::string data = {};
 };
 
 /// Returns a section whose title is a heading of this level, 2 for the page's own sections. Throws InputError
