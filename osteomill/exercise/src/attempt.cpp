@@ -81,15 +81,15 @@ class StrokeFinder {
 
 // Returns the bone left over a structure, given the space that was open from outside before, and what milling
 // opened. Looks only about that.
-std::vector<double> thickness_over(const PlacedExercise& exercise, const VoxelSet& structure,
-                                   const VoxelSet& open_before, const VoxelSet& opened) {
+std::vector<ThicknessLeft> thickness_over(const PlacedExercise& exercise, const VoxelSet& structure,
+                                          const VoxelSet& open_before, const VoxelSet& opened) {
   const Vec3& spacing_mm = exercise.scan.spacing_mm;
   constexpr double kReach_mm = 8;
   const double voxel_mm = spacing_mm.minCoeff();
   const auto reach = static_cast<int>(std::ceil(kReach_mm / voxel_mm)) + 1;
   const VoxelBox near = structure.box().intersected(opened.box().grown(reach));
-  std::vector<double> left_mm;
-  if (opened.box().empty() || near.empty()) return left_mm;
+  std::vector<ThicknessLeft> left;
+  if (opened.box().empty() || near.empty()) return left;
   // Space that is open when the exercise begins is no work of the trainee's.
   const VoxelBox box = near.grown(reach).intersected(exercise.scan.all_voxels());
   const NearestVoxels before(open_before, box, spacing_mm), after(opened, box, spacing_mm);
@@ -103,49 +103,42 @@ std::vector<double> thickness_over(const PlacedExercise& exercise, const VoxelSe
     const Vec3 next = (Vec3(v.i, v.j, v.k) + way / way.cwiseAbs().maxCoeff()).array().round();
     const VoxelIndex beside{static_cast<int>(next.x()), static_cast<int>(next.y()),
                             static_cast<int>(next.z())};
-    if (!structure.contains(beside)) left_mm.push_back(std::max(0.0, now_mm - voxel_mm));
+    if (!structure.contains(beside)) left.push_back({v, std::max(0.0, now_mm - voxel_mm)});
   });
-  return left_mm;
+  return left;
 }
 
-// Notes for every voxel when it ceased to be bone, to a tenth of a second.
+// Notes for every voxel the tick in which it ceased to be bone.
 class RemovalTimes {
  public:
-  explicit RemovalTimes(const Volume& scan) : scan_(scan) {}
+  explicit RemovalTimes(const Volume& scan) : scan_(scan), seen_(scan.geometry().voxel_count()) {}
 
   void add(const Volume& bone, const VoxelBox& changed, double time_s) {
-    constexpr double kEvery_s = 0.1;
+    const std::array<int, 3>& dims = bone.geometry().dims;
     // A session may begin with bone that was put back.
     if (changed == bone.geometry().all_voxels())
-      std::erase_if(times_s_, [&](const auto& one) { return bone.is_bone(voxel(one.first)); });
-    if (!changed.empty()) {
-      changed_.include(changed.first);
-      changed_.include(changed.last);
-    }
-    time_s_ = time_s;
-    if (time_s - looked_s_ >= kEvery_s) look(bone);
-  }
-  // Looks through what has changed since it last looked.
-  void look(const Volume& bone) {
-    for_each(std::exchange(changed_, {}), [&](const VoxelIndex& v) {
-      if (scan_.is_bone(v) && !bone.is_bone(v))
-        times_s_.emplace(row_major(bone.geometry().dims, v.i, v.j, v.k), static_cast<float>(time_s_));
+      std::erase_if(times_s_,
+                    [&](const auto& one) { return !(seen_[one.first] = !is_bone(bone, one.first)); });
+    for_each(changed, [&](const VoxelIndex& v) {
+      if (bone.is_bone(v)) return;
+      const std::size_t voxel = row_major(dims, v.i, v.j, v.k);
+      if (seen_[voxel]) return;
+      seen_[voxel] = true;
+      if (scan_.is_bone(v)) times_s_.emplace(voxel, static_cast<float>(time_s));
     });
-    looked_s_ = time_s_;
   }
   std::unordered_map<std::size_t, float> take() { return std::move(times_s_); }
 
  private:
-  VoxelIndex voxel(std::size_t index) const {
-    const auto [i, j, k] = cell_at(scan_.geometry().dims, index);
-    return {i, j, k};
+  static bool is_bone(const Volume& bone, std::size_t voxel) {
+    const auto [i, j, k] = cell_at(bone.geometry().dims, voxel);
+    return bone.is_bone({i, j, k});
   }
 
   const Volume& scan_;
   std::unordered_map<std::size_t, float> times_s_;
-  VoxelBox changed_;
-  double time_s_ = 0;
-  double looked_s_ = -std::numeric_limits<double>::infinity();
+  // Voxels that were found to be no bone: most of those that change are.
+  std::vector<bool> seen_;
 };
 
 // Tells the ticks that cut whether their contact was seen. Each view is looked at once.
@@ -203,18 +196,18 @@ std::vector<AttemptTick> attempt_ticks(const Recording& recording) {
   return ticks;
 }
 
-std::vector<std::vector<double>> thickness_left_mm(const PlacedExercise& exercise, const Volume& before,
-                                                   const Volume& after, const VoxelSet& removed) {
-  std::vector<std::vector<double>> left_mm;
-  if (exercise.structures.empty()) return left_mm;
+std::vector<std::vector<ThicknessLeft>> thickness_left(const PlacedExercise& exercise, const Volume& before,
+                                                       const Volume& after, const VoxelSet& removed) {
+  std::vector<std::vector<ThicknessLeft>> left;
+  if (exercise.structures.empty()) return left;
   VoxelSet walls(exercise.scan.all_voxels());
   for (const PlacedStructure& structure : exercise.structures)
     structure.voxels.for_each([&](const VoxelIndex& v) { walls.insert(v); });
   const VoxelSet open_before = open_space(before, walls);
   const VoxelSet opened = opened_space(after, open_before, removed, walls);
   for (const PlacedStructure& structure : exercise.structures)
-    left_mm.push_back(thickness_over(exercise, structure.voxels, open_before, opened));
-  return left_mm;
+    left.push_back(thickness_over(exercise, structure.voxels, open_before, opened));
+  return left;
 }
 
 Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const Recording& recording) {
@@ -227,11 +220,10 @@ Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const R
     times.add(bone, change.voxels, ticks[n].time_s);
     seen.add(bone, recording.records[n], ticks[n]);
   });
-  times.look(after);
   VoxelSet removed = removed_voxels(scan, after);
   Attempt attempt{&exercise, &scan, std::move(after), std::move(removed), std::move(ticks),
                   {},        {},    times.take(),     recording.views};
-  attempt.thickness_left_mm = thickness_left_mm(exercise, scan, attempt.after, attempt.removed);
+  attempt.thickness_left = thickness_left(exercise, scan, attempt.after, attempt.removed);
   attempt.distances_mm.reserve(attempt.ticks.size() * exercise.structures.size());
   for (const AttemptTick& tick : attempt.ticks) {
     for (const auto& [distance, guard_mm] : *exercise.distances) {
@@ -267,6 +259,20 @@ std::vector<AttemptProgress> progress_of(const Attempt& attempt) {
                    outsides * exercise.scan.voxel_volume_mm3(), 200 * targets / (whole + removed)});
   }
   return way;
+}
+
+double step_done_s(const Attempt& attempt, std::size_t step) {
+  const VoxelSet& bone = attempt.exercise->steps[step];
+  std::vector<double> times_s;
+  bone.for_each([&](const VoxelIndex& v) {
+    if (const auto time_s = attempt.removed_at_s(v)) times_s.push_back(*time_s);
+  });
+  const double wanted =
+      attempt.exercise->exercise.steps[step].done_percent / 100 * static_cast<double>(bone.count());
+  const auto needed = static_cast<std::size_t>(std::ceil(std::max(wanted, 1.0)));
+  if (times_s.size() < needed) return std::numeric_limits<double>::quiet_NaN();
+  std::ranges::nth_element(times_s, times_s.begin() + static_cast<std::ptrdiff_t>(needed - 1));
+  return times_s[needed - 1];
 }
 
 bool is_hidden(const ViewSample& view, const Volume& bone, const Vec3& contact_W) {

@@ -13,6 +13,7 @@
 #include "osteomill/base/csv_field.h"
 #include "osteomill/base/distribution.h"
 #include "osteomill/base/work_progress.h"
+#include "osteomill/exercise/moments.h"
 #include "osteomill/exercise/region_voxels.h"
 
 #include "crown.h"
@@ -97,21 +98,17 @@ struct Contacts {
   double min_distance_mm = kNone;
 };
 
-template <typename Distance>
-Contacts contacts_at(const Attempt& attempt, const Distance& distance_mm) {
-  constexpr double kApart_s = 0.5;
+Contacts contacts_with(const Attempt& attempt, std::optional<std::size_t> structure) {
   Contacts found;
-  double last_s = -std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < attempt.ticks.size(); ++n) {
-    const AttemptTick& tick = attempt.ticks[n];
-    const double here_mm = distance_mm(n);
-    found.min_distance_mm = std::fmin(found.min_distance_mm, here_mm);
-    if (!tick.spindle_on || !(here_mm <= 0)) continue;
-    if (tick.time_s - last_s >= kApart_s) ++found.count;
-    last_s = tick.time_s;
-    found.time_s += tick.dt_s;
-    found.first_s = std::fmin(found.first_s, tick.time_s);
-    found.force_max_N = std::fmax(found.force_max_N, tick.force_N);
+    found.min_distance_mm = std::fmin(
+        found.min_distance_mm, structure ? attempt.distance_mm(n, *structure) : attempt.distance_mm(n));
+  }
+  for (const Moment& contact : contacts_of(attempt, structure)) {
+    ++found.count;
+    found.time_s += contact.time_s;
+    found.first_s = std::fmin(found.first_s, attempt.ticks[contact.first_tick].time_s);
+    found.force_max_N = std::fmax(found.force_max_N, contact.force_max_N);
   }
   return found;
 }
@@ -139,11 +136,11 @@ Measure of_contact(std::string name, std::string unit, std::string formula, std:
   Measure measure{std::move(name), std::move(unit), std::move(formula), std::move(source), {}};
   measure.value = [part](const Attempt& attempt) {
     if (attempt.exercise->structures.empty()) return kNone;
-    return contacts_at(attempt, [&](std::size_t tick) { return attempt.distance_mm(tick); }).*part;
+    return contacts_with(attempt, std::nullopt).*part;
   };
   measure.each = Measure::Each::structure;
   measure.value_at = [part](const Attempt& attempt, std::size_t structure) {
-    return contacts_at(attempt, [&](std::size_t tick) { return attempt.distance_mm(tick, structure); }).*part;
+    return contacts_with(attempt, structure).*part;
   };
   return measure;
 }
@@ -158,12 +155,18 @@ Measure of_structure(std::string name, std::string unit, std::string formula, st
   return measure;
 }
 
+double thickness_left_mm(const Attempt& attempt, std::size_t structure, double part) {
+  std::vector<double> left_mm;
+  for (const ThicknessLeft& place : attempt.thickness_left[structure]) left_mm.push_back(place.left_mm);
+  return share(std::move(left_mm), part);
+}
+
 double thickness_left_min_mm(const Attempt& attempt, std::size_t structure) {
-  return share(attempt.thickness_left_mm[structure], 0);
+  return thickness_left_mm(attempt, structure, 0);
 }
 
 double thickness_left_median_mm(const Attempt& attempt, std::size_t structure) {
-  return share(attempt.thickness_left_mm[structure], 0.5);
+  return thickness_left_mm(attempt, structure, 0.5);
 }
 
 // Time, strokes and force.
@@ -233,21 +236,6 @@ double removal_rate_mm3_s(const Attempt& attempt, const Zone* zone) {
 }
 
 // Time that the steps took, and how the work went on.
-
-// Returns when a step was done; not a number if it never was.
-double step_done_s(const Attempt& attempt, std::size_t step) {
-  const VoxelSet& bone = attempt.exercise->steps[step];
-  std::vector<double> times_s;
-  bone.for_each([&](const VoxelIndex& v) {
-    if (const auto time_s = attempt.removed_at_s(v)) times_s.push_back(*time_s);
-  });
-  const double wanted =
-      attempt.exercise->exercise.steps[step].done_percent / 100 * static_cast<double>(bone.count());
-  const auto needed = static_cast<std::size_t>(std::ceil(std::max(wanted, 1.0)));
-  if (times_s.size() < needed) return kNone;
-  std::ranges::nth_element(times_s, times_s.begin() + static_cast<std::ptrdiff_t>(needed - 1));
-  return times_s[needed - 1];
-}
 
 // From when all steps before it were done, or from the beginning.
 double step_s(const Attempt& attempt, std::size_t step) {
@@ -512,15 +500,17 @@ void write_progress(const std::filesystem::path& path, const Attempt& attempt) {
   });
 }
 
+std::string csv_row(const MeasuredValue& row) {
+  const std::string met = row.is_met ? *row.is_met ? "yes" : "no" : "";
+  return fmt::format("{},{},{},{},{},{}", csv_field(row.measure),
+                     row.value ? fmt::format("{}", *row.value) : "", row.unit, row.limit, met,
+                     csv_field(row.source));
+}
+
 void write_measured(const std::filesystem::path& path, const std::vector<MeasuredValue>& rows) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << "measure,value,unit,limit,met,source\n";
-    for (const MeasuredValue& row : rows) {
-      const std::string met = row.is_met ? *row.is_met ? "yes" : "no" : "";
-      out << fmt::format("{},{},{},{},{},{}\n", csv_field(row.measure),
-                         row.value ? fmt::format("{}", *row.value) : "", row.unit, row.limit, met,
-                         csv_field(row.source));
-    }
+    for (const MeasuredValue& row : rows) out << csv_row(row) << "\n";
   });
 }
 

@@ -28,8 +28,8 @@ Attempt attempt_removing(const PlacedExercise& placed, const Volume& scan, const
   Volume after = scan;
   region_voxels(region, scan, "task.toml").for_each([&](const VoxelIndex& v) { after.lower_density(v, 0); });
   VoxelSet removed = removed_voxels(scan, after);
-  std::vector<std::vector<double>> left_mm = thickness_left_mm(placed, scan, after, removed);
-  return {&placed, &scan, std::move(after), std::move(removed), {}, {}, std::move(left_mm), {}, {}};
+  auto left = thickness_left(placed, scan, after, removed);
+  return {&placed, &scan, std::move(after), std::move(removed), {}, {}, std::move(left), {}, {}};
 }
 
 class MeasuresOfABox : public ::testing::Test {

@@ -30,6 +30,13 @@ struct AttemptTick {
   bool is_cutting() const { return removed_mm3 > 0; }
 };
 
+/// The bone that milling left over a place of a structure's surface.
+struct ThicknessLeft {
+  /// The structure's voxel there.
+  VoxelIndex place;
+  double left_mm = 0;
+};
+
 /// A recorded session, held against its exercise.
 struct Attempt {
   /// Stays the caller's.
@@ -41,8 +48,8 @@ struct Attempt {
   std::vector<AttemptTick> ticks;
   /// The distance of the burr's surface from each structure, mm, structure by structure in each tick.
   std::vector<double> distances_mm;
-  /// By structure (`thickness_left_mm`).
-  std::vector<std::vector<double>> thickness_left_mm;
+  /// By structure (`osteomill::thickness_left`).
+  std::vector<std::vector<ThicknessLeft>> thickness_left;
   /// The time at which each voxel of `removed` went, by its index in the scan.
   std::unordered_map<std::size_t, float> removal_times_s;
   std::vector<ViewSample> views;
@@ -64,11 +71,11 @@ struct Attempt {
 /// Returns the ticks of a recording.
 std::vector<AttemptTick> attempt_ticks(const Recording& recording);
 
-/// Returns for each structure the bone that milling left over it, mm, at each voxel of its surface over which
+/// Returns for each structure the bone that milling left over it at each voxel of its surface over which
 /// it became thinner by a voxel or more: from face to face, between the structure and the space that is open
 /// from outside, at most 8 mm. `removed` is the bone that is gone. Long work.
-std::vector<std::vector<double>> thickness_left_mm(const PlacedExercise& exercise, const Volume& before,
-                                                   const Volume& after, const VoxelSet& removed);
+std::vector<std::vector<ThicknessLeft>> thickness_left(const PlacedExercise& exercise, const Volume& before,
+                                                       const Volume& after, const VoxelSet& removed);
 
 /// Runs the recording's milling again on the exercise's scan. Throws InputError, naming the recording, as
 /// `repeat_milling` does. `exercise` and `scan` outlive the attempt. Long work.
@@ -83,6 +90,9 @@ struct AttemptProgress {
 };
 /// Returns how the bone went that is gone at the end, in at most 200 equal steps of time; none without ticks.
 std::vector<AttemptProgress> progress_of(const Attempt& attempt);
+
+/// Returns when a step of the exercise was done; not a number if it never was.
+double step_done_s(const Attempt& attempt, std::size_t step);
 
 /// Returns whether the point where a burr presses is hidden in a view: by bone that is not cut away from the
 /// view, or because it lies outside of the picture.

@@ -62,6 +62,9 @@ struct MeasuredValue {
 /// item that limits it.
 std::vector<MeasuredValue> measure_attempt(const Attempt& attempt);
 
+/// Returns a row's values as CSV, in the order of `write_measured`.
+std::string csv_row(const MeasuredValue& row);
+
 /// Writes the rows as CSV with the columns measure,value,unit,limit,met,source. Throws InputError, naming the
 /// file, if it cannot be written.
 void write_measured(const std::filesystem::path& path, const std::vector<MeasuredValue>& rows);
