@@ -5,6 +5,7 @@
 set -euo pipefail
 osteomill=$1 exercises=$2
 poses=$(dirname "$(readlink -f "$0")")/exercise_poses.py
+page=$(dirname "$(readlink -f "$0")")/debrief_page.py
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
@@ -17,6 +18,7 @@ work() {
   /usr/bin/python3 "$poses" ${@:4} >"$1.csv"
   "$osteomill" replay "$1.csv" --exercise "$exercises/$2.toml" $3 --record "$1.h5" --quiet >/dev/null 2>said || { cat said; fault "$1"; }
   "$osteomill" debrief "$1.h5" --out "$1" --quiet >/dev/null
+  /usr/bin/python3 "$page" "$1" || fault "$1"
   target=$(value "$1" target_removed_percent) outside=$(value "$1" removed_outside_percent)
   contacts=$(value "$1" no_go_contacts) first=$(value "$1" no_go_first_contact_s)
   echo "$1: target $target %, outside $outside %, contacts $contacts, first ${first:--} s"
@@ -30,14 +32,16 @@ much() { work "$@"; holds "$outside >= 15" || fault "$1"; }
 through() {
   work "${@:4}"
   "$osteomill" replay "$4.h5" --out "$4.log" --quiet >/dev/null
-  read -r tool_s aside stretched_s < <(awk -F, -v z="$1" -v speed="$3" 'NR == 1 { for (n = 1; n <= NF; ++n) c[$n] = n; next }
+  read -r tool_s aside stretched_s x y < <(awk -F, -v z="$1" -v speed="$3" 'NR == 1 { for (n = 1; n <= NF; ++n) c[$n] = n; next }
     NR == 2 { x = $c["device_x_mm"]; y = $c["device_y_mm"] }
     $c["tool_z_mm"] <= z { dx = $c["tool_x_mm"] - x; dy = $c["tool_y_mm"] - y; dz = $c["tool_z_mm"] - z
-      print $c["time_s"], sqrt(dx * dx + dy * dy + dz * dz), $c["force_z_N"] / 2 / speed; exit }' "$4.log")
+      print $c["time_s"], sqrt(dx * dx + dy * dy + dz * dz), $c["force_z_N"] / 2 / speed, x, y; exit }' "$4.log")
   echo "  the tool at $tool_s s, $aside mm from the place; the hand at $2 s, and ${stretched_s} s for the coupling"
   holds "$contacts >= 1 && ($first - $tool_s) ^ 2 <= 0.00101 ^ 2 && $aside <= 0.1" || fault "$4"
   holds "$first - $2 - $stretched_s >= -0.001 && $first - $2 - $stretched_s <= 0.002" || fault "$4"
   [ -n "$(value "$4" no_go_force_max_N)" ] || fault "$4"
+  structure=$(awk -F'[.,]' '$1 == "no_go_contacts" && $3 > 0 { print $2 }' "$4/debrief.csv" | tail -1)
+  /usr/bin/python3 "$page" "$4" "$structure" "$tool_s" "$x" "$y" "$1" || fault "$4"
 }
 
 for exercise in "$exercises"/*.toml; do "$osteomill" exercise "$exercise" --check --quiet >/dev/null || fault "$exercise"; done

@@ -350,6 +350,9 @@ Recording read_chain(const fs::path& path, int max_before) {
     whole.records.push_back(record);
   }
   whole.views.insert(whole.views.end(), recording.views.begin(), recording.views.end());
+  // The original of a branch is an attempt of its own.
+  const bool is_branch = recording.sessions.front().start.continues_after > 0;
+  whole.continues = is_branch ? fs::path() : whole.path;
   whole.path = path;
   whole.pictures = std::move(recording.pictures);
   whole.complete = whole.complete && recording.complete;

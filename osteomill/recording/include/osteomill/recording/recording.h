@@ -62,6 +62,9 @@ struct BoneHash {
 struct Recording {
   /// The file it was read from; errors name it.
   std::filesystem::path path;
+  /// The file of the recording that it continues from its end, if that was read with it
+  /// (read_recording_chain).
+  std::filesystem::path continues;
   /// The description of the first session.
   RunDescription description;
   /// The sessions in turn, from the first record on. Read records carry the session's place here as

@@ -1,0 +1,207 @@
+#include "debrief/course.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/run_program.h"
+#include "osteomill/exercise/moments.h"
+
+#include "debrief/bodies.h"
+
+namespace osteomill {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+json numbers_of(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+// Columns of samples, each by its name.
+class Columns {
+ public:
+  void add(const char* name, std::initializer_list<double> numbers) {
+    std::vector<float>& column = columns_[name];
+    for (const double number : numbers) column.push_back(static_cast<float>(number));
+  }
+  json packed_columns() const {
+    json all;
+    for (const auto& [name, column] : columns_) all[name] = packed(column);
+    return all;
+  }
+
+ private:
+  std::map<std::string, std::vector<float>> columns_;
+};
+
+// Returns for each sample its last tick: 30 a second, fewer in long sessions.
+std::vector<std::size_t> sampled_ticks(const std::vector<AttemptTick>& ticks) {
+  constexpr double kMost = 6000, kEvery_s = 1.0 / 30;
+  std::vector<std::size_t> sampled;
+  if (ticks.empty()) return sampled;
+  const double every_s = std::max(kEvery_s, (ticks.back().time_s - ticks.front().time_s) / kMost);
+  for (std::size_t n = 0; n < ticks.size(); ++n) {
+    if (sampled.empty() || n + 1 == ticks.size() || ticks[n].time_s - ticks[sampled.back()].time_s >= every_s)
+      sampled.push_back(n);
+  }
+  return sampled;
+}
+
+// The greatest force, the least distance and the bone removed in each sample's ticks, and the tool at its
+// end.
+json samples_of(const Attempt& attempt, const Recording& recording, const std::vector<std::size_t>& sampled) {
+  Columns samples;
+  std::size_t n = 0;
+  for (const std::size_t last : sampled) {
+    double force_N = 0, distance_mm = kNoNumber, removed_mm3 = 0;
+    for (; n <= last; ++n) {
+      force_N = std::max(force_N, attempt.ticks[n].force_N);
+      distance_mm = std::fmin(distance_mm, attempt.distance_mm(n));
+      removed_mm3 += attempt.ticks[n].removed_mm3;
+    }
+    const AttemptTick& tick = attempt.ticks[last];
+    const Vec3 place_W = tick.is_placed ? tick.burr_W : Vec3::Constant(kNoNumber);
+    const Vec3 shaft_W = recording.records[last].X_WT.orientation * Vec3::UnitZ();
+    samples.add("time", {tick.time_s});
+    samples.add("place", {place_W.x(), place_W.y(), place_W.z()});
+    samples.add("shaft", {shaft_W.x(), shaft_W.y(), shaft_W.z()});
+    samples.add("radius", {tick.burr_radius_mm});
+    samples.add("force", {force_N});
+    samples.add("distance", {distance_mm});
+    samples.add("removed", {removed_mm3});
+  }
+  return samples.packed_columns();
+}
+
+// The view that the trainee had at each sample, not numbers before the first.
+json views_of(const Attempt& attempt, const std::vector<std::size_t>& sampled) {
+  Columns columns;
+  auto next = attempt.views.begin();
+  for (const std::size_t tick : sampled) {
+    while (next != attempt.views.end() && next->time_s <= attempt.ticks[tick].time_s) ++next;
+    ViewSample view;
+    view.X_WC.position_mm = Vec3::Constant(kNoNumber);
+    if (next != attempt.views.begin()) view = *std::prev(next);
+    const Vec3& eye_W = view.X_WC.position_mm;
+    const Quat& turn = view.X_WC.orientation;
+    columns.add("eye", {eye_W.x(), eye_W.y(), eye_W.z()});
+    columns.add("turn", {turn.x(), turn.y(), turn.z(), turn.w()});
+    constexpr double kDegrees = 57.29577951308232;
+    columns.add("fov", {kDegrees * view.field_of_view_rad});
+  }
+  return columns.packed_columns();
+}
+
+// The burrs in turn: the tick from which on each was used, and its name.
+std::vector<std::pair<std::size_t, std::string>> burrs_of(const Recording& recording) {
+  std::vector<std::pair<std::size_t, std::string>> burrs;
+  for (const RecordedSession& session : recording.sessions) {
+    const SessionSettings settings = session_settings(session.start.run, recording.path);
+    const std::string name =
+        fmt::format("{} burr of {:g} mm", settings.setup.burr == BurrEdge::diamond ? "diamond" : "round",
+                    2 * session.start.run.tool.burr_radius_mm);
+    if (burrs.empty() || burrs.back().second != name) burrs.emplace_back(session.first, name);
+  }
+  return burrs;
+}
+
+std::string command_at(const std::string& recording_name, double time_s) {
+  return fmt::format("osteomill simulate --from {} --at {:.3f}", quoted(recording_name), time_s);
+}
+
+// Returns the moments that a page has room for: all contacts, and of the removals the largest.
+std::vector<Moment> shown_moments(const Attempt& attempt) {
+  constexpr std::size_t kMost = 500;
+  std::vector<Moment> moments = moments_of(attempt);
+  if (moments.size() <= kMost) return moments;
+  std::ranges::stable_sort(moments, std::ranges::greater(), [](const Moment& one) {
+    return one.kind == Moment::Kind::contact ? std::numeric_limits<double>::infinity() : one.removed_mm3;
+  });
+  moments.resize(kMost);
+  std::ranges::stable_sort(moments, {}, &Moment::first_tick);
+  return moments;
+}
+
+json mark_of(const Moment& moment, const Attempt& attempt, const std::string& burr,
+             const std::string& recording_name) {
+  const AttemptTick& tick = attempt.ticks[moment.first_tick];
+  const bool is_contact = moment.kind == Moment::Kind::contact;
+  const std::vector<PlacedStructure>& structures = attempt.exercise->structures;
+  std::size_t nearest = moment.structure;
+  if (!is_contact)
+    for (std::size_t n = 0; n < structures.size(); ++n)
+      if (attempt.distance_mm(moment.first_tick, n) < attempt.distance_mm(moment.first_tick, nearest))
+        nearest = n;
+  json facts = json::array();
+  facts.push_back({"when", fmt::format("{:.3f} s", tick.time_s)});
+  facts.push_back({"burr", burr});
+  facts.push_back({"force", fmt::format("{:.2f} N, at most {:.2f} N", tick.force_N, moment.force_max_N)});
+  if (!structures.empty())
+    facts.push_back(
+        {"distance", fmt::format("{:.2f} mm from {}", attempt.distance_mm(moment.first_tick, nearest),
+                                 structures[nearest].name)});
+  facts.push_back({"speed", fmt::format("{:.1f} mm/s", burr_speed_mm_s(attempt, moment.first_tick))});
+  facts.push_back({"lasted", fmt::format("{:.3f} s", moment.time_s)});
+  if (!is_contact) facts.push_back({"removed outside", fmt::format("{:.3g} mm³", moment.removed_mm3)});
+  const std::string what = is_contact
+                               ? "contact with " + structures[moment.structure].name
+                               : fmt::format("{:.2g} mm³ removed outside the target", moment.removed_mm3);
+  return {{"kind", is_contact ? "contact" : "outside"},
+          {"time", tick.time_s},
+          {"place", numbers_of(tick.burr_W)},
+          {"title", fmt::format("{:.2f} s: {}", tick.time_s, what)},
+          {"facts", std::move(facts)},
+          {"command", command_at(recording_name, tick.time_s)}};
+}
+
+}  // namespace
+
+json curve_of(const std::vector<AttemptProgress>& progress) {
+  json time = json::array(), target = json::array(), outside = json::array();
+  for (const AttemptProgress& at : progress) {
+    time.push_back(at.time_s);
+    target.push_back(at.target_removed_percent);
+    outside.push_back(at.removed_outside_mm3);
+  }
+  return {{"time", std::move(time)}, {"target", std::move(target)}, {"outside", std::move(outside)}};
+}
+
+void put_course(json& data, const Attempt& attempt, const Recording& recording,
+                const std::string& recording_name) {
+  const PlacedExercise& exercise = *attempt.exercise;
+  const std::vector<std::size_t> sampled = sampled_ticks(attempt.ticks);
+  data["samples"] = samples_of(attempt, recording, sampled);
+  if (!attempt.views.empty()) data["views"] = views_of(attempt, sampled);
+  data["progress"] = curve_of(progress_of(attempt));
+  data["structures"] = exercise.structures.size();
+  data["warn_mm"] = 0;
+  for (const PlacedStructure& structure : exercise.structures)
+    data["warn_mm"] = std::max(data["warn_mm"].get<double>(), structure.warn_mm);
+  data["steps"] = data["burrs"] = data["marks"] = json::array();
+  for (std::size_t n = 0; n < exercise.steps.size(); ++n) {
+    const double done_s = step_done_s(attempt, n);
+    data["steps"].push_back({{"done_s", std::isnan(done_s) ? json() : json(done_s)}});
+  }
+  const auto burrs = burrs_of(recording);
+  for (const auto& [tick, name] : burrs)
+    if (tick < attempt.ticks.size())
+      data["burrs"].push_back({{"time", attempt.ticks[tick].time_s}, {"text", name}});
+  for (const Moment& moment : shown_moments(attempt)) {
+    const auto later =
+        std::ranges::upper_bound(burrs, moment.first_tick, {}, &std::pair<std::size_t, std::string>::first);
+    data["marks"].push_back(mark_of(moment, attempt, std::prev(later)->second, recording_name));
+  }
+}
+
+}  // namespace osteomill
