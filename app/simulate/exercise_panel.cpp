@@ -179,7 +179,10 @@ void draw_results(ViewState& view, Simulation& simulation, const FilesPanel& fil
     draw_rows("##measures", work.results(), false);
     ImGui::EndChild();
   }
-  ImGui::TextWrapped("%s", (work.folder() / "debrief.csv").string().c_str());
+  ImGui::TextWrapped("%s", (work.folder() / "debrief.html").string().c_str());
+  if (ui::button("Open page")) view.dialogues.run_reporting_errors([&] { work.open_page(); });
+  ui::tooltip("Shows bone, course and every error in the browser; nothing leaves the machine");
+  ImGui::SameLine();
   if (ui::button("Back to the bone")) work.close_results();
   ImGui::SameLine();
   if (ui::button("Try again")) view.exercise_requested = work.recorded().file;

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/run_program.h"
 #include "osteomill/base/work_progress.h"
+#include "osteomill/exercise/debriefing.h"
 
 #include "app/simulate/scene_of.h"
 
@@ -95,14 +97,20 @@ void ExerciseWork::measure(const std::filesystem::path& recording, const std::fi
     const WorkProgress watched([this](double) {
       if (is_given_up_) throw WorkStopped();
     });
-    const Attempt attempt = make_attempt(*placed, *scan, read_recording(recording));
-    std::vector<MeasuredValue> rows = measure_attempt(attempt);
-    write_folder_atomically(folder, [&](const std::filesystem::path& beside) {
-      write_measured(beside / "debrief.csv", rows);
-      write_progress(beside / "progress.csv", attempt);
-    });
-    return rows;
+    const Recording recorded = read_recording(recording);
+    const Attempt attempt = make_attempt(*placed, *scan, recorded);
+    const DebriefedAttempt own = debriefed(attempt, recorded);
+    write_debriefing(folder, attempt, recorded, own, {.experts = expert_attempts(*placed, *scan)});
+    return own.rows;
   });
+}
+
+void ExerciseWork::open_page() const {
+  // The browser outlives the window, and is not waited for.
+  const std::string open = "command -v xdg-open >/dev/null && exec setsid -f xdg-open \"$1\" >/dev/null 2>&1";
+  const std::string page = (folder_ / "debrief.html").string();
+  if (run_program({"sh", "-c", open, "sh", page}).exit_code != 0)
+    throw InputError(page, "cannot be opened without xdg-open (package xdg-utils)");
 }
 
 void ExerciseWork::take_result() {

@@ -76,6 +76,8 @@ class ExerciseWork {
   const std::vector<MeasuredValue>& results() const { return results_; }
   /// Returns the folder of the results.
   const std::filesystem::path& folder() const { return folder_; }
+  /// Opens the page of the results in the desktop's browser. Throws InputError if there is no way to.
+  void open_page() const;
   /// Forgets the results: the trainee goes on.
   void close_results() { results_.clear(); }
 

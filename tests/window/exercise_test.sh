@@ -12,6 +12,11 @@ cd "$folder"
 export XDG_STATE_HOME=$folder/state
 mkdir -p state/osteomill
 touch state/osteomill/help-seen
+# The desktop's browser: notes what it is to open.
+mkdir bin
+printf '#!/bin/sh\necho "$1" >%s/opened\n' "$folder" >bin/xdg-open
+chmod +x bin/xdg-open
+export PATH=$folder/bin:$PATH
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
@@ -30,6 +35,7 @@ glide $middle $target 0.2 ;; key b ;; settle ;; key t ;; wheel 30 1 ;; key space
 key space ;; key t ;; wait 0.3 ;; state milled ;; screenshot milled.png
 say finished ;; await finished ;; settle ;; wait 0.3 ;; state results ;; screenshot results.png
 click All measures ;; wait 0.2 ;; screenshot measures.png
+click Open page ;; wait 0.5
 click Back to the bone ;; wait 0.2 ;; state back ;; click Work on ;; settle ;; wait 0.3 ;; state again
 click Bone ;; click Algorithm ;; click Tool ;; click View ;; click Stop recording ;; settle ;; wait 0.3 ;; state stopped ;; click Try again ;; wait 0.2 ;; settle ;; click Discard ;; wait 1 ;; settle ;; wait 0.5 ;; state anew
 click Finish ;; settle ;; wait 0.3 ;; click Start page ;; wait 0.5 ;; screenshot start-again.png
@@ -59,7 +65,7 @@ END
 
 # work SIZE X: where the third picture is.
 work() {
-  rm -rf out said chosen hidden shown finished
+  rm -rf out opened said chosen hidden shown finished
   touch said
   actions "${1%x*}" "${1#*x}" >actions
   xvfb-run -a -s "-screen 0 $1x24" timeout 280 bash hands "$driver" "$2" || fail "exit code $?"
@@ -76,6 +82,8 @@ work() {
   [ "$(value results results)" -gt 40 ] && is results recording false
   [ "$(value stopped results)" -gt 40 ] && is stopped recording false
   is back results 0; is again recording true; is anew step_percent 0.0; is tooth scan "built-in tooth"
+  [ "$(cat opened)" = "$(value results debrief)/debrief.html" ] && [ -s "$(cat opened)" ] || fail "the page was not opened"
+  grep -q 'id="debrief-data"' "$(cat opened)" || fail "the page is empty"
   local debrief recording
   debrief=$(value results debrief)/debrief.csv
   recording=$(ls out/*-exercise.h5 | head -1)
