@@ -41,7 +41,7 @@ constexpr const char* kConventions =
     "along the shaft to the hand. X_WT is T's pose in W; X_WD the device's, as a tool pose. Quaternions are "
     "w, x, y, z. Wrenches act on the hand, in W's axes, about the burr's centre. Voxel (i, j, k) lies at "
     "origin_mm + i spacing_mm[0] axis_i + j spacing_mm[1] axis_j + k spacing_mm[2] axis_k. osteomill: "
-    "docs/formats.md.";
+    "docs/recordings.md.";
 
 // "0 none, 1 force clamped, ..."
 std::string codes_of(const FieldDescription& column) {

@@ -17,7 +17,7 @@ namespace osteomill {
 inline constexpr std::uint64_t kRecordingVersion = 6;
 inline constexpr std::uint64_t kPreviousRecordingVersion = 5;
 
-/// A recording being written, from one thread at a time; docs/formats.md describes it. Every failure is an
+/// A recording being written, from one thread at a time; docs/recordings.md describes it. Every failure is an
 /// InputError that names `path`; after one the file is closed with what it holds. Room on the disk is taken
 /// before anything is written: a full disk ends a recording and spoils nothing of it.
 class RecordingFile {
