@@ -23,6 +23,7 @@ std::vector<std::string> words_for(const CLI::Option& option) {
   if (option.get_type_name() == "X,Y,Z") return {name, "0.5,0,20"};
   if (option.get_type_name() == "SETTING") return {name, "point-shell.damping-time=0.002"};
   if (name == "--chip-exponent") return {name, "0.5"};
+  if (name == "--burr-name") return {name, "diamond-2"};
   return {name, name == "--push" ? "2.5" : "4"};
 }
 
