@@ -177,6 +177,7 @@ click surgical ;; settle ;; state surgical
 click diamond ;; settle ;; state diamond ;; click cutting ;; settle ;; state cutting
 drag wear 40 ;; settle ;; state worn
 click drag ;; settle ;; state no-drag
+click knock ;; settle ;; state knock
 screenshot controls-6-drive.png
 click constant-energy ;; settle ;; state constant ;; click chips ;; settle ;; state chips
 click none ;; settle ;; state no-drive
@@ -213,7 +214,7 @@ is drives handpiece 0; is turbine handpiece 1; is electric handpiece 2; is surgi
 same rpm turbine rpm
 is drives burr 0; is diamond burr 1; is cutting burr 0
 is cutting wear 0; more cutting worn wear
-is worn drag 1; is no-drag drag 0
+is worn drag 1; is no-drag drag 0; is no-drag contact-transient 0; is knock contact-transient 1
 is named burr_mm 0.70; is named shaft_mm 0.42; is named burr 1; is named-again burr_mm 1.50; is named-again burr 0
 is no-drag law 1; is constant law 0; is chips law 1
 is no-vibration cutting_reaction true; is no-pull cutting_reaction false

@@ -54,7 +54,7 @@ void add_setup(Lines& lines, const MillingSetup& setup) {
   lines.add("burr_mm", fmt::format("{:.2f}", setup.tool.burr_radius_mm));
   lines.add("shaft_mm", fmt::format("{:.2f}", setup.tool.shaft_radius_mm));
   lines.add("rpm", fmt::format("{:.0f}", setup.cutting.spindle_speed_rpm));
-  for (const char* option : {"handpiece", "law", "burr", "wear", "drag"})
+  for (const char* option : {"handpiece", "law", "burr", "wear", "drag", "contact-transient"})
     lines.add(option, field_of_option(fields_of<MillingSetup>(), option)->get(setup));
   lines.add("vibration", setup.vibration.on);
   lines.add("cutting_reaction", setup.cutting_reaction);
