@@ -21,8 +21,8 @@ template <>
 const std::vector<Field<TickRecord>>& fields_of<TickRecord>();
 
 /// Writes the CSV log: a header and a row a tick, of the columns that have kInLog, in their order
-/// (docs/recordings.md). Numbers are the shortest that read back to the same double, with a point whatever the
-/// locale. Appears whole or not at all; throws InputError, naming the file, if it cannot be written.
+/// (docs/recordings.md). Numbers are the shortest that read back to the same double, with a point whatever
+/// the locale. Appears whole or not at all; throws InputError, naming the file, if it cannot be written.
 void write_csv(const std::filesystem::path& path, std::span<const TickRecord> records);
 
 }  // namespace osteomill
