@@ -61,8 +61,12 @@ std::vector<fs::path> recordings_in(const std::vector<std::string>& named) {
       continue;
     }
     const std::size_t before = paths.size();
-    for (const fs::directory_entry& entry : fs::directory_iterator(path))
-      if (entry.path().extension() == ".h5") paths.push_back(entry.path());
+    for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+      // Others are being written, or were when their program ended.
+      const std::string name = entry.path().filename().string();
+      if (name.ends_with(".h5") && !name.ends_with(".part.h5") && !name.starts_with("."))
+        paths.push_back(entry.path());
+    }
     if (paths.size() == before) throw InputError(path.string(), "holds no recordings (.h5)");
     std::sort(paths.begin() + static_cast<std::ptrdiff_t>(before), paths.end());
   }

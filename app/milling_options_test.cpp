@@ -1,13 +1,18 @@
 #include "app/milling_options.h"
 
+#include <filesystem>
+#include <fstream>
+
 #include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
 #include "osteomill/recording/run_description.h"
 #include "osteomill/study/trial_plan.h"
 
+#include "app/config_file.h"
 #include "app/trial_options.h"
 #include "tests/shapes.h"
+#include "tests/support/recording_samples.h"
 
 namespace osteomill::app {
 namespace {
@@ -83,6 +88,19 @@ TEST(MillingOptions, OptionsOfConstantEnergyChooseItUnlessTheLawIsNamed) {
   EXPECT_EQ(law_after({"--cutting-energy", "700", "--law", "constant-energy"}), CuttingLaw::constant_energy);
   EXPECT_THROW(law_after({"--law", "chips", "--removal-rate", "3"}), CLI::ValidationError);
   EXPECT_THROW(law_after({"--law", "chip"}), CLI::ValidationError);
+}
+
+TEST(MillingOptions, SizesOfTheCommandLineWinOverABurrOfTheConfiguration) {
+  const testing_support::TestFolder folder;
+  const std::filesystem::path file = folder / "c.toml";
+  std::ofstream(file) << "burr-name = \"diamond-2.5\"\n";
+  CLI::App command;
+  MillingOptions options;
+  add_milling_options(command, options);
+  parse(command, {"--burr-radius", "2", "--config", file.string()});
+  apply_config_file(command);
+  EXPECT_EQ(options.setup.tool.burr_radius_mm, 2);
+  EXPECT_EQ(options.setup.burr, BurrEdge::diamond);
 }
 
 TEST(MillingOptions, WhatIsSaidToAReplayIsTakenOverAndNothingElse) {

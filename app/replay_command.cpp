@@ -72,7 +72,8 @@ class Log {
 
   void write() const {
     end_progress();
-    if (const auto text = faults_.sentence()) warn(options_.input + ": " + *text);
+    if (const auto text = faults_.sentence())
+      warn((options_.input.empty() ? options_.from.recording : options_.input) + ": " + *text);
     if (!options_.out.empty()) write_csv(options_.out, log_);
     for (const std::string& line : label_lines(labels_)) fmt::print("label {}\n", line);
     if (!options_.out.empty()) fmt::print("{}\n", options_.out);
@@ -347,8 +348,10 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
     settle_law(*command, options->milling.setup);
     if (options->from.given()) {
       refuse_recorded_options(*command);
-      if (options->verify || (options->out.empty() && options->record.empty()))
-        throw CLI::RequiredError("--out or --record");
+      for (const char* option : {"--verify", "--exercise", "--trainee", "--force-limit", "--torque-limit",
+                                 "--passivity-controller"})
+        if (options->is_given(option)) throw CLI::ValidationError(option, "cannot be given with --from");
+      if (options->out.empty() && options->record.empty()) throw CLI::RequiredError("--out or --record");
       return replay_from(*options, command_line);
     }
     if (options->input.empty()) throw CLI::RequiredError("input");

@@ -91,6 +91,9 @@ Playback::Playback(RecordedWork work)
   go_to_tick(0);
   verified_ = std::async(std::launch::async, [this]() -> std::string {
                 try {
+                  const WorkProgress watched([this](double) {
+                    if (stopped_) throw WorkStopped();
+                  });
                   const Verification verified =
                       verify_recording(work_.bone.volume, work_.recording, [&](std::size_t ticks) {
                         checked_ = ticks;

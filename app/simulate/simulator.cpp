@@ -465,9 +465,10 @@ class Simulator {
       view_.camera = camera_on_target(opened.exercise->placed(), view_.box, size);
     const Volume& bone = opened.milling.session->volume();
     // In front of the bone's upper half, so that the shaft does not hide the bone.
-    const Pose X_WT = opened.from ? *opened.milling.handover.X_WT
-                                  : tool_pose_before_middle(bone, opened.milling.session->setup().tool,
-                                                            view_.camera, size, 0.15 * size.height);
+    const std::optional<Pose>& recorded = opened.milling.handover.X_WT;
+    const Pose X_WT = recorded ? *recorded
+                               : tool_pose_before_middle(bone, opened.milling.session->setup().tool,
+                                                         view_.camera, size, 0.15 * size.height);
     const ToolSource tool_source{options_.device.device, hardware_.get()};
     simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, tool_source, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));
@@ -509,7 +510,10 @@ class Simulator {
     if (const auto from = std::exchange(view_.branch_requested, std::nullopt))
       return begin_branch(*from, scan_options_for(""), {.has_guidance = options_.exercise.has_guidance});
     const auto now = Clock::now();
-    playback_->advance(std::chrono::duration<double>(now - std::exchange(played_, now)).count());
+    // Nothing was played while a file was opened or the window hidden.
+    constexpr double kLongestPicture_s = 0.25;
+    const std::chrono::duration<double> passed = now - std::exchange(played_, now);
+    playback_->advance(std::min(passed.count(), kLongestPicture_s));
     if (playback_->follows_recorded_view()) show_view(*playback_->view(), view_);
     const Camera before = view_.camera;
     take_view_input(view_, size);

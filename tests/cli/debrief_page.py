@@ -114,7 +114,7 @@ for body in data["bodies"]:
         assert len(named) == value["no_go_contacts." + body["name"]], (body["name"], named)
 taken = [float(dict(mark["facts"])["removed outside"].split()[0]) for mark in marks if mark["kind"] == "outside"]
 assert math.isclose(sum(taken), outside_mm3, rel_tol=0.01, abs_tol=1e-9), (sum(taken), outside_mm3)
-assert all(mark["command"].endswith(f" --at {mark['time']:.3f}") for mark in marks)
+assert all(mark["command"].endswith(f" --at {mark['time']:.6f}") for mark in marks)
 
 if len(sys.argv) > 2:
     structure, *numbers = sys.argv[2:]

@@ -349,22 +349,19 @@ void write_class_debriefing(const fs::path& folder, const Exercise& exercise,
   for (const std::string& line : unread) about.notices.push_back("Not among them: " + line);
   if (!exercise.task.empty()) about.paragraphs = {exercise.task};
   const Page page = page_with(exercise.title, {about, summary, items}, data, false);
-  write_folder_atomically(
-      folder,
-      [&](const fs::path& beside) {
-        write_text_atomically(beside / "debrief.csv", [&](std::ostream& out) {
-          out << "name,attempt,date_utc,recording,measure,value,unit,limit,met,source\n";
-          for (const auto& [name, theirs] : people) {
-            for (std::size_t n = 0; n < theirs.size(); ++n) {
-              for (const MeasuredValue& row : theirs[n].rows)
-                out << fmt::format("{},{},{},{},{}\n", csv_field(name), n + 1, theirs[n].date_utc,
-                                   csv_field(theirs[n].recording), csv_row(row));
-            }
-          }
-        });
-        write_html(beside / "debrief.html", page);
-      },
-      [](const std::string& name) { return name == "progress.csv"; });
+  write_folder_atomically(folder, [&](const fs::path& beside) {
+    write_text_atomically(beside / "debrief.csv", [&](std::ostream& out) {
+      out << "name,attempt,date_utc,recording,measure,value,unit,limit,met,source\n";
+      for (const auto& [name, theirs] : people) {
+        for (std::size_t n = 0; n < theirs.size(); ++n) {
+          for (const MeasuredValue& row : theirs[n].rows)
+            out << fmt::format("{},{},{},{},{}\n", csv_field(name), n + 1, theirs[n].date_utc,
+                               csv_field(theirs[n].recording), csv_row(row));
+        }
+      }
+    });
+    write_html(beside / "debrief.html", page);
+  });
 }
 
 }  // namespace osteomill

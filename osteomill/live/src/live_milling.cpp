@@ -70,7 +70,8 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const ResumedRecor
   setup.guard = guard;
   auto session = std::make_unique<MillingSession>(std::move(bone), before.densities(), setup);
   session->count_removed_from(before.removed_mm3());
-  const SessionHandover handover{from.last.X_WT, {}, true, before.handover().spindle_rpm};
+  // No tool's pose if the device had given none by then.
+  const SessionHandover handover{before.handover().X_WT, {}, true, before.handover().spindle_rpm};
   session->resume_from(handover);
   return {scan_hash, std::move(follower), std::move(session), handover, from.last.time_s + from.last.dt_s};
 }

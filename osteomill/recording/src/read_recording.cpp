@@ -328,6 +328,8 @@ Recording read_chain(const fs::path& path, int max_before) {
   if (max_before == 0) throw InputError(path.string(), "goes on from too many recordings, or from itself");
   if (std::error_code error; !fs::exists(path.parent_path() / name, error))
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not beside it");
+  if (std::error_code error; fs::equivalent(path.parent_path() / name, path, error))
+    throw InputError(path.string(), "goes on from itself");
   Recording whole = read_chain(path.parent_path() / name, max_before - 1);
   if (whole.sessions.empty() || whole.description.scan_hash != recording.description.scan_hash ||
       whole.description.labels.size() != recording.description.labels.size())

@@ -32,7 +32,11 @@ RecordedBone::RecordedBone(const Volume& scan, const Recording& recording, std::
   std::set<std::size_t> changed;
   const auto note = [&](const VoxelBox& voxels) {
     for_each(voxels.bricks(DensityBlock::kVoxels), [&](const VoxelIndex& brick) {
-      changed.insert(bone_.grid().linear_index(VoxelBox::of_brick(brick, DensityBlock::kVoxels).first));
+      const std::size_t number =
+          bone_.grid().linear_index(VoxelBox::of_brick(brick, DensityBlock::kVoxels).first);
+      changed.insert(number);
+      // The next session puts it back, whether a checkpoint has it by then or not.
+      bricks_[number];
     });
   };
   while (ticks_ < recording.records.size()) {
@@ -41,7 +45,6 @@ RecordedBone::RecordedBone(const Volume& scan, const Recording& recording, std::
     add_checkpoint(std::exchange(changed, {}));
     WorkProgress::done(ticks_, recording.records.size());
   }
-  for (const std::size_t number : changed) bricks_[number];
 }
 
 RecordedBone::~RecordedBone() = default;

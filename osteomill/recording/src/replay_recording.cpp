@@ -28,10 +28,11 @@ std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
 // Throws if the burr was held off structures that the scan does not have.
 void require_guards(const Volume& scan, const Recording& recording) {
   const auto* recorded = find_setting<double>(recording.description, kGuardsKey);
+  const double had = recorded != nullptr ? *recorded : 0;
   const int guards = scan.no_go() ? guard_count(*scan.no_go()) : 0;
-  if (recorded != nullptr && *recorded != guards)
+  if (had != guards)
     refuse(recording, fmt::format("held the burr off {:g} structures of its exercise, of which {} are here",
-                                  *recorded, guards));
+                                  had, guards));
 }
 
 // From the scan.

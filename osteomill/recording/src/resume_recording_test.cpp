@@ -252,5 +252,16 @@ TEST_F(SeveralSessions, TheBoneOfAnyTickIsFoundWithinTheMemory) {
   }
 }
 
+// A reset after a cut that no checkpoint has seen; its session lists no bricks.
+TEST_F(SeveralSessions, TheBoneOfASessionAfterAnEarlyResetIsTheScan) {
+  record({{"point-shell", 1.5}, {"point-shell", 1.0, 0}, {"point-shell", 1.0}}, 400);
+  ASSERT_GT(ticks_[399].removed_mm3, 0);
+  RecordedBone bone(scan_, recording_);
+  for (std::size_t at = 0; at < ticks_.size(); at += 50) {
+    bone.go_to(at + 1);
+    ASSERT_EQ(bone.bone().change_hash(), ticks_[at].bone_hash) << "at " << at;
+  }
+}
+
 }  // namespace
 }  // namespace osteomill

@@ -79,8 +79,11 @@ DistanceSlope StructureDistance::slope_from(const Vec3& point_W) const noexcept 
 
 // With n the direction to a point at distance d, |r| more along a and |a| away, |d n + a| is at most
 // d + n a + a^2 / 2 d; the interpolation's weights make the second term vanish, and the third at most this.
+// Nor is it ever more than the mean of |a|, at most half a voxel's diagonal.
 double StructureDistance::max_excess_mm(double distance_mm) const noexcept {
-  return nearest_.found() ? scan_.spacing_mm.squaredNorm() / (8 * distance_mm) : 0;
+  if (!nearest_.found()) return 0;
+  const double half_mm = 0.5 * scan_.spacing_mm.norm();
+  return 2 * distance_mm > half_mm ? half_mm * half_mm / (2 * distance_mm) : half_mm;
 }
 
 double StructureDistance::voxel_distance2_mm2(const Vec3& point, const VoxelIndex& near) const noexcept {

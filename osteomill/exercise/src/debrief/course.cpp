@@ -117,7 +117,7 @@ std::vector<std::pair<std::size_t, std::string>> burrs_of(const Recording& recor
 }
 
 std::string command_at(const std::string& recording_name, double time_s) {
-  return fmt::format("osteomill simulate --from {} --at {:.3f}", quoted(recording_name), time_s);
+  return fmt::format("osteomill simulate --from {} --at {:.6f}", quoted(recording_name), time_s);
 }
 
 // Returns the moments that a page has room for: all contacts, and of the removals the largest.

@@ -23,7 +23,7 @@ Guards::Guards(const NoGoDistances* structures, const MillingTool& tool) {
   if (structures == nullptr) return;
   for (const WatchedStructure& one : *structures) {
     if (!one.guard_mm) continue;
-    const double off_mm = tool.burr_radius_mm + *one.guard_mm - kYield_mm;
+    const double off_mm = std::max(0.0, tool.burr_radius_mm + *one.guard_mm - kYield_mm);
     const double least_mm = off_mm + one.distance.max_excess_mm(off_mm);
     guards_.push_back({&one.distance, least_mm, least_mm});
   }
