@@ -38,7 +38,7 @@ work class/2.h5 hole "Ann <b>" 0.5; sleep 1.1
 work class/3.h5 hole 'Bo, "B"' 0.8
 work class/0.h5 other Cy 0.5
 head -c 20000 class/1.h5 >class/cut.h5
-# What the user has in the folder stays.
+# A file that the user keeps in the folder stays.
 mkdir all; echo "my notes" >all/progress.csv
 debrief() { local code=0; "$osteomill" debrief "$@" --quiet >said 2>error || code=$?; echo $code; }
 [ "$(debrief class --out all)" = 1 ] || fault "exit code"
