@@ -235,12 +235,12 @@ Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const R
 }
 
 std::vector<AttemptProgress> progress_of(const Attempt& attempt) {
-  constexpr std::size_t kSteps = 200;
+  constexpr std::size_t kTimes = 201, kSteps = kTimes - 1;
   std::vector<AttemptProgress> way;
   if (attempt.ticks.empty()) return way;
   const PlacedExercise& exercise = *attempt.exercise;
   const double begin_s = attempt.ticks.front().time_s, end_s = attempt.ticks.back().time_s;
-  std::array<std::size_t, kSteps + 1> target{}, outside{}, all{};
+  std::array<std::size_t, kTimes> target{}, outside{}, all{};
   attempt.removed.for_each([&](const VoxelIndex& v) {
     const double share =
         end_s > begin_s ? (attempt.removed_at_s(v).value_or(begin_s) - begin_s) / (end_s - begin_s) : 1;
@@ -251,7 +251,7 @@ std::vector<AttemptProgress> progress_of(const Attempt& attempt) {
   });
   const auto whole = static_cast<double>(exercise.target.count());
   double targets = 0, removed = 0, outsides = 0;
-  for (std::size_t step = 0; step <= kSteps; ++step) {
+  for (std::size_t step = 0; step < kTimes; ++step) {
     targets += static_cast<double>(target[step]);
     removed += static_cast<double>(all[step]);
     outsides += static_cast<double>(outside[step]);

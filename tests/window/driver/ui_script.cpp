@@ -121,7 +121,7 @@ void UiScript::begin(const Action& action, Window& window) {
     time_left_s_ = name == "hold" ? number(action, 1) : 0.05;
   } else if (name == "click" || name == "drag") {
     std::string label = action.text;
-    if (name == "drag") label = label.substr(0, label.rfind(' '));
+    if (name == "drag") label.resize(label.rfind(' '));
     const auto found = ui::widget_states().find(label);
     if (found == ui::widget_states().end() || found->second.frame < ImGui::GetFrameCount() - 1) {
       throw InputError(path_.string(),

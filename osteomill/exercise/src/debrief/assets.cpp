@@ -15,8 +15,12 @@
             static_cast<std::size_t>(osteomill_##name##_end - osteomill_##name##_begin)};    \
   }
 
+// cppcheck-suppress comparePointers
 OSTEOMILL_ASSET(three_js, OSTEOMILL_THREE_JS)
+// cppcheck-suppress comparePointers
 OSTEOMILL_ASSET(orbit_controls_js, OSTEOMILL_ORBIT_CONTROLS_JS)
+// cppcheck-suppress comparePointers
 OSTEOMILL_ASSET(debrief_js, OSTEOMILL_ASSETS "/debrief.js")
+// cppcheck-suppress comparePointers
 OSTEOMILL_ASSET(debrief_css, OSTEOMILL_ASSETS "/debrief.css")
 // NOLINTEND
