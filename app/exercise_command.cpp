@@ -5,6 +5,7 @@
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 
+#include "osteomill/base/atomic_file.h"
 #include "osteomill/exercise/measures.h"
 
 #include "app/commands.h"

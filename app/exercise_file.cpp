@@ -274,9 +274,9 @@ class ExerciseReader {
       const toml::node* node = table.get(key);
       if (node == nullptr) continue;
       if (measure.each != each) refuse(*node, fmt::format("{} is not of a {}", measure.name, key));
-      const std::string part = each == Measure::Each::step
-                                   ? fmt::format("{:g}", number_in(*node, key, NumberRange::count(1)))
-                                   : text(table, key);
+      std::string part = each == Measure::Each::step
+                             ? fmt::format("{:g}", number_in(*node, key, NumberRange::count(1)))
+                             : text(table, key);
       if (std::ranges::find(parts, part) == parts.end())
         refuse(*node, fmt::format("there is no {} {}{}", each == Measure::Each::step ? "step" : "no_go", part,
                                   did_you_mean(part, parts)));

@@ -86,6 +86,7 @@ void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup) {
   if (burrs.empty() || std::ranges::any_of(burrs, [&](const AllowedBurr& one) { return one.is_in(setup); }))
     return;
   std::vector<std::string> names;
+  names.reserve(burrs.size());
   for (const AllowedBurr& one : burrs)
     names.push_back(one.named != nullptr ? one.named->name : fmt::format("{:g} mm radius", one.radius_mm));
   throw InputError(
