@@ -45,6 +45,8 @@ class FilesPanel {
   void end_with_report(ViewState& view, Simulation& simulation);
   /// Begins to write the milled bone. Not while busy.
   void save_scan(ViewState& view, Simulation& simulation);
+  /// Writes a picture of the window.
+  void save_picture(ViewState& view, const Image& picture) const;
   /// Tells in the view how writing went, once it has ended.
   void take_result(ViewState& view, Simulation& simulation);
   /// Returns the length of the running recording, s; nothing if none runs.

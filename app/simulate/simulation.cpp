@@ -6,8 +6,6 @@
 #include <thread>
 #include <utility>
 
-#include "osteomill/base/input_error.h"
-#include "osteomill/base/work_progress.h"
 #include "osteomill/session/milling_entry.h"
 
 #include "app/progress.h"
@@ -19,7 +17,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kHistory_s = 5;
-constexpr const char* kMilledIsovalue = "as it was milled with";
 
 HandleSettings handle_settings(const MillingSetup& setup) {
   HandleSettings handle;
@@ -27,91 +24,10 @@ HandleSettings handle_settings(const MillingSetup& setup) {
   return handle;
 }
 
-std::string isovalue_source(const ScanOptions& scan, const LoadedBone& loaded) {
-  return scan.isovalue ? "given with --iso" : "suggested: " + loaded.isovalue_from;
-}
-
 }  // namespace
 
-using Prepare = std::function<PreparedMilling(std::shared_ptr<Volume> bone)>;
-
-static PreparedScan prepare_scan(const ScanOptions& scan, LoadedBone loaded, const MillingTool& tool,
-                                 const std::string& isovalue_from, const Prepare& prepare) {
-  auto bone = std::make_shared<Volume>(std::move(loaded.volume));
-  const BoneBox box = box_of_bone(*bone);
-  if (const std::string fault = tool_fault(tool, box); !fault.empty()) throw InputError(loaded.name, fault);
-  const DensityHistogram histogram = histogram_of(bone->grid());
-  std::vector<Boundary> boundaries = boundaries_in(bone->grid());
-  const WorkProgress::Part preparing(1);
-  PreparedMilling prepared = prepare(bone);
-  const WindowLevel grey_window = window_level_of(bone->grid(), prepared.session->densities().surroundings);
-  return {{loaded.name, scan, bone->isovalue(), isovalue_from, loaded.in_hounsfield_units ? " HU" : "", box,
-           histogram, std::move(boundaries), grey_window, bone->labels()},
-          std::move(prepared),
-          nullptr};
-}
-
-PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
-                              const SessionStart& milled) {
-  LoadedBone loaded = [&] {
-    const WorkProgress::Part reading(0.4);
-    return load_bone(scan);
-  }();
-  const std::string isovalue_from = milled.bricks.empty() ? isovalue_source(scan, loaded) : kMilledIsovalue;
-  return prepare_scan(scan, std::move(loaded), setup.tool, isovalue_from, [&](std::shared_ptr<Volume> bone) {
-    return prepare_milling(std::move(bone), setup, milled);
-  });
-}
-
-PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& scan, MillingSetup setup) {
-  LoadedExercise loaded = [&] {
-    const WorkProgress::Part reading(0.4);
-    return load_exercise(exercise.file, scan);
-  }();
-  take_allowed_burr(loaded.placed.exercise, setup);
-  RecordedExercise recorded = to_be_recorded(loaded.placed.exercise, exercise);
-  const ScanOptions source = scan_of(loaded.placed.exercise, scan);
-  auto work =
-      std::make_unique<ExerciseWork>(std::move(loaded.placed), loaded.bone.volume, std::move(recorded));
-  const std::string isovalue_from = isovalue_source(source, loaded.bone);
-  PreparedScan prepared =
-      prepare_scan(source, std::move(loaded.bone), setup.tool, isovalue_from,
-                   [&](std::shared_ptr<Volume> bone) { return prepare_milling(std::move(bone), setup); });
-  prepared.exercise = std::move(work);
-  return prepared;
-}
-
-PreparedScan open_for_branch(const BranchOptions& from, const ScanOptions& scan,
-                             const ExerciseOptions& exercise, const GuardSettings& guard) {
-  Branch branch = [&] {
-    const WorkProgress::Part replaying(0.7);
-    return open_branch(from, scan, exercise);
-  }();
-  RecordedWork& work = branch.work;
-  std::unique_ptr<ExerciseWork> task;
-  if (work.placed)
-    task = std::make_unique<ExerciseWork>(*std::move(work.placed), work.bone.volume, *work.exercise);
-  PreparedScan prepared = prepare_scan(
-      work.scan, std::move(work.bone), branch.resumed.session->setup().tool, kMilledIsovalue,
-      [&](std::shared_ptr<Volume> bone) { return prepare_milling(std::move(bone), branch.resumed, guard); });
-  prepared.exercise = std::move(task);
-  prepared.from = branch.from;
-  return prepared;
-}
-
-PreparedScan open_for_playback(const std::string& recording, const ScanOptions& scan,
-                               const ExerciseOptions& exercise) {
-  RecordedWork work = [&] {
-    const WorkProgress::Part reading(0.4);
-    return read_recorded_work(recording, scan, exercise);
-  }();
-  const WorkProgress::Part milling(1);
-  ScanInfo info{.name = recording, .source = work.scan};
-  return {.scan = std::move(info), .playback = std::make_unique<Playback>(std::move(work))};
-}
-
 Simulation::Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source_,
-                       const std::string& command_line_, std::optional<AutosaveFile> autosave_file)
+                       const std::string& command_line_)
     : scan(std::move(opened.scan)),
       exercise(std::move(opened.exercise)),
       from(std::move(opened.from)),
@@ -120,7 +36,7 @@ Simulation::Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& 
       hand(handle_settings(opened.milling.session->setup()), pointing_hand(), X_WT),
       device(take_tool(opened.milling.session->setup(), opened.milling.session->volume(), X_WT)),
       milling(std::move(opened.milling), device),
-      autosave(scan.source, std::move(autosave_file)),
+      autosave(scan.source, std::move(opened.milled_file)),
       label_count(scan.labels) {}
 
 void Simulation::start() {

@@ -19,7 +19,6 @@
 
 #include "app/branch_options.h"
 #include "app/device_option.h"
-#include "app/exercise_options.h"
 #include "app/scan_options.h"
 #include "app/simulate/autosave.h"
 #include "app/simulate/bone_view.h"
@@ -53,27 +52,11 @@ struct PreparedScan {
   std::unique_ptr<ExerciseWork> exercise;
   /// Given if it goes on from a recording.
   std::optional<BranchPoint> from = {};
+  /// The file that already keeps what was milled of it, if any.
+  std::optional<AutosaveFile> milled_file = {};
   /// A recording that is to be played; nothing is then milled.
   std::unique_ptr<Playback> playback = {};
 };
-
-/// Opens a scan, and puts into it what was milled of it before (`milled`), if anything was. Takes seconds;
-/// any thread, also while another scan is milled. Throws InputError as `load_bone` does and if `milled` is
-/// of another scan, and std::invalid_argument for settings out of range.
-PreparedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled);
-
-/// Opens an exercise on its scan, with the burr of the exercise that is nearest to the setup's. Any thread;
-/// throws as `load_exercise` and `open_for_milling` do.
-PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& scan, MillingSetup setup);
-
-/// Opens a recording to be milled on from one of its ticks, under this guard. Any thread; throws as
-/// `open_branch` does.
-PreparedScan open_for_branch(const BranchOptions& from, const ScanOptions& scan,
-                             const ExerciseOptions& exercise, const GuardSettings& guard);
-
-/// Opens a recording to be played. Any thread; throws as `read_recorded_work` and Playback do.
-PreparedScan open_for_playback(const std::string& recording, const ScanOptions& scan,
-                               const ExerciseOptions& exercise);
 
 /// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
 struct ToolSource {
@@ -86,10 +69,9 @@ struct ToolSource {
 
 /// A scan that is being milled; one at a time.
 struct Simulation {
-  /// The tool begins at `X_WT`; with the simulated operator where they begin. What was milled before may
-  /// already be kept in `autosave_file`.
+  /// The tool begins at `X_WT`; with the simulated operator where they begin.
   Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source,
-             const std::string& command_line, std::optional<AutosaveFile> autosave_file = std::nullopt);
+             const std::string& command_line);
 
   /// Begins to tick.
   void start();

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteomill/session/milling_setup.h"
+
+#include "app/branch_options.h"
+#include "app/exercise_options.h"
+#include "app/scan_options.h"
+#include "app/simulate/autosave.h"
+#include "app/simulate/simulation.h"
+
+namespace osteomill::app {
+
+/// Names a scan to be milled, a recording in its place to be played, an exercise on its scan,
+/// or a recording to be milled on from one of its ticks.
+struct OpenRequest {
+  ScanOptions scan;
+  ExerciseOptions exercise = {};
+  BranchOptions from = {};
+  /// The milled bone of an earlier run of the program.
+  std::optional<LeftoverMilling> milled = {};
+
+  /// Returns the file or folder that is opened, or the name of the built-in tooth.
+  std::string name() const;
+};
+
+/// Opens what is requested, an exercise with that burr of its own which is nearest to the setup's. Takes
+/// seconds; any thread, also while another scan is milled. Throws InputError as `load_bone`, `load_exercise`,
+/// `open_branch`, `read_recorded_work` and Playback do, and if `milled` is of another scan;
+/// std::invalid_argument for settings out of range.
+PreparedScan open_requested(const OpenRequest& request, MillingSetup setup);
+
+/// Opens on a thread of its own, and can be stopped: that thread then ends by itself within about a tenth of
+/// a second and gives its memory back. Only the destructor waits for it. For one thread.
+class Opening {
+ public:
+  Opening() = default;
+  ~Opening() { stop(); }
+  Opening(const Opening&) = delete;
+  Opening& operator=(const Opening&) = delete;
+
+  /// Stops what is being opened, if anything is, and begins to open something else.
+  void begin(OpenRequest request, const MillingSetup& setup);
+  void stop();
+
+  /// Returns whether something is being opened, or was opened and not yet taken.
+  bool is_begun() const { return result_.valid(); }
+  bool is_ready() const;
+  /// Returns what was opened, or throws the exception of opening it, once it is ready, and forgets the
+  /// request.
+  PreparedScan take();
+  /// Returns what is being opened. Only while `is_begun`.
+  const OpenRequest& request() const { return *request_; }
+  /// Returns how much of opening is done, 0 to 1.
+  double share_done() const { return work_ ? work_->share_done.load() : 0; }
+  /// Returns the time since `begin`, s.
+  double passed_s() const;
+
+ private:
+  struct Work {
+    std::atomic<double> share_done = 0;
+    std::atomic<bool> stopped = false;
+  };
+  std::shared_ptr<const OpenRequest> request_;
+  std::chrono::steady_clock::time_point since_;
+  std::shared_ptr<Work> work_;
+  std::future<PreparedScan> result_;
+  std::vector<std::future<PreparedScan>> stopped_;
+};
+
+}  // namespace osteomill::app

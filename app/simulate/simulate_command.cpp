@@ -1,0 +1,59 @@
+#include <memory>
+#include <string>
+
+#include "osteomill/recording/recording.h"
+
+#include "app/commands.h"
+#include "app/config_file.h"
+#include "app/option_checks.h"
+#include "app/simulate/screen_scale.h"
+#include "app/simulate/simulator.h"
+
+namespace osteomill::app {
+
+void add_simulate_command(CLI::App& program, const std::string& command_line, WindowDriver* driver) {
+  auto options = std::make_shared<SimulatorOptions>();
+  options->driver = driver;
+  options->command_line = command_line;
+  options->milling.setup.cutting_reaction = options->milling.setup.drag = true;
+  options->milling.setup.vibration.on = true;
+  options->milling.setup.law = CuttingLaw::chips;
+  CLI::App* command = program.add_subcommand(
+      "simulate",
+      "Open the window: see the bone, take the burr, mill; or play a recording in the scan's place");
+  command->group("In a window");
+  add_scan_options(*command, options->scan);
+  add_exercise_options(*command, options->exercise);
+  add_guidance_option(*command, options->exercise);
+  add_branch_options(*command, options->from);
+  // A recording in the place of the scan is played from there.
+  CLI::Option* const at = command->get_option("--at");
+  at->remove_needs(command->get_option("--from"));
+  command->option_defaults()->group("Algorithm");
+  add_algorithm_option(*command, options->milling.setup.algorithm);
+  add_milling_options(*command, options->milling);
+  add_device_option(*command, options->device);
+  add_rate_option(*command, options->milling.setup.tick_s);
+  add_send_options(*command, options->send);
+  command->option_defaults()->group("The window");
+  command->add_option("--out", options->folder, "Folder for recordings and saved files")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  command
+      ->add_option("--ui-scale", options->ui_scale,
+                   "Scale of the text, 1 is usual and 2 suits 4K (default: as the screen asks for)")
+      ->check(number_of({.min = kMinScale, .max = kMaxScale}))
+      ->type_name("NUMBER");
+  command->add_flag("--no-help", options->no_help,
+                    "Begin without the page that explains the controls (default: shown on the first start)");
+  command->callback([=] {
+    apply_config_file(*command);
+    settle_law(*command, options->milling.setup);
+    if (options->from.given()) refuse_recorded_options(*command);
+    if (at->count() > 0 && !options->from.given() && !is_hdf5(options->scan.scan))
+      throw CLI::RequiredError("--at: --from, or a recording to be played,");
+    Simulator(*options).run();
+  });
+}
+
+}  // namespace osteomill::app

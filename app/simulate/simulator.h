@@ -1,0 +1,113 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "osteomill/session/milling_setup.h"
+
+#include "app/branch_options.h"
+#include "app/device_option.h"
+#include "app/exercise_options.h"
+#include "app/milling_options.h"
+#include "app/scan_options.h"
+#include "app/simulate/dialogues.h"
+#include "app/simulate/milling_screen.h"
+#include "app/simulate/opening.h"
+#include "app/simulate/playback_screen.h"
+#include "app/simulate/stage.h"
+#include "app/simulate/start_page.h"
+#include "app/simulate/window_driver.h"
+
+namespace osteomill::app {
+
+struct SimulatorOptions {
+  ScanOptions scan;
+  ExerciseOptions exercise;
+  BranchOptions from;
+  MillingOptions milling;
+  DeviceOption device{kMouse};
+  SendOption send;
+  /// How much larger than usual text is drawn; not given: as the screen needs it.
+  std::optional<double> ui_scale;
+  /// Null: a person works the window.
+  WindowDriver* driver = nullptr;
+  bool no_help = false;
+  /// Folder of recordings and saved files.
+  std::string folder = ".";
+  std::string command_line;
+};
+
+/// Everything between opening the window and closing it: which screen is shown, what is opened next, and that
+/// nothing unsaved is lost on the way.
+class Simulator {
+ public:
+  explicit Simulator(const SimulatorOptions& options);
+
+  /// Returns once the window was closed. Throws InputError if what was named cannot be opened.
+  void run();
+
+ private:
+  bool is_driven() const;
+  bool is_opening() const { return opening_.is_begun() || opened_; }
+  bool is_settled();
+  Simulation* simulation() { return milling_ ? &milling_->simulation() : nullptr; }
+
+  void draw_screen();
+  void draw_start_page();
+  void draw_waiting();
+  void draw_playback();
+  void draw_milling();
+  void draw_opening();
+  void begin_picture();
+  void finish_picture();
+
+  void begin_first();
+  void begin_opening(OpenRequest request);
+  void begin_scan(const std::string& path);
+  void begin_exercise(ExerciseOptions exercise);
+  OpenRequest scan_request(const std::string& path) const;
+  void ask_about_leftover();
+  void open_leftover();
+  void open_another();
+  void cancel_opening();
+  void take_first();
+  void take_opened();
+  void leave_scan(const ScanInfo& next);
+  void begin_milling(PreparedScan opened);
+  void show_start_page();
+
+  bool has_unsaved();
+  void ask_before(const char* what, const Dialogue::Action& on_proceed, const Dialogue::Action& stay = {});
+  void after_writing(const char* doing, const Dialogue::Action& then);
+  void write(const char* doing, const Dialogue::Action& begin, const Dialogue::Action& then,
+             const Dialogue::Action& stay);
+  bool update_closing();
+  void close();
+  void close_exercise();
+  void close_when_measured();
+  void print_results();
+
+  SimulatorOptions options_;
+  // The first scan is opened with it.
+  MillingSetup setup_;
+  std::unique_ptr<ConnectedDevice> hardware_;
+  Stage stage_;
+  Opening opening_;
+  // Waits for the answer to what becomes of the scan that is milled.
+  std::optional<PreparedScan> opened_;
+  int changes_before_ = 0;
+  // Milled bone of an earlier run that is offered to the user.
+  std::optional<LeftoverMilling> leftover_;
+  bool closing_ = false;
+  bool reported_ = false;
+  std::chrono::steady_clock::time_point last_picture_ = std::chrono::steady_clock::now();
+  // The screen: none of these until something is opened. Milling stands last because its ticks refer to all
+  // that stands above.
+  std::optional<StartPage> start_page_;
+  std::unique_ptr<PlaybackScreen> playback_;
+  std::unique_ptr<MillingScreen> milling_;
+};
+
+}  // namespace osteomill::app
