@@ -45,22 +45,18 @@ void add_config_option(CLI::App& command) {
   command.add_option(kConfigOption, "TOML file with any of these options as keys")->type_name("FILE");
 }
 
-namespace {
-
-// A burr's name sets sizes that have options of their own, so what the command line gave is set once more.
 std::vector<CLI::Option*> given_tool_options(CLI::App& command) {
   return command.get_options([](const CLI::Option* option) {
     return option->count() > 0 && (option->get_group() == "Tool" || option->get_group() == "Cutting");
   });
 }
 
-}  // namespace
-
 void apply_config_file(CLI::App& command) {
   const CLI::Option* config = command.get_option(kConfigOption);
   if (config->count() == 0) return;
   const auto file = config->as<std::string>();
   const std::vector<std::string> said_before = command.get_option(kSetOption)->results();
+  // A burr's name sets sizes that have options of their own, so what the command line gave is set once more.
   const std::vector<CLI::Option*> given = given_tool_options(command);
   std::vector<std::string> own;
   const toml::table table = read_toml(file);

@@ -16,6 +16,9 @@ void add_config_option(CLI::App& command);
 /// is not TOML, or has a key or value that the command does not know.
 void apply_config_file(CLI::App& command);
 
+/// Returns the options about the tool and its cutting that were given.
+std::vector<CLI::Option*> given_tool_options(CLI::App& command);
+
 /// Replaces the values that an option was given before; `name` is with its dashes, or a positional's. Throws
 /// CLI::Error if it does not take these.
 void set_option(CLI::App& command, const std::string& name, const std::vector<std::string>& texts);

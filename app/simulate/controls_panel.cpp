@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cctype>
-#include <cfloat>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,9 +21,11 @@ namespace {
 constexpr float kWidth_px = 300;
 
 // A slider for what takes long to change: true once it is let go of at another value.
-bool settle(const char* label, double& value, float min, float max, const char* format) {
+bool settle(const char* label, const std::string& hint, double& value, float min, float max,
+            const char* format) {
   float shown = static_cast<float>(value);
-  if (ui::slider(label, &shown, min, max, format, ImGuiSliderFlags_AlwaysClamp)) {
+  if (ui::slider(label, hint + ". Drag, or hold Ctrl and click to type a number", &shown, min, max, format,
+                 ImGuiSliderFlags_AlwaysClamp)) {
     value = static_cast<double>(shown);
   }
   return ImGui::IsItemDeactivatedAfterEdit();
@@ -37,9 +39,8 @@ bool settle_field(std::string_view option, MillingSetup& requested_setup, float 
   std::string label = field.option;
   std::ranges::replace(label, '-', ' ');
   double value = field.get(requested_setup);
-  const bool settled =
-      settle(label.c_str(), value, min, max, fmt::format("%.{}f {}", decimals, field.unit).c_str());
-  ui::tooltip(field.doc);
+  const bool settled = settle(label.c_str(), field.doc, value, min, max,
+                              fmt::format("%.{}f {}", decimals, field.unit).c_str());
   field.set(requested_setup, value);
   return settled;
 }
@@ -50,11 +51,11 @@ bool choose_field(std::string_view option, MillingSetup& requested_setup) {
   bool changed = false;
   for (std::size_t n = 0; n < field.choices.size(); ++n) {
     if (n % 2 == 1) ImGui::SameLine(ui::px(kWidth_px / 2));
-    if (ui::radio(field.choices[n].c_str(), static_cast<std::size_t>(field.get(requested_setup)) == n)) {
+    if (ui::radio(field.choices[n].c_str(), fmt::format("{}: {}", field.choices[n], field.doc),
+                  static_cast<std::size_t>(field.get(requested_setup)) == n)) {
       field.set(requested_setup, static_cast<double>(n));
       changed = true;
     }
-    ui::tooltip(field.doc);
   }
   return changed;
 }
@@ -72,22 +73,50 @@ std::string fitting_suffix(const std::string& name) {
   return shown;
 }
 
-void draw_scan(ViewState& view, const std::string& name) {
-  ImGui::TextUnformatted(fitting_suffix(name).c_str());
-  ui::tooltip(name);
-  const bool entered = ui::text_field("scan", view.scan_path.data(), view.scan_path.size());
-  ui::tooltip("Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window");
-  ImGui::SameLine();
-  const bool pressed = ui::button("Open");
-  if ((entered || pressed) && view.scan_path[0] != 0) view.scan_requested = view.scan_path.data();
+// What is not about the bone, beside help, which must be found at any time.
+void draw_menu(ViewState& view) {
+  if (!ImGui::BeginMenuBar()) return;
+  if (ui::begin_menu("Window", "Size of the text, colours and full screen")) {
+    if (ui::button("Larger text", "Makes all text and buttons larger")) ++view.text_steps;
+    if (ui::button("Smaller text", "Makes all text and buttons smaller")) --view.text_steps;
+    if (ui::radio("Dark", "Light text on dark panels, for a dark room", view.theme == Theme::dark))
+      view.theme = Theme::dark;
+    if (ui::radio("Light", "Dark text on light panels, for a bright room", view.theme == Theme::light))
+      view.theme = Theme::light;
+    if (ui::button("Full screen (F11)##full", "Lets the window fill the screen, or gives it its frame back"))
+      view.full_screen_requested = true;
+    if (ui::button("Start page", kStartPageHint)) view.start_page_requested = true;
+    ImGui::EndMenu();
+  }
+  if (ui::button("Help (F1)##help", "Shows how tool, view and bone are moved by mouse, keys or a device"))
+    view.help = true;
+  ImGui::EndMenuBar();
 }
 
-void draw_algorithm(MillingSetup& requested_setup, bool& changed) {
-  if (!ui::header("Algorithm", true)) return;
+void draw_scan(ViewState& view, const Simulation& simulation) {
+  ImGui::TextUnformatted(fitting_suffix(simulation.scan.name).c_str());
+  ui::tooltip(simulation.scan.name);
+  const bool entered = ui::text_field(
+      "scan", "Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window",
+      view.scan_path.data(), view.scan_path.size());
+  ImGui::SameLine();
+  const bool pressed = ui::button("Open", "Opens the scan whose path stands beside it, in place of this one");
+  if ((entered || pressed) && view.scan_path[0] != 0) view.scan_requested = view.scan_path.data();
+  for (const std::string& warning : simulation.warnings) ui::warning(warning);
+}
+
+void draw_algorithm(ViewState& view, bool& changed) {
+  if (!ui::header("Algorithm", "How the force on your hand is computed", view.open.algorithm)) return;
+  MillingSetup& requested_setup = view.requested_setup;
   bool left = true;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     if (!std::exchange(left, !left)) ImGui::SameLine(ui::px(kWidth_px / 2));
-    if (ui::radio(algorithm.id.label.c_str(), requested_setup.algorithm.id == algorithm.id)) {
+    const bool is_own = algorithm.id == default_algorithm().id;
+    const std::string hint =
+        fmt::format("Computes the force on your hand by {}, {}", algorithm.id.name,
+                    is_own ? "which is made for milling and keeps the burr out of the bone"
+                           : "one of the three published algorithms, to compare them");
+    if (ui::radio(algorithm.id.label.c_str(), hint, requested_setup.algorithm.id == algorithm.id)) {
       requested_setup.algorithm = algorithm;
       requested_setup.haptics.clear_option(kStiffnessOption);
       changed = true;
@@ -96,7 +125,8 @@ void draw_algorithm(MillingSetup& requested_setup, bool& changed) {
   const auto before = stiffness_of(requested_setup);
   if (!before) return;
   double stiffness = *before;
-  const bool settled = settle("stiffness", stiffness, 0.5f, 30.0f, "%.1f N/mm");
+  const bool settled = settle("stiffness", "How hard bone pushes back for each millimetre that you press",
+                              stiffness, 0.5f, 30.0f, "%.1f N/mm");
   if (stiffness != *before) requested_setup.haptics.set_option(kStiffnessOption, stiffness);
   changed = changed || settled;
 }
@@ -109,9 +139,11 @@ bool is_dental(Handpiece handpiece) {
 bool choose_named_burr(MillingSetup& requested_setup) {
   const NamedBurr* chosen = find_burr(requested_setup.tool, requested_setup.burr);
   const NamedBurr* now = chosen;
-  if (ui::button("Burr by name")) ImGui::OpenPopup("##burrs");
+  if (ui::button("Choose burr", "Lists the burrs that surgeons and dentists use, by kind and diameter"))
+    ImGui::OpenPopup("##burrs");
   ImGui::SameLine();
-  ImGui::TextUnformatted(chosen != nullptr ? chosen->label : "own sizes");
+  const double wide_mm = 2 * requested_setup.tool.burr_radius_mm;
+  ImGui::TextUnformatted(chosen != nullptr ? chosen->label : fmt::format("{:.1f} mm wide", wide_mm).c_str());
   if (!ImGui::BeginPopup("##burrs")) return false;
   std::string_view kind;
   for (const NamedBurr& burr : named_burrs()) {
@@ -124,7 +156,10 @@ bool choose_named_burr(MillingSetup& requested_setup) {
       ImGui::BeginGroup();
       ImGui::TextDisabled("%s", burr.kind);
     }
-    if (ui::entry(burr.label, &burr == chosen)) chosen = &burr;
+    const std::string hint =
+        fmt::format("A burr {:g} mm wide on a shaft {:g} mm wide, {}", 2 * burr.tool.burr_radius_mm,
+                    2 * burr.tool.shaft_radius_mm, burr.kind);
+    if (ui::entry(burr.label, hint, &burr == chosen)) chosen = &burr;
   }
   ImGui::EndGroup();
   ImGui::EndPopup();
@@ -134,68 +169,108 @@ bool choose_named_burr(MillingSetup& requested_setup) {
   return true;
 }
 
-// An exercise that names its burrs offers them itself.
-void draw_tool(MillingSetup& requested_setup, bool has_choice, bool& sound, bool& changed) {
-  if (!ui::header("Tool", true)) return;
-  ImGui::BeginDisabled(!has_choice);
-  changed = settle_field("burr-radius", requested_setup, 0.5f, 4.0f, 1) || changed;
-  changed = settle_field("shaft-radius", requested_setup, 0.3f, 3.0f, 1) || changed;
-  ImGui::EndDisabled();
-  const float max_rpm = is_dental(requested_setup.handpiece) ? 400000.0f : 120000.0f;
-  changed = settle_field("spindle-speed", requested_setup, 5000, max_rpm, 0) || changed;
-  changed = ui::checkbox("vibration", &requested_setup.vibration.on) || changed;
-  ui::tooltip("You feel the burr's teeth in the hand");
-  ImGui::SameLine();
-  changed = ui::checkbox("burr pulls", &requested_setup.cutting_reaction) || changed;
-  ui::tooltip("Cutting pulls the burr sideways, as it turns, and twists the handle");
-  ImGui::SameLine();
-  ui::checkbox("sound", &sound);
+bool switch_field(const char* label, const char* option, MillingSetup& requested_setup) {
+  const Field<MillingSetup>& field = *field_of_option(fields_of<MillingSetup>(), option);
+  bool on = field.get(requested_setup) != 0;
+  const bool changed = ui::checkbox(label, field.doc, &on);
+  if (changed) field.set(requested_setup, on ? 1 : 0);
+  return changed;
 }
 
-void draw_drive(MillingSetup& requested_setup, bool has_choice, bool& changed) {
-  if (!ui::header("Burr and drive", false)) return;
-  ImGui::BeginDisabled(!has_choice);
-  changed = choose_named_burr(requested_setup) || changed;
+// What the burr is; an exercise that names its burrs offers them itself.
+struct ToolChoice {
+  bool is_free;
+  bool changed = false;
+};
+
+void draw_tool(ViewState& view, ToolChoice& choice, bool& changed) {
+  if (!ui::header("Tool", "Sizes and speed of the burr, and what of its turning you feel", view.open.tool))
+    return;
+  MillingSetup& setup = view.requested_setup;
+  ImGui::BeginDisabled(!choice.is_free);
+  choice.changed = settle_field("burr-radius", setup, 0.5f, 4.0f, 1) || choice.changed;
+  choice.changed = settle_field("shaft-radius", setup, 0.3f, 3.0f, 1) || choice.changed;
   ImGui::EndDisabled();
-  ImGui::Separator();
-  changed = choose_field("handpiece", requested_setup) || changed;
-  ImGui::Separator();
-  changed = choose_field("law", requested_setup) || changed;
-  ImGui::Separator();
-  ImGui::BeginDisabled(requested_setup.law != CuttingLaw::chips);
-  changed = choose_field("burr", requested_setup) || changed;
-  changed = settle_field("wear", requested_setup, 0, 100, 0) || changed;
-  ImGui::EndDisabled();
-  changed = ui::checkbox("drag", &requested_setup.drag) || changed;
-  ui::tooltip(field_of_option(fields_of<MillingSetup>(), "drag")->doc);
+  const float max_rpm = is_dental(setup.handpiece) ? 400000.0f : 120000.0f;
+  choice.changed = settle_field("spindle-speed", setup, 5000, max_rpm, 0) || choice.changed;
+  changed = switch_field("vibration", "vibration", setup) || changed;
   ImGui::SameLine();
-  changed = ui::checkbox("knock", &requested_setup.contact_transient.on) || changed;
-  ui::tooltip(field_of_option(fields_of<MillingSetup>(), "contact-transient")->doc);
+  changed = switch_field("burr pulls", "cutting-reaction", setup) || changed;
+  ImGui::SameLine();
+  changed = switch_field("drag", "drag", setup) || changed;
+  changed = switch_field("knock", "contact-transient", setup) || changed;
 }
 
-void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
-  if (!ui::header("Milling", true)) return;
+void draw_drive(ViewState& view, ToolChoice& choice, bool& changed) {
+  if (!ui::header("Burr and drive", "Handpiece, law of cutting, kind and wear of the burr", view.open.drive))
+    return;
+  MillingSetup& setup = view.requested_setup;
+  choice.changed = choose_field("handpiece", setup) || choice.changed;
+  ImGui::Separator();
+  changed = choose_field("law", setup) || changed;
+  ImGui::Separator();
+  ImGui::BeginDisabled(setup.law != CuttingLaw::chips);
+  choice.changed = choose_field("burr", setup) || choice.changed;
+  changed = settle_field("wear", setup, 0, 100, 0) || changed;
+  ImGui::EndDisabled();
+}
+
+void draw_undo(ViewState& view, const LiveMilling& milling) {
+  const bool free = !milling.is_preparing();
+  const auto cuts = static_cast<int>(milling.follower().cuts());
+  if (ui::button("Undo cut",
+                 "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are "
+                 "kept). Ctrl+Z does the same",
+                 free && cuts > 0))
+    view.undo_requested = true;
+  ui::same_line_if_room("Reset bone");
+  if (ui::button("Reset bone", "Puts back all that was milled of this bone",
+                 free && milling.follower().is_touched()))
+    view.reset_requested = true;
+  const std::string text = fmt::format("{} {}", cuts, cuts == 1 ? "cut" : "cuts");
+  ui::same_line_if_room(text);
+  ImGui::TextDisabled("%s", text.c_str());
+}
+
+void draw_milling(ViewState& view, Simulation& simulation, ToolChoice& choice) {
+  if (!ui::header("Milling", "Take the tool, choose its burr, mill, and take cuts back", view.open.milling))
+    return;
+  LiveMilling& milling = simulation.milling;
+  if (simulation.tool_source.is_pointer()) {
+    if (ui::button(view.holding_tool ? "Let go (T)##hold" : "Take the tool (T)##hold",
+                   "Takes the tool into your hand, so that it follows the mouse, or lets it go"))
+      view.holding_tool = !view.holding_tool;
+    ImGui::SameLine();
+  }
+  if (ui::button(
+          "Bring it here (B)##bring",
+          "Brings the tool to just before the bone in the middle of the view; the key B, to just before "
+          "the bone under the pointer"))
+    view.bring_requested = true;
   // A device's own button turns it on as well.
   bool spindle = milling.is_spindle_requested() || milling.state().spindle_on;
-  if (ui::checkbox("spindle on", &spindle)) milling.set_spindle(spindle);
+  if (ui::checkbox("spindle on", "Lets the burr turn, so that it cuts; Space does the same", &spindle))
+    milling.set_spindle(spindle);
+  ImGui::SameLine();
+  ui::checkbox("sound", "Lets you hear the spindle and the burr in the bone", &view.sound);
   ImGui::SameLine();
   bool paused = milling.state().record.paused;
-  if (ui::checkbox("pause", &paused)) milling.set_paused(paused);
-  if (by_pointer) {
-    ImGui::SameLine();
-    if (ui::button(view.holding_tool ? "Let go (T)##hold" : "Take the tool (T)##hold")) {
-      view.holding_tool = !view.holding_tool;
-    }
+  if (ui::checkbox("pause", "Holds everything still, without a force on your hand; P does the same", &paused))
+    milling.set_paused(paused);
+  ImGui::BeginDisabled(!choice.is_free);
+  choice.changed = choose_named_burr(view.requested_setup) || choice.changed;
+  ImGui::EndDisabled();
+  draw_undo(view, milling);
+}
+
+void draw_bars(const ImVec2& place, const ImVec2& size, std::span<const float> heights) {
+  const float most = *std::ranges::max_element(heights), width = size.x / static_cast<float>(heights.size());
+  const ImU32 colour = ImGui::GetColorU32(ImGuiCol_PlotHistogram);
+  for (std::size_t n = 0; n < heights.size() && most > 0; ++n) {
+    const float left = place.x + static_cast<float>(n) * width;
+    ImGui::GetWindowDrawList()->AddRectFilled({left, place.y + size.y * (1 - heights[n] / most)},
+                                              {left + width, place.y + size.y}, colour);
   }
-  const bool free = !milling.is_preparing();
-  if (ui::button("Undo cut", free && milling.follower().cuts() > 0)) view.undo_requested = true;
-  ui::tooltip(
-      "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are kept)");
-  ImGui::SameLine();
-  if (ui::button("Reset bone", free && milling.follower().is_touched())) view.reset_requested = true;
-  ImGui::SameLine();
-  const auto cuts = static_cast<int>(milling.follower().cuts());
-  ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
 // Buttons for the densities that may bound bone, if there are several: only the user knows which does.
@@ -208,94 +283,88 @@ void draw_boundaries(ViewState& view, Simulation& simulation) {
     const std::string label = fmt::format("{:.4g}", boundary.density);
     const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
-    if (ui::button(label.c_str(), !simulation.milling.is_preparing()))
+    const std::string hint = fmt::format(
+        "Lets bone begin at {:.4g}, a boundary in this scan between materials of {:.4g} and {:.4g}",
+        boundary.density, boundary.below, boundary.above);
+    if (ui::button(label.c_str(), hint, !simulation.milling.is_preparing()))
       view.isovalue_requested = boundary.density;
-    ui::tooltip(
-        fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above));
   }
 }
 
 void draw_isovalue(ViewState& view, Simulation& simulation) {
-  if (!ui::header("Bone", true)) return;
+  if (!ui::header("Bone", "The density above which the scan is taken for bone", view.open.bone)) return;
   const DensityHistogram& histogram = simulation.scan.histogram;
   LiveMilling& milling = simulation.milling;
   float isovalue = view.isovalue.value_or(static_cast<float>(milling.isovalue()));
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const ImVec2 size(ImGui::CalcItemWidth(), 1.5f * ImGui::GetFontSize());
-  ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
-                       static_cast<int>(histogram.log_counts.size()), 0, nullptr, 0, FLT_MAX, size);
+  ImGui::GetWindowDrawList()->AddRectFilled(place, {place.x + size.x, place.y + size.y},
+                                            ImGui::GetColorU32(ImGuiCol_FrameBg));
+  draw_bars(place, size, histogram.log_counts);
+  ImGui::Dummy(size);
+  ui::tooltip(
+      "How many voxels have each density, from the lowest to the highest; the line is where bone begins");
   const float share = (isovalue - histogram.min) / (histogram.max - histogram.min);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
   draw_boundaries(view, simulation);
   ImGui::BeginDisabled(milling.is_preparing());
   const std::string format = "%.4g" + simulation.scan.unit;
-  if (ui::slider("isovalue", &isovalue, histogram.min, histogram.max, format.c_str(),
-                 ImGuiSliderFlags_AlwaysClamp)) {
+  if (ui::slider("isovalue",
+                 "What is denser than this is bone. Drag, or hold Ctrl and click to type a number", &isovalue,
+                 histogram.min, histogram.max, format.c_str(), ImGuiSliderFlags_AlwaysClamp)) {
     view.isovalue = isovalue;
     milling.show_isovalue(static_cast<double>(isovalue));
   }
   const bool moved = ImGui::IsItemActive();
   if (ImGui::IsItemDeactivatedAfterEdit() && view.isovalue)
     view.isovalue_requested = static_cast<double>(*view.isovalue);
-  ui::tooltip("What is denser than this is bone. Drag, or hold Ctrl and click to type a number");
   ImGui::EndDisabled();
   if (!moved && !milling.is_preparing() && !view.isovalue_requested) view.isovalue.reset();
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
-  for (const std::string& warning : simulation.warnings) ui::warning(warning);
 }
 
 void draw_cuts(ViewState& view, Simulation& simulation) {
-  if (!ui::header("Cuts", false)) return;
+  if (!ui::header("Cuts", "Planes that cut the bone open and show the scan's grey values", view.open.cuts))
+    return;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     ViewState::Cut& cut = view.cuts[n];
     ImGui::PushID(static_cast<int>(n));
-    if (ui::checkbox(kCutNames[n], &cut.on) && cut.on) {
+    const std::string hint =
+        fmt::format("Cuts the bone open in {} at the burr",
+                    n == 3 ? "the plane of the screen" : fmt::format("the {} plane", kCutNames[n]));
+    if (ui::checkbox(kCutNames[n], hint, &cut.on) && cut.on) {
       if (n == 3) cut.normal_W = -view.camera.towards_viewer_W();
       begin_cut_at(view, cut, simulation.milling.state().record.X_WT.position_mm);
     }
     if (cut.on) {
       ImGui::SameLine(ui::px(100));
-      ui::checkbox("other side", &cut.other_side);
+      ui::checkbox("other side", "Shows the half of the bone that this cut hides", &cut.other_side);
       const GridGeometry& grid = simulation.milling.geometry();
       const auto extent = extent_along(corners_W(grid, grid.all_voxels()), cut.normal_W);
-      ui::slider((std::string(kCutNames[n]) + " place").c_str(), &cut.offset_mm,
-                 static_cast<float>(extent[0]), static_cast<float>(extent[1]), "%.1f mm");
+      ui::slider((std::string(kCutNames[n]) + " place").c_str(),
+                 "Moves the cut through the bone; dragging it with Ctrl and the left button does the same",
+                 &cut.offset_mm, static_cast<float>(extent[0]), static_cast<float>(extent[1]), "%.1f mm");
     }
     ImGui::PopID();
   }
 }
 
 void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
-  if (!ui::header("View", true)) return;
+  if (!ui::header("View", "From where you see the bone, and what is drawn beside it", view.open.view)) return;
   for (const auto& [from, direction_W, up_W] : kPatientViews) {
     const std::string letter(1, static_cast<char>(std::toupper(from.front())));
-    if (ui::button((letter + "##view").c_str()))
+    if (ui::button((letter + "##view").c_str(), fmt::format("Shows all of the bone from {}", from)))
       view.camera = showing_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
-    ui::tooltip(fmt::format("From {}", from));
     ImGui::SameLine();
   }
-  if (ui::button("Whole")) view.camera = showing_whole(view.camera, view.box, size);
-  ui::tooltip("Shows all of the bone from the same side");
-  if (ui::button("Find tool")) view.camera.focus_W = tool_W;
-  ui::tooltip("Moves the view so that the burr is in its middle");
+  if (ui::button("Whole", kWholeHint)) view.camera = showing_whole(view.camera, view.box, size);
+  if (ui::button("Find tool", "Moves the view so that the burr is in its middle"))
+    view.camera.focus_W = tool_W;
   ImGui::SameLine();
-  if (ui::button("Bring it here (B)##bring")) view.bring_requested = true;
-  ui::tooltip(
-      "Brings the tool to just before the bone in the middle of the view; the key B, to just before the "
-      "bone under the pointer");
-  ui::checkbox("ghost", &view.ghost);
+  ui::checkbox("ghost", kGhostHint, &view.ghost);
   ImGui::SameLine();
-  ui::checkbox("arrows", &view.arrows);
-}
-
-// They come first, for users who cannot read the rest or cannot reach the buttons below.
-void draw_reading_aids(ViewState& view) {
-  if (ui::button("Help")) view.help = true;
-  ImGui::SameLine();
-  if (ui::button("Smaller text")) --view.text_steps;
-  ImGui::SameLine();
-  if (ui::button("Larger text")) ++view.text_steps;
+  ui::checkbox("arrows", kArrowsHint, &view.arrows);
 }
 
 }  // namespace
@@ -315,24 +384,44 @@ std::string isovalue_text(const Simulation& simulation) {
                      simulation.scan.isovalue_from);
 }
 
+void recall_tool(ViewState& view) {
+  MillingSetup setup = view.requested_setup;
+  if (!copy_tool(view.tool, setup) || !tool_fault(setup.tool, view.box).empty()) return;
+  view.requested_setup = setup;
+  view.setup_changed = true;
+}
+
+// What researchers need and trainees do not.
+static void draw_laboratory(ViewState& view, ToolChoice& choice, bool& changed) {
+  if (!ui::header("Laboratory", "Algorithm, sizes, speed, drive and law of cutting, and all readings",
+                  view.open.laboratory))
+    return;
+  ImGui::Indent(ui::px(8));
+  draw_algorithm(view, changed);
+  draw_tool(view, choice, changed);
+  draw_drive(view, choice, changed);
+  ImGui::Unindent(ui::px(8));
+}
+
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size) {
   ImGui::SetNextWindowPos({ui::px(8), ui::px(8)});
   const float width = ui::px(kWidth_px);
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, static_cast<float>(size.height) - ui::px(70)});
-  ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
+  ui::begin_panel("osteomill", view.open.controls,
+                  ImGuiWindowFlags_MenuBar | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(ui::px(130));
-  draw_reading_aids(view);
-  draw_scan(view, simulation.scan.name);
+  draw_menu(view);
+  draw_scan(view, simulation);
   bool changed = false;
-  draw_isovalue(view, simulation);
-  draw_session(view, simulation.milling, simulation.tool_source.is_pointer());
-  draw_algorithm(view.requested_setup, changed);
-  const bool has_choice = !simulation.exercise || simulation.exercise->placed().exercise.burrs.empty();
-  draw_tool(view.requested_setup, has_choice, view.sound, changed);
-  draw_drive(view.requested_setup, has_choice, changed);
+  ToolChoice choice{!simulation.exercise || simulation.exercise->placed().exercise.burrs.empty()};
+  draw_milling(view, simulation, choice);
   draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);
-  draw_cuts(view, simulation);
   files.draw(view, simulation);
+  draw_cuts(view, simulation);
+  draw_isovalue(view, simulation);
+  draw_laboratory(view, choice, changed);
+  if (choice.changed && choice.is_free && !simulation.from) copy_tool(view.requested_setup, view.tool);
+  changed = changed || choice.changed;
   view.setup_changed = view.setup_changed || changed;
   view.changes += changed ? 1 : 0;
   if (view.setup_changed && !simulation.milling.is_preparing()) {

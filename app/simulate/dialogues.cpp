@@ -22,7 +22,7 @@ void DialogueQueue::add(Dialogue dialogue) {
 }
 
 void DialogueQueue::add_error(const std::string& what) {
-  add({kComplaint, what, {{"Close", {}}}, {}, {}});
+  add({kComplaint, what, {{"Close", "Closes this message", {}}}, {}, {}});
 }
 
 bool DialogueQueue::run_reporting_errors(const std::function<void()>& work) {
@@ -57,7 +57,9 @@ Dialogue unsaved_question(const std::string& what, std::function<bool()> is_save
                           Dialogue::Action on_proceed, Dialogue::Action stay) {
   return {"Save the milled bone?",
           what + " loses what was milled and not saved.",
-          {{"Save", std::move(save)}, {"Discard", on_proceed}, {"Cancel", std::move(stay)}},
+          {{"Save", "Writes the milled bone as a scan, and then goes on", std::move(save)},
+           {"Discard", "Goes on without what was milled", on_proceed},
+           {"Cancel", "Leaves everything as it is", std::move(stay)}},
           std::move(is_saved),
           on_proceed};
 }
@@ -66,7 +68,9 @@ Dialogue report_question(Dialogue::Action report, Dialogue::Action close) {
   return {
       "Close osteomill",
       "You made a recording. Shall its report be written before the window closes?",
-      {{"Make the report and close", std::move(report)}, {"Close without", std::move(close)}, {"Stay", {}}},
+      {{"Make the report and close", "Writes a page about the recording, and then closes", std::move(report)},
+       {"Close without", "Closes the window; the recording is kept", std::move(close)},
+       {"Stay", "Leaves the window open", {}}},
       {},
       {}};
 }
@@ -74,7 +78,9 @@ Dialogue report_question(Dialogue::Action report, Dialogue::Action close) {
 Dialogue unfinished_question(Dialogue::Action measure, Dialogue::Action close) {
   return {"Close osteomill",
           "The exercise is not finished. Shall it be measured before the window closes?",
-          {{"Measure and close", std::move(measure)}, {"Close without", std::move(close)}, {"Stay", {}}},
+          {{"Measure and close", "Writes the results of what you did, and then closes", std::move(measure)},
+           {"Close without", "Closes the window; the recording is kept", std::move(close)},
+           {"Stay", "Leaves the window open", {}}},
           {},
           {}};
 }
@@ -82,7 +88,8 @@ Dialogue unfinished_question(Dialogue::Action measure, Dialogue::Action close) {
 Dialogue measuring_message(std::function<bool()> is_measured, Dialogue::Action close) {
   return {"Close osteomill",
           "The exercise is being measured.",
-          {{"Close without results", close}, {"Stay", {}}},
+          {{"Close without results", "Closes the window at once; the recording is kept", close},
+           {"Stay", "Leaves the window open", {}}},
           std::move(is_measured),
           close};
 }
@@ -94,7 +101,9 @@ Dialogue leftover_question(const SessionStart& leftover, Dialogue::Action open, 
       fmt::format("When osteomill last ended, {:.1f} mm³ of this bone had been milled and not saved:\n{}\n"
                   "(isovalue {:g}). Shall it be opened as it was?",
                   leftover.removed_mm3, leftover.run.scan_name, leftover.run.isovalue),
-      {{"Open it", std::move(open)}, {"Delete it", std::move(remove)}, {"Later", std::move(later)}},
+      {{"Open it", "Opens the scan with what was milled of it", std::move(open)},
+       {"Delete it", "Deletes what was milled; the scan stays", std::move(remove)},
+       {"Later", "Asks again at the next start", std::move(later)}},
       {},
       {}};
 }

@@ -16,6 +16,7 @@ struct Dialogue {
   using Action = std::function<void()>;
   struct Choice {
     std::string label;
+    std::string hint;
     Action action;
   };
   std::string title;

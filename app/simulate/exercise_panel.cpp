@@ -10,6 +10,7 @@
 #include <imgui.h>
 
 #include "app/simulate/panels.h"
+#include "app/simulate/theme.h"
 #include "app/simulate/widgets.h"
 
 namespace osteomill::app {
@@ -19,7 +20,6 @@ namespace {
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoFocusOnAppearing |
                                     ImGuiWindowFlags_AlwaysAutoResize;
-const ImVec4 kFar{0.55f, 0.90f, 0.60f, 1}, kTouching{1.0f, 0.38f, 0.30f, 1};
 
 std::string clock_text(double time_s) {
   const auto whole_s = static_cast<int>(std::max(time_s, 0.0));
@@ -47,21 +47,12 @@ void draw_distance(const Simulation& simulation, const TickRecord& record) {
   const auto reading = work.nearest(record.X_WT.position_mm, simulation.milling.setup().tool.burr_radius_mm);
   if (!reading) return;
   const double warn_mm = work.placed().structures[reading->structure].warn_mm;
-  const ImVec4& colour = reading->distance_mm <= 0        ? kTouching
-                         : reading->distance_mm < warn_mm ? ui::kWarning
-                                                          : kFar;
+  const ImVec4 colour = ui::ink(reading->distance_mm <= 0        ? ui::Ink::danger
+                                : reading->distance_mm < warn_mm ? ui::Ink::warning
+                                                                 : ui::Ink::good);
   ImGui::SetWindowFontScale(1.4f);
   ImGui::TextColored(colour, "%s", distance_text(simulation, record).c_str());
   ImGui::SetWindowFontScale(1);
-}
-
-// Goes on in the same line if a widget with this label has room there.
-void stay_in_line(const std::string& label) {
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float right_px = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  const float width_px =
-      ImGui::CalcTextSize(label.c_str()).x + ImGui::GetFrameHeight() + 2 * style.ItemSpacing.x;
-  if (ImGui::GetItemRectMax().x + width_px <= right_px) ImGui::SameLine();
 }
 
 // The burrs that the exercise allows.
@@ -70,21 +61,22 @@ void draw_burrs(ViewState& view, const Exercise& exercise) {
   bool is_changed = false, has_own_edge = true;
   for (const AllowedBurr& burr : exercise.burrs) {
     const std::string label = burr.label();
-    if (&burr != &exercise.burrs.front()) stay_in_line(label);
-    if (ui::radio((label + "##burr").c_str(), burr.is_in(setup))) {
+    if (&burr != &exercise.burrs.front()) ui::same_line_if_room(label);
+    if (ui::radio((label + "##burr").c_str(), "Puts this burr, which the exercise allows, on the tool",
+                  burr.is_in(setup))) {
       burr.put_into(setup);
       is_changed = true;
     }
     has_own_edge = has_own_edge && burr.named != nullptr;
   }
   if (exercise.burrs.empty() || !has_own_edge) {
-    if (!exercise.burrs.empty()) stay_in_line("diamond");
+    if (!exercise.burrs.empty()) ui::same_line_if_room("diamond");
     bool diamond = setup.burr == BurrEdge::diamond;
-    if (ui::checkbox("diamond##burr", &diamond)) {
+    if (ui::checkbox("diamond##burr",
+                     "A burr set with diamonds, which grinds; else one with teeth, which cuts", &diamond)) {
       setup.burr = diamond ? BurrEdge::diamond : BurrEdge::cutting;
       is_changed = true;
     }
-    ui::tooltip("A burr set with diamonds, which grinds; else one with teeth, which cuts");
   }
   view.setup_changed = view.setup_changed || is_changed;
   view.changes += is_changed ? 1 : 0;
@@ -92,12 +84,15 @@ void draw_burrs(ViewState& view, const Exercise& exercise) {
 
 void draw_switches(ExerciseWork& work) {
   bool guidance = work.has_guidance(), beat = work.has_beat();
-  if (ui::checkbox("guidance (G)##exercise", &guidance)) work.show_guidance(guidance);
-  ui::tooltip("Shows step, distance and colours; the recording says when they were shown");
+  if (ui::checkbox("guidance (G)##exercise",
+                   "Shows step, distance and colours; the recording says when they were shown", &guidance))
+    work.show_guidance(guidance);
   if (work.placed().structures.empty()) return;
   ImGui::SameLine();
-  if (ui::checkbox("beat (M)##exercise", &beat)) work.play_beat(beat);
-  ui::tooltip("A beat that quickens as the burr comes near a structure; each structure has its own pitch");
+  if (ui::checkbox(
+          "beat (M)##exercise",
+          "A beat that quickens as the burr comes near a structure; each structure has its own pitch", &beat))
+    work.play_beat(beat);
 }
 
 void take_exercise_keys(ExerciseWork& work) {
@@ -130,15 +125,15 @@ void draw_work(ViewState& view, Simulation& simulation, FilesPanel& files, const
   draw_switches(work);
   const double time_s = files.recording_s(simulation).value_or(0);
   const bool is_late = exercise.time_s && time_s > *exercise.time_s;
-  ImGui::TextColored(is_late ? ui::kWarning : ImGui::GetStyleColorVec4(ImGuiCol_Text), "%s",
+  ImGui::TextColored(is_late ? ui::ink(ui::Ink::warning) : ImGui::GetStyleColorVec4(ImGuiCol_Text), "%s",
                      time_text(exercise, time_s).c_str());
   ImGui::SameLine();
   if (work.is_measuring()) {
     ImGui::TextUnformatted("Measuring ...");
   } else if (simulation.milling.is_recording()) {
-    if (ui::button("Finish")) view.finish_requested = true;
-    ui::tooltip("Ends the recording, measures it and shows the results");
-  } else if (ui::button("Work on")) {
+    if (ui::button("Finish", "Ends the recording, measures it and shows the results"))
+      view.finish_requested = true;
+  } else if (ui::button("Work on", "Goes on with this bone in a new recording")) {
     files.begin_recording(view, simulation, "exercise.h5");
   }
   ImGui::End();
@@ -154,7 +149,9 @@ void draw_row(const MeasuredValue& row) {
   ImGui::TableNextColumn();
   ImGui::TextWrapped("%s", row.limit.c_str());
   ImGui::TableNextColumn();
-  if (row.is_met) ImGui::TextColored(*row.is_met ? kFar : ui::kWarning, *row.is_met ? "met" : "not met");
+  if (row.is_met)
+    ImGui::TextColored(ui::ink(*row.is_met ? ui::Ink::good : ui::Ink::warning),
+                       *row.is_met ? "met" : "not met");
 }
 
 void draw_rows(const char* name, const std::vector<MeasuredValue>& rows, bool limited) {
@@ -174,22 +171,26 @@ void draw_results(ViewState& view, Simulation& simulation, const FilesPanel& fil
   place_between_columns(size, ui::px(8), 0);
   ImGui::Begin(fmt::format("Results: {}###results", work.placed().exercise.title).c_str(), nullptr, kFixed);
   draw_rows("##items", work.results(), true);
-  if (ui::header("All measures", false)) {
+  if (ui::header("All measures", "Everything that was measured, also without a limit", view.open.measures)) {
     ImGui::BeginChild("##all", {0, 0.4f * static_cast<float>(size.height)});
     draw_rows("##measures", work.results(), false);
     ImGui::EndChild();
   }
   ImGui::TextWrapped("%s", (work.folder() / "debrief.html").string().c_str());
-  if (ui::button("Open page")) view.dialogues.run_reporting_errors([&] { work.open_page(); });
-  ui::tooltip("Shows bone, course and every error in the browser; nothing leaves the machine");
-  ImGui::SameLine();
-  if (ui::button("Back to the bone")) work.close_results();
-  ImGui::SameLine();
-  if (ui::button("Try again")) view.exercise_requested = work.recorded().file;
-  ImGui::SameLine();
-  if (ui::button("Play it back")) view.scan_requested = files.last_recording().string();
-  ImGui::SameLine();
-  if (ui::button("Start page")) view.start_page_requested = true;
+  if (ui::button("Open page",
+                 "Shows bone, course and every error in the browser; nothing leaves the machine"))
+    view.dialogues.run_reporting_errors([&] { work.open_page(); });
+  ui::same_line_if_room("Back to the bone");
+  if (ui::button("Back to the bone", "Closes the results and shows the bone as you left it"))
+    work.close_results();
+  ui::same_line_if_room("Try again");
+  if (ui::button("Try again", "Begins the exercise again with the whole bone"))
+    view.exercise_requested = work.recorded().file;
+  ui::same_line_if_room("Play it back");
+  if (ui::button("Play it back", "Shows what you did again, from which you may mill on at any moment"))
+    view.scan_requested = files.last_recording().string();
+  ui::same_line_if_room("Start page");
+  if (ui::button("Start page", kStartPageHint)) view.start_page_requested = true;
   ImGui::End();
 }
 

@@ -18,6 +18,7 @@
 #include "osteomill/visual/mesh_file.h"
 #include "osteomill/visual/surface_mesh.h"
 
+#include "app/simulate/theme.h"
 #include "app/simulate/widgets.h"
 
 namespace osteomill::app {
@@ -165,22 +166,22 @@ float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, co
   ImGui::Begin("##said", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                    ImGuiWindowFlags_NoFocusOnAppearing);
-  const ImVec4 going_on(0.55f, 0.80f, 1.0f, 1);
+  const ImVec4 going_on = ui::ink(ui::Ink::note);
   if (preparing) ImGui::TextColored(going_on, "preparing ...");
   if (is_busy()) ImGui::TextColored(going_on, "writing ...");
   if (!view.message.empty()) {
     ImGui::TextWrapped("%s", view.message.c_str());
     if (!view.report.empty()) {
-      if (ui::button("Open report")) view.dialogues.run_reporting_errors([&] { open_outside(view.report); });
+      if (ui::button("Open report", "Shows the page of the report in the browser"))
+        view.dialogues.run_reporting_errors([&] { open_outside(view.report); });
       ImGui::SameLine();
     }
     if (!view.result.empty()) {
-      if (ui::button("Open folder"))
+      if (ui::button("Open folder", "Shows the folder that holds what was written"))
         view.dialogues.run_reporting_errors([&] { open_outside(fs::absolute(view.result).parent_path()); });
-      ui::tooltip("The folder that holds it");
       ImGui::SameLine();
     }
-    if (ui::button("Hide")) {
+    if (ui::button("Hide", "Takes this message away; the file stays")) {
       view.message.clear();
       view.result.clear();
       view.report.clear();
@@ -197,8 +198,11 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
     view.dialogues.run_reporting_errors([&] { simulation.milling.stop_recording(); });
     view.message.clear();
   }
-  if (!ui::header("Record and save", true)) return;
-  if (ui::button(simulation.milling.is_recording() ? "Stop recording##r" : "Record##r")) {
+  if (!ui::header("Record and save", "Record what you do, and save bone and pictures as files",
+                  view.open.files))
+    return;
+  if (ui::button(simulation.milling.is_recording() ? "Stop recording##r" : "Record##r",
+                 "Records all that you do and feel from here on, until it is pressed again")) {
     // A recording of an exercise ends in its results.
     if (simulation.exercise && simulation.milling.is_recording())
       view.finish_requested = true;
@@ -207,15 +211,17 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   }
   ImGui::SameLine();
   const bool free = !is_busy();
-  if (ui::button("Report", free && !last_recording_.empty())) make_report();
-  ui::tooltip("Writes a page of figures and tables about the last recording");
+  if (ui::button("Report", "Writes a page of figures and tables about the last recording",
+                 free && !last_recording_.empty()))
+    make_report();
   ImGui::SameLine();
-  if (ui::button("Play back", free && !last_recording_.empty()))
+  if (ui::button("Play back", "Shows the last recording, from which you may mill on at any moment",
+                 free && !last_recording_.empty()))
     view.scan_requested = last_recording_.string();
-  ui::tooltip("Shows the last recording, from which you may mill on at any moment");
-  if (ui::button("Save scan", free)) save_scan(view, simulation);
+  if (ui::button("Save scan", "Writes the milled bone as a scan (NRRD)", free)) save_scan(view, simulation);
   ImGui::SameLine();
-  if (ui::button("Save surface", free)) {
+  if (ui::button("Save surface", "Writes the surface of the milled bone as triangles (PLY), as for a printer",
+                 free)) {
     view.dialogues.run_reporting_errors([&] {
       BrickMesh mesh;
       simulation.milling.follower().read(
@@ -225,7 +231,8 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
     });
   }
   ImGui::SameLine();
-  if (ui::button("Save picture")) view.picture_requested = true;
+  if (ui::button("Save picture", "Writes the view of the bone, without these panels, as a picture (PNG)"))
+    view.picture_requested = true;
 }
 
 }  // namespace osteomill::app

@@ -7,6 +7,7 @@
 #include "osteomill/visual/annotations.h"
 
 #include "app/simulate/panels.h"
+#include "app/simulate/theme.h"
 #include "app/simulate/widgets.h"
 
 namespace osteomill::app {
@@ -83,7 +84,7 @@ void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span)
   ImGui::Begin("How to mill", nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoFocusOnAppearing);
-  if (ui::button("Start milling")) view.help = false;
+  if (ui::button("Start milling", "Closes this page; F1 shows it again")) view.help = false;
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(
       "Gold and grey: the tool, which bone stops. Blue: your hand; the deeper it is in the bone, the harder "
@@ -95,7 +96,7 @@ void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span)
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui::px(8), ui::px(1)});
   for (const auto& [what, how] : kControls) {
     ImGui::TextUnformatted(what);
-    ImGui::PushStyleColor(ImGuiCol_Text, {0.55f, 0.80f, 1.0f, 1.0f});
+    ImGui::PushStyleColor(ImGuiCol_Text, ui::ink(ui::Ink::note));
     ImGui::TextWrapped("%s", how);
     ImGui::PopStyleColor();
   }
@@ -134,9 +135,9 @@ void draw_dialogue(DialogueQueue& dialogues) {
     ImGui::TextUnformatted(shown->text.c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
-    std::vector<std::string> labels;
-    for (const Dialogue::Choice& choice : shown->choices) labels.push_back(choice.label);
-    if (const auto chosen = ui::choice(labels)) dialogues.choose(*chosen);
+    std::vector<ui::Choice> choices;
+    for (const Dialogue::Choice& choice : shown->choices) choices.push_back({choice.label, choice.hint});
+    if (const auto chosen = ui::choice(choices)) dialogues.choose(*chosen);
   }
   ImGui::EndPopup();
 }
@@ -153,7 +154,8 @@ bool draw_loading(const std::string& what, double share_done, double passed_s, c
   ImGui::ProgressBar(static_cast<float>(share_done), {ui::px(360), 0});
   ImGui::Text("%.0f s", passed_s);
   ImGui::SameLine();
-  const bool given_up = ui::button("Cancel") || (!is_dialogue_open() && ui::is_key_pressed(GLFW_KEY_ESCAPE));
+  const bool given_up = ui::button("Cancel", "Stops opening this scan") ||
+                        (!is_dialogue_open() && ui::is_key_pressed(GLFW_KEY_ESCAPE));
   ImGui::End();
   return given_up;
 }

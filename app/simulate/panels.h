@@ -14,8 +14,19 @@
 
 namespace osteomill::app {
 
+/// Hints of controls that several panels have.
+inline constexpr const char* kWholeHint = "Shows all of the bone from the same side";
+inline constexpr const char* kStartPageHint =
+    "Closes this bone and shows the exercises and scans to begin with";
+inline constexpr const char* kGhostHint = "Shows in blue where your hand is if bone holds the tool back";
+inline constexpr const char* kArrowsHint =
+    "Shows the force on your hand as a green arrow and the torque as an amber one";
+
 /// The column on the left: everything that can be set.
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
+
+/// Asks for the tool that is remembered, if it can work with the bone.
+void recall_tool(ViewState& view);
 
 /// The free part of the right column, pixels from the top.
 struct VerticalSpan {

@@ -9,6 +9,7 @@
 #include "osteomill/base/round_numbers.h"
 
 #include "app/simulate/panels.h"
+#include "app/simulate/theme.h"
 #include "app/simulate/widgets.h"
 
 namespace osteomill::app {
@@ -70,13 +71,13 @@ void draw_time_line(Playback& playback) {
   auto time_s = static_cast<float>(playback.record().time_s);
   ImGui::SetCursorScreenPos({from_px, ImGui::GetCursorScreenPos().y});
   ImGui::PushItemWidth(width_px);
-  if (ui::slider("##time", &time_s, static_cast<float>(playback.begin_s()),
-                 static_cast<float>(playback.end_s()), "%.3f s", ImGuiSliderFlags_AlwaysClamp)) {
+  if (ui::slider("##time", "Goes to a time of the recording. Drag, or hold Ctrl and click to type a time",
+                 &time_s, static_cast<float>(playback.begin_s()), static_cast<float>(playback.end_s()),
+                 "%.3f s", ImGuiSliderFlags_AlwaysClamp)) {
     playback.play(false);
     playback.go_to_time(static_cast<double>(time_s));
   }
   ImGui::PopItemWidth();
-  ui::tooltip("Drag, or hold Ctrl and click to type a time");
   // The slider's ends are half its grip inside.
   const float inside_px = 0.5f * ImGui::GetStyle().GrabMinSize + 2;
   const TimeAxis axis{from_px + inside_px, from_px + width_px - inside_px, playback.begin_s(),
@@ -129,25 +130,28 @@ void draw_plot(const Playback& playback, const char* name, const char* unit,
 }
 
 void draw_buttons(Playback& playback) {
-  if (ui::button(playback.is_playing() ? "Pause##play" : "Play##play")) playback.play(!playback.is_playing());
-  ui::tooltip("Space plays and pauses");
+  if (ui::button(playback.is_playing() ? "Pause##play" : "Play##play",
+                 "Plays the recording, or holds it; Space does the same"))
+    playback.play(!playback.is_playing());
   for (const auto& [label, by] : {std::pair{"< tick", -1}, {"tick >", 1}}) {
     ImGui::SameLine();
-    if (!ui::button(label)) continue;
+    if (!ui::button(label, by < 0 ? "Goes back by one tick" : "Goes on by one tick")) continue;
     playback.play(false);
     playback.go_to_tick(static_cast<std::size_t>(
         std::max<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(playback.tick()) + by, 0)));
   }
   for (const auto& [label, speed] : {std::pair{"0.1x", 0.1}, {"1x", 1.0}, {"4x", 4.0}, {"16x", 16.0}}) {
     ImGui::SameLine();
-    if (ui::radio(label, playback.speed() == speed)) playback.set_speed(speed);
+    if (ui::radio(label, fmt::format("Plays {:g} times as fast as it was recorded", speed),
+                  playback.speed() == speed))
+      playback.set_speed(speed);
   }
   ImGui::SameLine();
   bool follows = playback.follows_recorded_view();
   ImGui::BeginDisabled(playback.view() == nullptr);
-  if (ui::checkbox("recorded camera", &follows)) playback.follow_recorded_view(follows);
+  if (ui::checkbox("recorded camera", "Looks as the trainee did. To look freely, drag the picture", &follows))
+    playback.follow_recorded_view(follows);
   ImGui::EndDisabled();
-  ui::tooltip("Looks as the trainee did. To look freely, drag the picture");
 }
 
 void row(const char* name, const std::string& value) {
@@ -190,18 +194,18 @@ void draw_playback(ViewState& view, Playback& playback, const PixelSize& size) {
   ImGui::SetNextWindowPos({ui::px(8), ui::px(8)});
   ImGui::SetNextWindowSize({ui::px(300), 0});
   ImGui::Begin("Playback", nullptr, kFixed);
-  if (ui::button("Again from here")) {
+  if (ui::button("Again from here",
+                 "Mills on from this tick: with its bone, tool, settings and clock, into a new recording")) {
     playback.play(false);
     view.branch_requested = BranchOptions{playback.recording().path.string(), playback.record().time_s};
   }
-  ui::tooltip("Mills on from this tick: with its bone, tool, settings and clock, into a new recording");
   ImGui::SameLine();
-  if (ui::button("Whole")) view.camera = showing_whole(view.camera, view.box, size);
+  if (ui::button("Whole", kWholeHint)) view.camera = showing_whole(view.camera, view.box, size);
   ImGui::SameLine();
-  if (ui::button("Start page")) view.start_page_requested = true;
-  ui::checkbox("ghost", &view.ghost);
+  if (ui::button("Start page", kStartPageHint)) view.start_page_requested = true;
+  ui::checkbox("ghost", kGhostHint, &view.ghost);
   ImGui::SameLine();
-  ui::checkbox("arrows", &view.arrows);
+  ui::checkbox("arrows", kArrowsHint, &view.arrows);
   draw_facts(playback);
   ImGui::End();
   const float width_px = static_cast<float>(size.width) - ui::px(16);
@@ -213,11 +217,11 @@ void draw_playback(ViewState& view, Playback& playback, const PixelSize& size) {
   const float plot_px = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
   draw_plot(
       playback, "force", "N", [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1,
-      {0.30f, 0.85f, 0.40f, 1}, plot_px);
+      ui::ink(ui::Ink::force), plot_px);
   ImGui::SameLine();
   draw_plot(
       playback, "torque", "N mm", [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); }, 5,
-      {0.98f, 0.76f, 0.25f, 1}, plot_px);
+      ui::ink(ui::Ink::torque), plot_px);
   ImGui::End();
 }
 

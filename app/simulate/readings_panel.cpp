@@ -11,6 +11,7 @@
 #include "osteomill/session/workspace.h"
 
 #include "app/simulate/panels.h"
+#include "app/simulate/theme.h"
 #include "app/simulate/widgets.h"
 
 namespace osteomill::app {
@@ -71,7 +72,7 @@ void plot(const char* name, const char* unit, const Simulation& simulation,
     list.AddText(ImGui::GetFont(), small_px, at, grey, text.c_str());
   };
   write(fmt::format("{:g} {}", scale, unit), 0, 0);
-  write("0, 5 s ago", 0, 1);
+  write("5 s ago", 0, 1);
   write("now", 1, 1);
 }
 
@@ -88,7 +89,7 @@ void draw_faults(const std::deque<TickRecord>& history) {
                            : limited > 0 ? fmt::format("limited, {} ticks", limited)
                                          : "as computed";
   row("hand gets", text,
-      held_back || zero + limited > 0 ? ui::kWarning : ImGui::GetStyleColorVec4(ImGuiCol_Text));
+      held_back || zero + limited > 0 ? ui::ink(ui::Ink::warning) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
   ui::tooltip(fmt::format(
       "Of the last {} ticks, {} would have been stronger than the limits of force and torque. {} had "
       "none: in {} the hand was moved too fast, or the tick came too late, to be safe, and in {} "
@@ -122,16 +123,18 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   ViewState::Calibration& calibration = view.calibration;
   if (calibration.step == Step::none) {
     ImGui::SameLine(ui::px(kCalibrate_px));
-    if (ui::button("Calibrate")) calibration = {Step::right, handle_B_mm, Vec3::Zero()};
-    ui::tooltip("Two moves of your hand tell how the device stands before you; the tool stays meanwhile");
+    if (ui::button("Calibrate",
+                   "Two moves of your hand tell how the device stands before you; the tool stays meanwhile"))
+      calibration = {Step::right, handle_B_mm, Vec3::Zero()};
     return;
   }
   const bool to_the_right = calibration.step == Step::right;
   ImGui::TextWrapped("%s", to_the_right ? "Move your hand some centimetres to the right, then press"
                                         : "Now move it some centimetres up, then press");
-  const bool moved = ui::button(to_the_right ? "That was right" : "That was up");
+  const bool moved = ui::button(to_the_right ? "That was right" : "That was up",
+                                "Takes the move that your hand has made since the last press");
   ImGui::SameLine();
-  if (ui::button("Cancel##calibration")) {
+  if (ui::button("Cancel##calibration", "Leaves what is known of the device as it was")) {
     calibration = {};
   } else if (moved && to_the_right) {
     calibration = {Step::up, handle_B_mm, handle_B_mm - calibration.from_B_mm};
@@ -161,7 +164,6 @@ void draw_device(ViewState& view, ConnectedDevice& device) {
   draw_complaint(report.complaint());
 }
 
-const ImVec4 kNoGo{1.0f, 0.38f, 0.30f, 1};
 // Most rows that are shown; a longer list is scrolled.
 constexpr float kMaxRows = 12;
 constexpr float kMinRows = 2;
@@ -180,7 +182,7 @@ void draw_row(const Simulation& simulation, std::size_t n) {
   ImGui::GetWindowDrawList()->AddRectFilled(place, {place.x + side, place.y + side}, colour_of(label), 2);
   ImGui::Dummy({side, side});
   ImGui::SameLine();
-  const ImVec4 text = label.no_go ? kNoGo : ImGui::GetStyleColorVec4(ImGuiCol_Text);
+  const ImVec4 text = label.no_go ? ui::ink(ui::Ink::danger) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
   ImGui::TextColored(text, "%s%s", label.name.c_str(), label.no_go ? " (no-go)" : "");
   const LabelCount::Entry& entry = simulation.label_count.entries()[n];
   if (entry.contacts > 0) {
@@ -198,33 +200,48 @@ void draw_row(const Simulation& simulation, std::size_t n) {
 
 }  // namespace
 
-float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size) {
-  ui::begin_side_panel("Readings", ui::px(8));
+// How well the haptic thread keeps time.
+static void draw_timing(const Simulation& simulation, double pictures_per_s) {
   const TimingSummary timing = simulation.milling.timing();
-  const LiveState& state = simulation.milling.state();
   row("haptic rate", fmt::format("{:.0f} ticks/s", timing.recent_ticks_per_s));
   row("step", fmt::format("{:.0f} us, p99 {:.0f} us", timing.step.p50_us, timing.step.p99_us));
+  ui::tooltip("Time to compute the force of one tick: the median, and that of the slowest of a hundred");
   row("late ticks", fmt::format("{} of {}", timing.late_ticks + timing.missed_ticks, timing.ticks));
   row("pictures", fmt::format("{:.0f} / s", pictures_per_s));
-  draw_faults(simulation.history);
-  row("removed", fmt::format("{:.2f} mm³ by density", state.record.removed_mm3));
-  ui::tooltip(
-      "Volume that what was removed would have at the scan's usual density of bone: half as dense counts "
-      "half. "
-      "The results of an exercise count the voxels that are no longer bone instead");
-  const double set_rpm = simulation.milling.setup().cutting.spindle_speed_rpm;
-  row("spindle", fmt::format("{:.0f} of {:.0f} rpm", std::max(state.record.spindle_rpm, 0.0), set_rpm));
-  ui::tooltip("The spindle's speed, and the one that it is set to");
-  if (simulation.tool_source.hardware != nullptr) draw_device(view, *simulation.tool_source.hardware);
+}
+
+static void draw_plots(const Simulation& simulation, const PixelSize& size) {
   ImGui::Separator();
   // Lower in a low window, where the text needs the room.
   const float height_px = std::min(ui::px(56), 0.07f * static_cast<float>(size.height));
   plot(
       "force", "N", simulation, [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1,
-      {0.30f, 0.85f, 0.40f, 1}, height_px);
+      ui::ink(ui::Ink::force), height_px);
   plot(
       "torque", "N mm", simulation, [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); }, 5,
-      {0.98f, 0.76f, 0.25f, 1}, height_px);
+      ui::ink(ui::Ink::torque), height_px);
+}
+
+float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size) {
+  ui::begin_side_panel("Readings", ui::px(8), &view.open.readings);
+  const TickRecord& record = simulation.milling.state().record;
+  if (view.open.laboratory) {
+    draw_timing(simulation, pictures_per_s);
+  } else {
+    row("force", fmt::format("{:.2f} N", record.wrench.force_N.norm()));
+    ui::tooltip("Strength of the force on your hand");
+  }
+  draw_faults(simulation.history);
+  row("removed", fmt::format("{:.2f} mm³", record.removed_mm3));
+  ui::tooltip(
+      "Volume that what was removed would have at the scan's usual density of bone: half as dense counts "
+      "half. "
+      "The results of an exercise count the voxels that are no longer bone instead");
+  const double set_rpm = simulation.milling.setup().cutting.spindle_speed_rpm;
+  row("spindle", fmt::format("{:.0f} of {:.0f} rpm", std::max(record.spindle_rpm, 0.0), set_rpm));
+  ui::tooltip("The spindle's speed, and the one that it is set to");
+  if (simulation.tool_source.hardware != nullptr) draw_device(view, *simulation.tool_source.hardware);
+  if (view.open.laboratory) draw_plots(simulation, size);
   if (const std::string& refused = simulation.milling.refused_real_time(); !refused.empty())
     ui::warning(refused);
   return ui::end_side_panel();
@@ -238,10 +255,11 @@ float draw_labels(ViewState& view, const Simulation& simulation, const VerticalS
   const float rows = std::min({static_cast<float>(count), kMaxRows, rows_px / line_px});
   // Once help was read there is room for them.
   if (view.help && rows < kMinRows) return span.top_px;
-  ui::begin_side_panel("Labels", span.top_px, ImGuiWindowFlags_NoFocusOnAppearing);
-  ui::checkbox("label colours", &view.labels);
-  ui::tooltip(
-      "Shows bone in the colours of its label map. Beside each label stands how much of it was removed");
+  ui::begin_side_panel("Labels", span.top_px, nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
+  ui::checkbox(
+      "label colours",
+      "Shows bone in the colours of its label map. Beside each label stands how much of it was removed",
+      &view.labels);
   ImGui::BeginChild("##labels", {0, std::floor(std::max(rows, kMinRows) * line_px)});
   for (std::size_t n = 0; n < count; ++n) draw_row(simulation, n);
   ImGui::EndChild();

@@ -52,6 +52,8 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
     if (options->from.given()) refuse_recorded_options(*command);
     if (at->count() > 0 && !options->from.given() && !is_hdf5(options->scan.scan))
       throw CLI::RequiredError("--at: --from, or a recording to be played,");
+    options->remembered = read_preferences();
+    options->is_tool_free = given_tool_options(*command).empty();
     Simulator(*options).run();
   });
 }

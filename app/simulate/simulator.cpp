@@ -30,6 +30,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr PixelSize kWindowSize{1280, 800};
 
+// The command line comes before what is remembered.
+std::optional<double> text_scale_of(const SimulatorOptions& options) {
+  const double remembered = options.remembered.text_scale;
+  return options.ui_scale || remembered == 0 ? options.ui_scale : remembered;
+}
+
 // Returns whether this user has never seen the help on this machine. Leaves a file that says that it was
 // seen; if none can be left the help is shown at every start.
 bool note_first_help() {
@@ -55,10 +61,12 @@ Simulator::Simulator(const SimulatorOptions& options)
     : options_(options),
       setup_(options.milling.setup),
       hardware_(open_device(options.device)),
-      stage_{.window{"osteomill", kWindowSize, options.ui_scale},
-             .files{options.folder,
-                    [this](const Camera& camera) { return milling_->picture(camera, stage_); }}} {
+      stage_{
+          .window{"osteomill", kWindowSize, text_scale_of(options), options.remembered.place},
+          .files{options.folder, [this](const Camera& camera) { return milling_->picture(camera, stage_); }}},
+      keeper_(options.remembered) {
   if (hardware_) setup_.guard.limits = hardware_->limits_W(setup_.guard.limits);
+  static_cast<Preferences&>(stage_.view) = options.remembered;
   stage_.view.help = !options.no_help;
 }
 
@@ -76,6 +84,7 @@ void Simulator::run() {
     draw_dialogue(stage_.view.dialogues);
     finish_picture();
   }
+  keeper_.keep_now(stage_.view);
   if (options_.driver != nullptr) options_.driver->finish();
   print_results();
 }
@@ -130,8 +139,12 @@ void Simulator::finish_picture() {
   if (std::exchange(view.full_screen_requested, false)) window.toggle_full_screen();
   if (const int steps = std::exchange(view.text_steps, 0); steps != 0) {
     constexpr double kStep = 0.25;
-    window.ask_ui_scale(std::clamp(window.ui_scale() + kStep * steps, kMinScale, kMaxScale));
+    view.text_scale = std::clamp(window.ui_scale() + kStep * steps, kMinScale, kMaxScale);
+    window.ask_ui_scale(view.text_scale);
   }
+  window.ask_theme(view.theme);
+  view.place = window.place();
+  keeper_.keep(view);
   // More pictures than anyone sees would only take time from the other threads.
   constexpr auto kMin = 12ms;
   std::this_thread::sleep_until(last_picture_ + kMin);
@@ -288,6 +301,7 @@ void Simulator::take_first() {
 void Simulator::take_opened() {
   PreparedScan opened = *std::exchange(opened_, std::nullopt);
   ViewState& view = stage_.view;
+  const bool brings_tool = milling_ || opened.exercise || opened.from || !options_.is_tool_free;
   if (milling_) {
     leave_scan(opened.scan);
   } else if (!opened.playback) {
@@ -297,7 +311,11 @@ void Simulator::take_opened() {
   options_.scan = opened.scan.source;
   start_page_.reset();
   stage_.window.set_title(std::filesystem::path(opened.scan.name).filename().string() + " - osteomill");
-  if (!opened.playback) return begin_milling(std::move(opened));
+  if (!opened.playback) {
+    begin_milling(std::move(opened));
+    if (!brings_tool) recall_tool(view);
+    return;
+  }
   const double at_s = options_.from.given() ? 0 : std::exchange(options_.from.at_s, 0);
   playback_ = std::make_unique<PlaybackScreen>(std::move(opened.playback), at_s, stage_);
 }

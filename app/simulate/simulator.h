@@ -16,6 +16,7 @@
 #include "app/simulate/milling_screen.h"
 #include "app/simulate/opening.h"
 #include "app/simulate/playback_screen.h"
+#include "app/simulate/preferences.h"
 #include "app/simulate/stage.h"
 #include "app/simulate/start_page.h"
 #include "app/simulate/window_driver.h"
@@ -37,6 +38,9 @@ struct SimulatorOptions {
   /// Folder of recordings and saved files.
   std::string folder = ".";
   std::string command_line;
+  Preferences remembered;
+  /// No option gave another tool than the remembered one.
+  bool is_tool_free = true;
 };
 
 /// Everything between opening the window and closing it: which screen is shown, what is opened next, and that
@@ -94,6 +98,7 @@ class Simulator {
   MillingSetup setup_;
   std::unique_ptr<ConnectedDevice> hardware_;
   Stage stage_;
+  PreferencesKeeper keeper_;
   Opening opening_;
   // Waits for the answer to what becomes of the scan that is milled.
   std::optional<PreparedScan> opened_;

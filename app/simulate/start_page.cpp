@@ -111,7 +111,7 @@ bool StartPage::draw_entry(const Entry& entry, float width_px) const {
     ImGui::Image(texture, {width_px, width_px / entry.width_by_height});
     is_chosen = ImGui::IsItemClicked();
   }
-  is_chosen = ui::button(entry.title.c_str()) || is_chosen;
+  is_chosen = ui::button(entry.title.c_str(), "Opens this exercise and begins to record it") || is_chosen;
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width_px);
   ImGui::TextUnformatted(entry.task.c_str());
   ImGui::PopTextWrapPos();
@@ -137,18 +137,21 @@ void StartPage::draw_exercises(std::optional<StartChoice>& choice) {
 void StartPage::draw_scans(std::optional<StartChoice>& choice) {
   ImGui::TextUnformatted("Scans");
   ImGui::PushItemWidth(ui::px(360));
-  const bool entered = ui::text_field("scan##start", scan_.data(), scan_.size());
+  const bool entered = ui::text_field("scan##start",
+                                      "Path of a DICOM folder, of a NRRD, MetaImage or NIfTI file, or of a "
+                                      "recording to be played; or drop it onto the window",
+                                      scan_.data(), scan_.size());
   ImGui::PopItemWidth();
-  ui::tooltip(
-      "Path of a DICOM folder, of a NRRD, MetaImage or NIfTI file, or of a recording to be played; or drop "
-      "it "
-      "onto the window");
   ImGui::SameLine();
-  if ((ui::button("Open##start") || entered) && scan_[0] != 0) choice = StartChoice{"", "", scan_.data()};
+  if ((ui::button("Open##start", "Opens the scan or the recording whose path stands beside it") || entered) &&
+      scan_[0] != 0)
+    choice = StartChoice{"", "", scan_.data()};
   ImGui::SameLine();
-  if (ui::button("Built-in tooth")) choice = StartChoice{"", "", "builtin:tooth"};
+  if (ui::button("Built-in tooth", "Opens a tooth that comes with the program, to try it"))
+    choice = StartChoice{"", "", "builtin:tooth"};
   for (const std::string& scan : recent_)
-    if (ui::button(scan.c_str())) choice = StartChoice{"", "", scan};
+    if (ui::button(scan.c_str(), "Opens this scan, which was open before"))
+      choice = StartChoice{"", "", scan};
 }
 
 std::optional<StartChoice> StartPage::draw(const PixelSize& size) {
@@ -159,9 +162,9 @@ std::optional<StartChoice> StartPage::draw(const PixelSize& size) {
   ImGui::Begin("osteomill##start", nullptr,
                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
   ImGui::PushItemWidth(ui::px(220));
-  ui::text_field("your name, or none##start", name_.data(), name_.size());
+  ui::text_field("your name, or none##start", "It is kept in the recording of an exercise", name_.data(),
+                 name_.size());
   ImGui::PopItemWidth();
-  ui::tooltip("It is kept in the recording of an exercise");
   ImGui::Spacing();
   draw_exercises(choice);
   ImGui::Separator();

@@ -11,14 +11,16 @@
 #include "app/branch_options.h"
 #include "app/simulate/bone_view.h"
 #include "app/simulate/dialogues.h"
+#include "app/simulate/preferences.h"
 
 namespace osteomill::app {
 
 /// The three planes across the patient and a free one.
 inline constexpr std::array<const char*, kMaxClipPlanes> kCutNames{"axial", "coronal", "sagittal", "free"};
 
-/// All that the window shows, and how, beside the simulation itself.
-struct ViewState {
+/// All that the window shows, and how, beside the simulation itself. What outlives the window is in
+/// Preferences.
+struct ViewState : Preferences {
   Camera camera;
   BoneBox box;
   Pose X_W_target;
@@ -31,6 +33,8 @@ struct ViewState {
   bool dragging_tool = false;
   /// Whether a hand was on the tool, in either way, in the picture before.
   bool was_held = false;
+  /// For how long the hand still gives way since nothing pushed the tool any more.
+  double relaxing_s = 0;
   bool dragging_view = false;
   /// The left button is the spindle's pedal as long as it is down.
   bool pedal_down = false;
@@ -47,10 +51,6 @@ struct ViewState {
   bool setup_changed = false;
   /// The number of changes of `requested_setup`.
   int changes = 0;
-  bool ghost = true;
-  bool arrows = true;
-  bool labels = true;
-  bool sound = true;
   bool help = true;
   /// The text in the field for the scan to open, and the scan to be opened once its button was pressed.
   std::array<char, 4096> scan_path{};

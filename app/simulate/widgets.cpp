@@ -4,6 +4,8 @@
 
 #include <GLFW/glfw3.h>
 
+#include "app/simulate/theme.h"
+
 namespace osteomill::app::ui {
 
 namespace {
@@ -27,14 +29,21 @@ std::map<std::string, WidgetState>& widget_states() {
 
 namespace {
 
-// Remembers the widget drawn last. Returns whether it acted.
-bool remember(const char* label, bool acted) {
+// Remembers the widget drawn last, and shows its hint if the pointer rests on it. Returns whether it acted.
+bool remember(const char* label, const std::string& hint, bool acted) {
   std::string text(label);
   text.erase(std::min(text.find("##"), text.size()));
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
+  const float right_px = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  const bool is_cut_off = max.x > right_px + 1 || ImGui::CalcTextSize(text.c_str()).x > max.x - min.x;
   WidgetState& state = widget_states()[text];
-  state = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)}, ImGui::GetFrameCount(), state.was_used || acted};
+  state = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)},
+           ImGui::GetFrameCount(),
+           state.was_used || acted,
+           hint,
+           is_cut_off};
+  tooltip(hint);
   return acted;
 }
 
@@ -44,10 +53,18 @@ bool is_key_pressed(int key) {
   return ImGui::IsKeyPressed(key, false);
 }
 
-void begin_side_panel(const char* title, float y_px, ImGuiWindowFlags flags) {
+bool begin_panel(const char* title, bool& open, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowCollapsed(!open);
+  open = ImGui::Begin(title, nullptr, flags | ImGuiWindowFlags_NoMove);
+  return open;
+}
+
+void begin_side_panel(const char* title, float y_px, bool* open, ImGuiWindowFlags flags) {
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - px(kSidePanelWidth_px + 8), y_px});
   ImGui::SetNextWindowSize({px(kSidePanelWidth_px), 0});
-  ImGui::Begin(title, nullptr, flags | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
+  bool always = true;
+  begin_panel(title, open != nullptr ? *open : always,
+              flags | ImGuiWindowFlags_NoResize | (open == nullptr ? ImGuiWindowFlags_NoCollapse : 0));
 }
 
 float end_side_panel() {
@@ -56,52 +73,69 @@ float end_side_panel() {
   return below_px;
 }
 
-bool button(const char* label, bool enabled) {
+bool button(const char* label, const std::string& hint, bool enabled) {
   if (!enabled) ImGui::BeginDisabled();
-  const bool acted = remember(label, ImGui::Button(label) && enabled);
+  const bool acted = remember(label, hint, ImGui::Button(label) && enabled);
   if (!enabled) ImGui::EndDisabled();
   return acted;
 }
 
-bool checkbox(const char* label, bool* value) {
-  return remember(label, ImGui::Checkbox(label, value));
+bool checkbox(const char* label, const std::string& hint, bool* value) {
+  return remember(label, hint, ImGui::Checkbox(label, value));
 }
 
-bool radio(const char* label, bool chosen) {
-  return remember(label, ImGui::RadioButton(label, chosen) && !chosen);
+bool radio(const char* label, const std::string& hint, bool chosen) {
+  return remember(label, hint, ImGui::RadioButton(label, chosen) && !chosen);
 }
 
-bool slider(const char* label, float* value, float min, float max, const char* format,
-            ImGuiSliderFlags flags) {
-  return remember(label, ImGui::SliderFloat(label, value, min, max, format, flags));
+bool slider(const char* label, const std::string& hint, float* value, float min, float max,
+            const char* format, ImGuiSliderFlags flags) {
+  return remember(label, hint, ImGui::SliderFloat(label, value, min, max, format, flags));
 }
 
-bool entry(const char* label, bool chosen) {
-  return remember(label, ImGui::Selectable(label, chosen, 0, {px(150), 0}) && !chosen);
+bool entry(const char* label, const std::string& hint, bool chosen) {
+  return remember(label, hint, ImGui::Selectable(label, chosen, 0, {px(150), 0}) && !chosen);
 }
 
-bool text_field(const char* label, char* text, std::size_t size) {
-  return remember(label, ImGui::InputText(label, text, size, ImGuiInputTextFlags_EnterReturnsTrue));
+bool text_field(const char* label, const std::string& hint, char* text, std::size_t size) {
+  return remember(label, hint, ImGui::InputText(label, text, size, ImGuiInputTextFlags_EnterReturnsTrue));
 }
 
-bool header(const char* label, bool open) {
-  const bool shown = ImGui::CollapsingHeader(label, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
-  remember(label, ImGui::IsItemToggledOpen());
-  return shown;
+bool header(const char* label, const std::string& hint, bool& open) {
+  ImGui::SetNextItemOpen(open);
+  open = ImGui::CollapsingHeader(label);
+  remember(label, hint, ImGui::IsItemToggledOpen());
+  return open;
 }
 
-std::optional<std::size_t> choice(const std::vector<std::string>& labels) {
+bool begin_menu(const char* label, const std::string& hint) {
+  const bool is_open = ImGui::BeginMenu(label);
+  // The item drawn last is then the menu's own window.
+  if (!is_open) remember(label, hint, false);
+  if (is_open && ImGui::IsWindowAppearing()) widget_states()[label].was_used = true;
+  return is_open;
+}
+
+void same_line_if_room(const std::string& label) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float right_px = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  const float width_px =
+      ImGui::CalcTextSize(label.c_str()).x + ImGui::GetFrameHeight() + 2 * style.ItemSpacing.x;
+  if (ImGui::GetItemRectMax().x + width_px <= right_px) ImGui::SameLine();
+}
+
+std::optional<std::size_t> choice(const std::vector<Choice>& choices) {
   std::optional<std::size_t> chosen;
-  for (std::size_t n = 0; n < labels.size(); ++n) {
+  for (std::size_t n = 0; n < choices.size(); ++n) {
     if (n > 0) ImGui::SameLine();
-    if (button(labels[n].c_str())) chosen = n;
+    if (button(choices[n].label.c_str(), choices[n].hint)) chosen = n;
   }
-  if (labels.empty()) return chosen;
+  if (choices.empty()) return chosen;
   // The key that led to the dialogue may still be going down.
   if (ImGui::IsWindowAppearing()) return chosen;
   if (is_key_pressed(GLFW_KEY_ENTER) || is_key_pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
-  if (is_key_pressed(GLFW_KEY_ESCAPE)) chosen = labels.size() - 1;
-  if (chosen) widget_states()[labels[*chosen]].was_used = true;
+  if (is_key_pressed(GLFW_KEY_ESCAPE)) chosen = choices.size() - 1;
+  if (chosen) widget_states()[choices[*chosen].label].was_used = true;
   return chosen;
 }
 
@@ -121,13 +155,13 @@ void badge(const std::string& text, float top_px, float margin_px, ImU32 ground,
 }
 
 void warning(const std::string& text) {
-  ImGui::PushStyleColor(ImGuiCol_Text, kWarning);
+  ImGui::PushStyleColor(ImGuiCol_Text, ink(Ink::warning));
   ImGui::TextWrapped("%s", text.c_str());
   ImGui::PopStyleColor();
 }
 
 void tooltip(const std::string& text) {
-  if (!ImGui::IsItemHovered()) return;
+  if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(25 * ImGui::GetFontSize());
   ImGui::TextUnformatted(text.c_str());

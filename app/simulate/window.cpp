@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -26,17 +27,7 @@ std::string last_complaint() {
   return text != nullptr ? text : "no reason given";
 }
 
-void set_style(double scale) {
-  ImGui::GetStyle() = ImGuiStyle();
-  ImGui::StyleColorsDark();
-  ImGuiStyle& style = ImGui::GetStyle();
-  style.WindowRounding = 5;
-  style.FrameRounding = 3;
-  style.GrabRounding = 3;
-  style.WindowBorderSize = 0;
-  style.Colors[ImGuiCol_WindowBg] = ImVec4(0.09f, 0.10f, 0.12f, 0.92f);
-  style.Colors[ImGuiCol_Header] = ImVec4(0.20f, 0.30f, 0.40f, 0.7f);
-  style.ScaleAllSizes(static_cast<float>(scale));
+void set_fonts(double scale) {
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
   fonts.Clear();
   const float size_px = static_cast<float>(scale) * kFontSize_px;
@@ -79,6 +70,19 @@ double screens_scale(GLFWmonitor* monitor, double content_scale) {
   return scale_for(screen);
 }
 
+// Returns whether a window that is kept there is in sight: it lies within a screen that is there now.
+bool is_on_a_screen(const WindowPlace& place) {
+  int count = 0;
+  GLFWmonitor** const monitors = glfwGetMonitors(&count);
+  return place.width > 0 && place.height > 0 &&
+         std::any_of(monitors, monitors + count, [&](GLFWmonitor* one) {
+           int left = 0, top = 0, width = 0, height = 0;
+           glfwGetMonitorWorkarea(one, &left, &top, &width, &height);
+           return place.left >= left && place.top >= top && place.left + place.width <= left + width &&
+                  place.top + place.height <= top + height;
+         });
+}
+
 // Returns the size scaled like the text, and no larger than the screen without its bars.
 PixelSize fitting_size(const PixelSize& size, const std::optional<double>& ui_scale) {
   GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
@@ -97,7 +101,8 @@ PixelSize fitting_size(const PixelSize& size, const std::optional<double>& ui_sc
 
 }  // namespace
 
-Window::Window(const std::string& title, const PixelSize& size, const std::optional<double>& ui_scale)
+Window::Window(const std::string& title, const PixelSize& size, const std::optional<double>& ui_scale,
+               const WindowPlace& place)
     : asked_scale_(ui_scale) {
   if (glfwInit() == GLFW_FALSE) throw InputError("simulate", "no window can be opened: " + last_complaint());
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -107,13 +112,15 @@ Window::Window(const std::string& title, const PixelSize& size, const std::optio
   // The renderer has a depth buffer of its own; the window shows only the result.
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
-  const PixelSize fitting = fitting_size(size, ui_scale);
+  const bool is_placed = is_on_a_screen(place);
+  const PixelSize fitting = is_placed ? PixelSize{place.width, place.height} : fitting_size(size, ui_scale);
   window_ = glfwCreateWindow(fitting.width, fitting.height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = last_complaint();
     glfwTerminate();
     throw InputError("simulate", "no window can be opened: " + reason);
   }
+  if (is_placed) glfwSetWindowPos(window_, place.left, place.top);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
@@ -160,16 +167,23 @@ PixelSize Window::size() const {
   return size;
 }
 
+WindowPlace Window::place() {
+  if (glfwGetWindowMonitor(window_) == nullptr &&
+      glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_FALSE) {
+    glfwGetWindowPos(window_, &windowed_place_.left, &windowed_place_.top);
+    glfwGetWindowSize(window_, &windowed_place_.width, &windowed_place_.height);
+  }
+  return windowed_place_;
+}
+
 void Window::toggle_full_screen() {
-  int* const place = windowed_place_;
+  const WindowPlace last = place();
   if (glfwGetWindowMonitor(window_) != nullptr) {
-    glfwSetWindowMonitor(window_, nullptr, place[0], place[1], place[2], place[3], 0);
+    glfwSetWindowMonitor(window_, nullptr, last.left, last.top, last.width, last.height, 0);
     return;
   }
   GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   if (monitor == nullptr) return;
-  glfwGetWindowPos(window_, &place[0], &place[1]);
-  glfwGetWindowSize(window_, &place[2], &place[3]);
   const GLFWvidmode* mode = glfwGetVideoMode(monitor);
   glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
@@ -186,6 +200,10 @@ void Window::hand_over_keys() {
     changed.push_back(event.key);
     ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.mods);
   }
+}
+
+void Window::ask_theme(Theme theme) {
+  if (theme != std::exchange(theme_, theme)) set_theme(theme, static_cast<float>(scale_));
 }
 
 void Window::resize(const PixelSize& size) {
@@ -205,7 +223,8 @@ void Window::follow_scale() {
   const double scale = fitting_scale(asked_scale_.value_or(screens_scale_), now);
   if (scale == scale_) return;
   scale_ = scale;
-  set_style(scale);
+  set_theme(theme_, static_cast<float>(scale));
+  set_fonts(scale);
   ui::set_scale(scale);
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();

@@ -9,6 +9,8 @@
 #include "osteomill/visual/camera.h"
 #include "osteomill/visual/image.h"
 
+#include "app/simulate/preferences.h"
+
 struct GLFWwindow;
 
 namespace osteomill::app {
@@ -18,8 +20,10 @@ namespace osteomill::app {
 class Window {
  public:
   /// `size` is what it would have on an ordinary screen; it is no larger than the screen. `ui_scale`: how
-  /// much larger than usual text is, else as the screen asks for.
-  Window(const std::string& title, const PixelSize& size, const std::optional<double>& ui_scale);
+  /// much larger than usual text is, else as the screen asks for. `place`: where it was last, and takes its
+  /// place and size again if a screen still has room for it.
+  Window(const std::string& title, const PixelSize& size, const std::optional<double>& ui_scale,
+         const WindowPlace& place);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -31,6 +35,8 @@ class Window {
   void set_title(const std::string& title);
   /// Returns the size of the framebuffer.
   PixelSize size() const;
+  /// Returns where it stands; while it fills the screen or is hidden, where it stood before.
+  WindowPlace place();
   void toggle_full_screen();
   void resize(const PixelSize& size);
 
@@ -38,6 +44,8 @@ class Window {
   /// it. It holds for this picture, from `begin_frame` on.
   double ui_scale() const { return scale_; }
   void ask_ui_scale(double scale) { asked_scale_ = scale; }
+  /// Gives the panels these colours. Not between `begin_frame` and `end_frame`.
+  void ask_theme(Theme theme);
 
   /// The files and folders that were dropped onto the window since the last call.
   std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
@@ -70,7 +78,8 @@ class Window {
   double scale_ = 0;
   std::deque<KeyEvent> key_events_;
   std::vector<std::string> dropped_;
-  int windowed_place_[4] = {0, 0, 0, 0};
+  Theme theme_ = Theme::dark;
+  WindowPlace windowed_place_;
 };
 
 }  // namespace osteomill::app
