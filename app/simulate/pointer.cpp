@@ -166,11 +166,20 @@ void pull_tool(ViewState& view, Simulation& simulation, const ToolInput& input, 
   simulation.hand.pull_to(view.X_W_target);
 }
 
-// Stops the spindle and the push if the hand has just let go of the tool, which would mill on alone.
-void relax_if_let_go(ViewState& view, Simulation& simulation) {
+bool is_pushed(const ToolInput& input) {
+  return !input.keys.isZero() || !input.space_mouse.push.isZero() || !input.space_mouse.twist.isZero();
+}
+
+// If nothing holds or pushes the tool any more, pulls the hand to where bone holds the tool, so that it
+// presses no longer. Bone then moves the tool out by the little that it gave, so this goes on for a moment.
+void relax_if_let_go(ViewState& view, Simulation& simulation, const ToolInput& input) {
+  constexpr double kRelaxing_s = 1;
   const bool held = view.holding_tool || view.dragging_tool;
-  if (!std::exchange(view.was_held, held) || held) return;
-  simulation.milling.set_spindle(false);
+  // A burr that turns would mill on alone.
+  if (std::exchange(view.was_held, held) && !held) simulation.milling.set_spindle(false);
+  if (held || is_pushed(input)) view.relaxing_s = kRelaxing_s;
+  if (held || is_pushed(input) || view.relaxing_s <= 0 || view.X_W_destination) return;
+  view.relaxing_s -= input.passed_s;
   if (!simulation.tool_source.is_pointer()) return;
   view.X_W_target = simulation.milling.state().record.X_WT;
   simulation.hand.pull_to(view.X_W_target);
@@ -184,9 +193,9 @@ void release_buttons(ViewState& view, LiveMilling& milling) {
 }  // namespace
 
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size) {
-  relax_if_let_go(view, simulation);
   if (is_dialogue_open()) {
     release_buttons(view, simulation.milling);
+    relax_if_let_go(view, simulation, {.passed_s = static_cast<double>(ImGui::GetIO().DeltaTime)});
     return;
   }
   if (drag_cut(view, size)) return;
@@ -215,6 +224,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     input.moved_px = view.holding_tool ? pointer_moved_px() : pointer_dragged_px();
   }
   if (on_picture && view.holding_tool) input.wheel = static_cast<double>(io.MouseWheel);
+  relax_if_let_go(view, simulation, input);
   pull_tool(view, simulation, input, size);
   if (ConnectedDevice* hardware = simulation.tool_source.hardware) {
     hardware->set_view(view.camera.orientation);
