@@ -73,7 +73,7 @@ std::string fitting_suffix(const std::string& name) {
   return shown;
 }
 
-// What is not about the bone, beside help, which must be found at any time.
+// Draws what is not about the bone. It is always in sight, for users who cannot read the rest.
 void draw_menu(ViewState& view) {
   if (!ImGui::BeginMenuBar()) return;
   if (ui::begin_menu("Window", "Size of the text, colours and full screen")) {
@@ -177,7 +177,7 @@ bool switch_field(const char* label, const char* option, MillingSetup& requested
   return changed;
 }
 
-// What the burr is; an exercise that names its burrs offers them itself.
+// The choice of burr and drive. An exercise that names its burrs offers them itself.
 struct ToolChoice {
   bool is_free;
   bool changed = false;
@@ -391,7 +391,7 @@ void recall_tool(ViewState& view) {
   view.setup_changed = true;
 }
 
-// What researchers need and trainees do not.
+// Draws the controls that researchers need and trainees do not.
 static void draw_laboratory(ViewState& view, ToolChoice& choice, bool& changed) {
   if (!ui::header("Laboratory", "Algorithm, sizes, speed, drive and law of cutting, and all readings",
                   view.open.laboratory))

@@ -11,7 +11,7 @@
 
 namespace osteomill::app {
 
-/// Where a window stands on the screens, in their pixels.
+/// The place of a window on the screens, in their pixels.
 struct WindowPlace {
   int left = 0, top = 0;
   /// Zero if it is not known.

@@ -36,7 +36,9 @@ bool remember(const char* label, const std::string& hint, bool acted) {
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
   const float right_px = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  const bool is_cut_off = max.x > right_px + 1 || ImGui::CalcTextSize(text.c_str()).x > max.x - min.x;
+  // A heading reaches half into the panel's edge.
+  const float edge_px = right_px + 0.5f * ImGui::GetStyle().WindowPadding.x + 1;
+  const bool is_cut_off = max.x > edge_px || ImGui::CalcTextSize(text.c_str()).x > max.x - min.x;
   WidgetState& state = widget_states()[text];
   state = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)},
            ImGui::GetFrameCount(),

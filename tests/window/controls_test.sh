@@ -20,6 +20,7 @@ faults=0
 fault() { echo "FAILED: $1"; faults=1; }
 # Works the window by the lines of standard input, with what it says in `said`.
 window() {
+  rm -f state/osteomill/window.toml
   { echo "controls $folder/controls"; sed 's/ *;; */\n/g'; } | tee -a worked_lines >actions
   xvfb-run -a -s "-screen 0 1400x900x24" timeout 150 "$osteomill" simulate "$@" --out out --script actions >said 2>errors || {
     echo "FAILED: exit code $?"; cat errors; exit 1; }
@@ -43,14 +44,15 @@ window ball.nrrd <<'END'
 wait 0.2 ;; state first ;; screenshot controls-1-help.png
 click Start milling ;; state start
 key f1 ;; state f1 ;; key f1 ;; state f1-again ;; key f1 ;; key enter ;; state f1-enter ;; key f1 ;; key escape ;; state f1-escape
-click Help ;; state help ;; click Start milling
+click Help (F1) ;; state help ;; click Start milling
+state trainee ;; click Laboratory ;; wait 0.1 ;; state laboratory ;; screenshot controls-1-laboratory.png
 click Milling ;; state no-milling ;; click Milling
 click Algorithm ;; state no-algorithm ;; click Algorithm
 click Tool ;; state no-tool ;; click Tool
 click View ;; state no-view ;; click View
 click Record and save ;; state no-save ;; click Record and save
 click Cuts ;; state cuts-open ;; click Cuts
-click Bone ;; state no-bone ;; click Bone
+click Bone ;; state bone-open ;; click Bone
 state before
 click A ;; state from-a
 click P ;; state from-p
@@ -65,7 +67,10 @@ press shift ;; press left ;; glide 660 660 0.1 ;; release left ;; release shift 
 wheel 3 0.1 ;; state wheeled
 click Whole ;; state whole
 click Find tool ;; state found
-click Algorithm ;; click Larger text ;; wait 0.1 ;; state larger ;; click Smaller text ;; wait 0.1 ;; state usual ;; click Algorithm
+click Window ;; wait 0.2 ;; screenshot controls-1-window.png ;; click Larger text ;; wait 0.2 ;; state larger ;; click Smaller text ;; wait 0.2 ;; state usual
+click Light ;; wait 0.2 ;; state light ;; screenshot controls-1-light.png ;; click Dark ;; wait 0.2 ;; state dark
+click Full screen (F11) ;; wait 0.3 ;; state menu-full ;; click Full screen (F11) ;; wait 0.3
+glide 700 800 0 ;; press left ;; wait 0.1 ;; release left ;; wait 0.1 ;; state no-menu
 click A ;; hold page-down 3 ;; click S ;; press middle ;; glide 700 600 0 ;; wait 0.1 ;; release middle ;; state lost
 click Bring it here (B) ;; wait 0.2 ;; state brought ;; click Whole ;; glide 600 430 0 ;; key b ;; wait 0.2 ;; state brought-by-key
 click Find tool ;; state refound
@@ -90,17 +95,19 @@ click Take the tool (T) ;; state button-taken
 click Let go (T) ;; state button-let-go
 key f11 ;; wait 0.3 ;; state full ;; key f11 ;; wait 0.3 ;; state not-full
 screenshot controls-2-keys.png
+click Window ;; wait 0.2 ;; click Start page ;; wait 1 ;; screenshot controls-2-start.png
 close
 END
 [ "$(value first tool_seen)" != "0.000 0.000 0.000" ] && same first before tool_seen || fault "the tool does not begin above the bone"
 is first help true; is start help false; is f1 help true; is f1-again help false; is f1-enter help false; is f1-escape help false; is help help true
 shows start "spindle on"; hides no-milling "spindle on"; shows no-milling stiffness
+for control in Algorithm stiffness "burr radius" "Burr and drive"; do hides trainee "$control"; shows laboratory "$control"; done
 hides no-algorithm stiffness; shows no-algorithm "burr radius"
 hides no-tool "burr radius"; shows no-tool ghost
 hides no-view ghost; shows no-view Record
 hides no-save Record; shows no-save ghost
 hides start axial; shows cuts-open axial
-hides no-bone isovalue; shows start isovalue
+hides start isovalue; shows bone-open isovalue
 for view in "a 0.000 -1.000 0.000" "p 0.000 1.000 0.000" "l 1.000 0.000 0.000" "r -1.000 0.000 0.000" \
   "s 0.000 0.000 1.000" "i 0.000 0.000 -1.000"; do
   [ "$(value "from-${view%% *}" towards_viewer | sed 's/-0\.000/0.000/g')" = "${view#* }" ] ||
@@ -114,6 +121,12 @@ more wheeled shift-panned distance_mm
 same wheeled whole towards_viewer; changed wheeled whole focus; changed wheeled whole distance_mm
 changed whole found focus; is found tool_px "640 400"; same whole found towards_viewer
 is found ui_scale 1.00; is larger ui_scale 1.25; is usual ui_scale 1.00
+is menu-full size "1400 x 900"; shows larger "Start page"; hides no-menu "Start page"
+[ -s controls-1-light.png ] && ! cmp -s controls-1-light.png controls-1-window.png || fault "the light panels look as the dark ones do"
+for moment in first laboratory larger light dark; do
+  for fact in unexplained cut_off outside covered; do is $moment $fact ""; done
+  awk -v c="$(value $moment contrast)" 'BEGIN { exit !(c >= 4.5) }' || fault "at $moment text has a contrast of $(value $moment contrast)"
+done
 # The tool is free, before the bone where it was asked for, the shaft towards the viewer; the key goes by the pointer.
 near() {
   awk -v x="$(part "$1" tool_px 1)" -v y="$(part "$1" tool_px 2)" -v a="$2" -v b="$3" 'BEGIN { exit !((x - a) ^ 2 + (y - b) ^ 2 < 9) }' ||
@@ -143,11 +156,11 @@ same start not-full size; is full size "1400 x 900"
 
 # --- Milling, what is drawn and heard, algorithm, tool, scan's isovalue ----------------------------------------------
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; hold page-up 0.7 ;; wait 0.2 ;; state touching
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; click Laboratory ;; press page-up ;; wait 0.9 ;; state touching
 click ghost ;; state no-ghost ;; click ghost
 click arrows ;; state no-arrows ;; click arrows
 click spindle on ;; wait 0.6 ;; state milling ;; click sound ;; wait 0.1 ;; state silent ;; click sound
-click spindle on ;; wait 0.2 ;; state milled
+click spindle on ;; wait 0.2 ;; state milled ;; release page-up
 click pause ;; wait 0.1 ;; state paused ;; click pause ;; wait 0.1 ;; state goes-on
 glide 640 750 0 ;; key t ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space
 key t ;; wait 0.2 ;; state three-cuts ;; screenshot controls-3-milled.png
@@ -169,20 +182,20 @@ drag shaft radius -10 ;; settle ;; state shaft
 drag spindle speed 30 ;; settle ;; state rpm
 click vibration ;; settle ;; state no-vibration
 click burr pulls ;; settle ;; state no-pull
-click Milling ;; click Algorithm ;; click Tool
+click drag ;; settle ;; state no-drag
+click knock ;; settle ;; state knock
+click View ;; click Record and save ;; click Algorithm ;; click Tool ;; click Bone
 click Burr and drive ;; state drives
 click turbine ;; settle ;; state turbine
 click electric ;; settle ;; state electric
 click surgical ;; settle ;; state surgical
 click diamond ;; settle ;; state diamond ;; click cutting ;; settle ;; state cutting
 drag wear 40 ;; settle ;; state worn
-click drag ;; settle ;; state no-drag
-click knock ;; settle ;; state knock
 screenshot controls-6-drive.png
 click constant-energy ;; settle ;; state constant ;; click chips ;; settle ;; state chips
 click none ;; settle ;; state no-drive
-click Burr by name ;; wait 0.2 ;; screenshot controls-7-burrs.png ;; click diamond 014 (1.4 mm) ;; settle ;; state named
-click Burr by name ;; wait 0.2 ;; click cutting 3 mm ;; settle ;; state named-again
+click Choose burr ;; wait 0.2 ;; screenshot controls-7-burrs.png ;; click diamond 014 (1.4 mm) ;; settle ;; state named
+click Choose burr ;; wait 0.2 ;; click cutting 3 mm ;; settle ;; state named-again
 click Burr and drive
 drag isovalue 20 ;; settle ;; wait 0.2 ;; state isovalue
 press control ;; click isovalue ;; release control ;; type 500 ;; key enter ;; settle ;; wait 0.2 ;; state typed
@@ -214,9 +227,9 @@ is drives handpiece 0; is turbine handpiece 1; is electric handpiece 2; is surgi
 same rpm turbine rpm
 is drives burr 0; is diamond burr 1; is cutting burr 0
 is cutting wear 0; more cutting worn wear
-is worn drag 1; is no-drag drag 0; is no-drag contact-transient 0; is knock contact-transient 1
+is no-pull drag 1; is no-drag drag 0; is no-drag contact-transient 0; is knock contact-transient 1
 is named burr_mm 0.70; is named shaft_mm 0.42; is named burr 1; is named-again burr_mm 1.50; is named-again burr 0
-is no-drag law 1; is constant law 0; is chips law 1
+is worn law 1; is constant law 0; is chips law 1
 is no-vibration cutting_reaction true; is no-pull cutting_reaction false
 more no-vibration isovalue isovalue; is typed isovalue 500
 value no-vibration isovalue_from | grep -q "^suggested: " || fault "nobody is told that the isovalue was suggested"
@@ -224,8 +237,8 @@ value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told 
 
 # --- A tool in bone that comes back, or grows ----------------------------------------------------------------------
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.3 ;; key t ;; hold page-up 0.7
-click 3 point-shell ;; settle ;; drag spindle speed 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.3 ;; key t ;; click Laboratory ;; press page-up ;; wait 0.7
+click 3 point-shell ;; settle ;; drag spindle speed 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing ;; release page-up ;; wait 0.7 ;; state released
 glide 640 750 0 ;; key t ;; key space ;; wheel 20 1 ;; wait 2 ;; key space ;; key t ;; wait 0.3 ;; state in-hole
 click Undo cut ;; settle ;; wait 0.5 ;; state out
 drag burr radius 60 ;; settle ;; wait 0.2 ;; state wide
@@ -233,11 +246,12 @@ close
 END
 more pressing out tool_seen 3; more in-hole pressing tool_seen 3; more in-hole out tool_seen 3; is out force_N 0.000
 awk -v f="$(value pressing force_N)" 'BEGIN { exit !(f > 0) }' || fault "the tool was taken away where it only pressed"
+awk -v f="$(value released force_N)" 'BEGIN { exit !(f < 0.05) }' || fault "a key that is up presses with $(value released force_N) N"
 is wide burr_mm 4.00
 
 # --- Cuts ---------------------------------------------------------------------------------------------------------
 cut_lines() {
-  echo "wait 0.2 ;; click Algorithm ;; click Tool ;; click Cuts ;; state none ;; click free ;; state free-on"
+  echo "wait 0.2 ;; click Cuts ;; state none ;; click free ;; state free-on"
   echo "glide 660 400 0.1 ;; press control ;; press left ;; glide 660 430 0.2 ;; release left ;; release control"
   echo "state dragged ;; screenshot controls-5-free.png"
   echo "click other side ;; state free-other ;; drag free place 20 ;; state free-moved ;; click free ;; state free-off"
@@ -333,7 +347,7 @@ xvfb-run -a timeout 60 "$osteomill" simulate ball.nrrd --burr-radius 50 >said 2>
 mapfile -t boundaries < <("$osteomill" info skin.nrrd | sed -n 's/^boundary *\([^,]*\),.*/\1/p')
 [ ${#boundaries[@]} -eq 2 ] || fault "skin and bone have ${#boundaries[@]} boundaries"
 window skin.nrrd --no-help <<END
-wait 0.2 ;; state both
+wait 0.2 ;; click Bone ;; wait 0.2 ;; state both
 click ${boundaries[1]} ;; settle ;; wait 0.2 ;; state bone
 click ${boundaries[0]} ;; settle ;; wait 0.2 ;; state skin
 close
@@ -347,7 +361,7 @@ done
 # --- A scan that is too coarse for the burr -----------------------------------------------------------------------
 sed 's/0.5 0.5 0.5/2 2 2/' ball.nrrd >coarse.nrrd
 window coarse.nrrd --no-help <<'END'
-wait 0.5 ;; state coarse ;; screenshot coarse.png ;; drag burr radius 60 ;; settle ;; wait 0.5 ;; state wide-burr
+wait 0.5 ;; state coarse ;; screenshot coarse.png ;; click Laboratory ;; wait 0.1 ;; drag burr radius 60 ;; settle ;; wait 0.5 ;; state wide-burr
 close
 END
 value coarse warnings | grep -q "lie up to 2 mm apart" || fault "nobody is told that the voxels are longer than the burr's radius"
@@ -376,9 +390,9 @@ END
 # Of the labels that were drawn, and of those that stand in the code; exercise_test.sh works the two pages of exercises, and
 # playback_test.sh that of a recording.
 { sed -n 's/^drawn //p' controls
-  grep -hoE --exclude=exercise_panel.cpp --exclude=start_page.cpp --exclude=playback_panel.cpp \
-    'ui::(button|checkbox|radio|slider|text_field|header)\([^;]*' "$source_folder"/*.cpp |
-    grep -oE '"[^"]+"' | tr -d '"' | sed 's/##.*//; /^ place$/d; /^%/d; /^$/d'; } | sed '/[0-9] mm)\{0,1\}$/d' | sort -u >labels
+  grep -hzoP --exclude=exercise_panel.cpp --exclude=start_page.cpp --exclude=playback_panel.cpp \
+    'ui::(button|checkbox|radio|slider|text_field|header|begin_menu)\(\s*"\K[^"]+' "$source_folder"/*.cpp |
+    tr '\0' '\n' | sed 's/##.*//; /^$/d'; } | sed '/[0-9] mm)\{0,1\}$/d' | sort -u >labels
 # Those of a haptic device are worked if there is one.
 { sed -n 's/^worked //p' controls; sed -n 's/^click //p' "$here/device_test.sh"; } | sort -u >worked
 cat "$here/device_test.sh" >>worked_lines

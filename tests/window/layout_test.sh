@@ -24,22 +24,55 @@ window() {
 value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 
-window 1024x600 <<'END'
-wait 0.3 ;; state small ;; screenshot layout-1024x600.png
-glide 100 400 0 ;; wheel -60 0.5 ;; wait 0.2 ;; click Save picture ;; wait 0.3 ;; state saved ;; screenshot layout-scrolled.png
-close
-END
-is small size "1024 x 600"; is small ui_scale 1.00
-compgen -G "out/*-picture.png" >/dev/null || fail "what lies below cannot be reached"
-value saved message | grep -q "^Saved out/" || fail "the picture is not named"
-
-# Large text, many labels and help: what tells a result, and what sends help away, is in sight and apart.
+# Nothing is cut off, outside of the window, under something else, without a hint or too pale, in either theme.
 {
   printf 'NRRD0004\ntype: uchar\ndimension: 3\nsizes: 32 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
   awk 'BEGIN { for (v = 0; v < 32768; ++v) print int(v / 2048) + 1 }'
 } >labels.nrrd
+look() {
+  local size=$1 name=$1-$2 theme=$3
+  rm -rf state
+  {
+    echo "wait 0.3 ;; click Window ;; wait 0.2 ;; click $theme ;; wait 0.2 ;; state menu ;; screenshot layout-$name-menu.png"
+    echo "glide $((${size%x*} / 2)) $((${size#*x} - 40)) 0 ;; press left ;; wait 0.1 ;; release left ;; wait 0.1 ;; state start ;; screenshot layout-$name-start.png"
+    echo "key f1 ;; wait 0.2 ;; state help ;; screenshot layout-$name-help.png ;; key f1"
+    echo "click Choose burr ;; wait 0.3 ;; state burrs ;; screenshot layout-$name-burrs.png ;; click cutting 2 mm ;; settle"
+    echo "click Record ;; wait 0.3 ;; state recording ;; click Stop recording ;; wait 0.2 ;; click Save picture ;; wait 0.4 ;; state saved"
+    echo "click Milling ;; click View ;; click Record and save ;; click Cuts ;; wait 0.1 ;; click coronal ;; wait 0.3 ;; state cuts ;; screenshot layout-$name-cuts.png"
+    echo "click coronal ;; click Cuts ;; click Bone ;; wait 0.2 ;; state bone ;; click Bone ;; click Laboratory ;; wait 0.3 ;; state laboratory"
+    echo "screenshot layout-$name-laboratory.png ;; click Algorithm ;; click Tool ;; click Burr and drive ;; wait 0.2 ;; state drive ;; screenshot layout-$name-drive.png"
+    echo "quit ;; wait 0.3 ;; state closing ;; screenshot layout-$name-closing.png ;; click Close without"
+  } | window "$size" --ui-scale "$2" --labels labels.nrrd
+  for moment in menu start help burrs recording saved cuts bone laboratory drive closing; do
+    for fact in unexplained cut_off outside covered; do is $moment $fact ""; done
+    awk -v c="$(value $moment contrast)" 'BEGIN { exit !(c >= 4.5) }' || fail "at $moment text has a contrast of $(value $moment contrast)"
+  done
+  is start size "${size%x*} x ${size#*x}"
+}
+look 1024x600 1 Light
+is start ui_scale 1.00
+look 1024x600 1.5 Dark
+look 1280x800 1.5 Light
+look 1920x1080 1.5 Dark
+look 3840x2160 2 Light
+is start ui_scale 2.00
+look 3840x2160 3 Dark
+
+# In a low window the end of the column is reached by scrolling.
+rm -rf state
+window 1024x600 <<'END'
+wait 0.3 ;; state small ;; screenshot layout-1024x600.png ;; click Laboratory ;; wait 0.2
+glide 100 400 0 ;; wheel -60 0.5 ;; wait 0.2 ;; click Burr and drive ;; wait 0.1 ;; wheel -60 0.5 ;; wait 0.2 ;; click turbine ;; settle ;; state scrolled
+screenshot layout-scrolled.png
+close
+END
+is small size "1024 x 600"; is small ui_scale 1.00
+is scrolled handpiece 1
+
+# Large text, many labels and help: what tells a result, and what sends help away, is in sight and apart.
+rm -rf state
 window 1024x600 --ui-scale 2 --labels labels.nrrd <<'END'
-wait 0.3 ;; key f1 ;; glide 100 300 0 ;; wheel -60 0.5 ;; wait 0.2 ;; click Save picture ;; wait 0.3
+wait 0.3 ;; key f1 ;; wait 0.2 ;; click Save picture ;; wait 0.3
 state crowded ;; screenshot layout-crowded.png ;; key escape ;; wait 0.2 ;; state uncrowded
 close
 END
@@ -50,11 +83,12 @@ done
   fail "help and what was saved cover each other"
 value uncrowded shown | grep -qF "[label colours]" || fail "the labels do not come back after help"
 
+rm -rf state
 window 1920x1080 --ui-scale 2 <<'END'
 wait 0.3 ;; state twice ;; screenshot layout-twice.png
 resize 1024 600 ;; wait 0.3 ;; state little-room ;; screenshot layout-little-room.png
 resize 1900 1000 ;; wait 0.3 ;; state room-again
-click Smaller text ;; wait 0.2 ;; state smaller
+click Window ;; wait 0.2 ;; click Smaller text ;; wait 0.2 ;; state smaller
 close
 END
 is twice size "1920 x 1080"; is twice ui_scale 2.00
@@ -62,9 +96,10 @@ is little-room size "1024 x 600"
 awk -v s="$(value little-room ui_scale)" 'BEGIN { exit !(s > 1 && s < 1.5) }' || fail "text does not fit into 1024 x 600"
 is room-again ui_scale 2.00; is smaller ui_scale 1.75
 
-# At any size of text those that change it are in sight.
+# At any size of text the menu that changes it is in sight.
+rm -rf state
 window 1280x800 --ui-scale 1.25 <<'END'
-wait 0.3 ;; screenshot layout-larger.png ;; click Smaller text ;; wait 0.2 ;; state usual
+wait 0.3 ;; screenshot layout-larger.png ;; click Window ;; wait 0.2 ;; click Smaller text ;; wait 0.2 ;; state usual
 close
 END
 is usual ui_scale 1.00

@@ -20,7 +20,7 @@ moments=(taps paused chord tapped-thrice clicked flicked dragged wheeled brought
 {
   printf '%s\n' "wait 0.3" "state start"
   for moment in "${moments[@]}"; do
-    [ $moment != turbine ] || printf '%s\n' "click Algorithm" "click Bone" "click Burr and drive" "wait 0.5" "state opened"
+    [ $moment != turbine ] || printf '%s\n' "click Laboratory" "wait 0.2" "click Algorithm" "click Tool" "click Burr and drive" "wait 0.5" "state opened"
     printf '%s\n' "say $moment" "await $moment"
     case $moment in turbine | diamond | worn) printf '%s\n' settle "wait 0.5" ;; esac
     echo "state $moment"

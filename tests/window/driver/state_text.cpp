@@ -1,12 +1,17 @@
 #include "tests/window/driver/state_text.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string_view>
+#include <vector>
 
 #include <fmt/core.h>
+#include <imgui_internal.h>
 
 #include "app/simulate/exercise_panel.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
+#include "app/simulate/theme.h"
 #include "app/simulate/widgets.h"
 
 namespace osteomill::app {
@@ -46,6 +51,80 @@ void add_controls(Lines& lines) {
     lines.add("place of " + label, fmt::format("{:.0f} {:.0f}", middle.x(), middle.y()));
   }
   lines.add("shown", labels);
+}
+
+// Panels as they stand, without hints, menus and dialogues, which may lie over others.
+std::vector<const ImGuiWindow*> panels() {
+  std::vector<const ImGuiWindow*> found;
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+    constexpr ImGuiWindowFlags kOver = ImGuiWindowFlags_ChildWindow | ImGuiWindowFlags_Tooltip |
+                                       ImGuiWindowFlags_Popup | ImGuiWindowFlags_Modal;
+    if (window->Active && !window->Hidden && !window->IsFallbackWindow && (window->Flags & kOver) == 0)
+      found.push_back(window);
+  }
+  return found;
+}
+
+// Everything that a person could not read: controls without a hint, what is cut off, panels outside of the
+// window, and those that cover each other.
+void add_faults(Lines& lines) {
+  std::string unexplained, cut_off, outside, covered;
+  for (const auto& [label, state] : ui::widget_states()) {
+    if (state.frame < ImGui::GetFrameCount() - 1) continue;
+    const bool is_sentence = state.hint.size() > label.size() && state.hint.find(' ') != std::string::npos;
+    if (!is_sentence) unexplained += "[" + label + "]";
+    if (state.is_cut_off) cut_off += "[" + label + "]";
+  }
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const std::vector<const ImGuiWindow*> all = panels();
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const ImGuiWindow& one = *all[n];
+    const float room_px = one.InnerRect.GetWidth() - 2 * one.WindowPadding.x;
+    if (!one.Collapsed && one.ContentSize.x > room_px + 1)
+      cut_off += fmt::format("[{}: {:.0f} in {:.0f}]", one.Name, one.ContentSize.x, room_px);
+    const ImRect rect = one.Rect();
+    if (rect.Min.x < 0 || rect.Min.y < 0 || rect.Max.x > size.x || rect.Max.y > size.y)
+      outside += fmt::format("[{}]", one.Name);
+    for (std::size_t m = 0; m < n; ++m)
+      if (rect.Overlaps(all[m]->Rect())) covered += fmt::format("[{}, {}]", all[m]->Name, one.Name);
+  }
+  lines.add("unexplained", unexplained);
+  lines.add("cut_off", cut_off);
+  lines.add("outside", outside);
+  lines.add("covered", covered);
+}
+
+double brightness(const ImVec4& colour) {
+  const auto linear = [](float value) {
+    const double v = static_cast<double>(value);
+    return v <= 0.03928 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(colour.x) + 0.7152 * linear(colour.y) + 0.0722 * linear(colour.z);
+}
+
+ImVec4 over(const ImVec4& colour, const ImVec4& ground) {
+  const auto mix = [&](float a, float b) { return colour.w * a + (1 - colour.w) * b; };
+  return {mix(colour.x, ground.x), mix(colour.y, ground.y), mix(colour.z, ground.z), 1};
+}
+
+double contrast(const ImVec4& one, const ImVec4& other) {
+  const double a = brightness(one), b = brightness(other);
+  return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05);
+}
+
+// The least contrast of text on what it is written on, and of coloured text on panels, as WCAG 2 defines it.
+double least_contrast() {
+  const ImVec4* const colours = ImGui::GetStyle().Colors;
+  const ImVec4 panel = over(colours[ImGuiCol_WindowBg], {0.2f, 0.2f, 0.24f, 1});
+  double least = 21;
+  for (const ImGuiCol ground :
+       {ImGuiCol_WindowBg, ImGuiCol_PopupBg, ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_SliderGrab,
+        ImGuiCol_SliderGrabActive, ImGuiCol_Button, ImGuiCol_Header, ImGuiCol_TitleBg, ImGuiCol_TitleBgActive,
+        ImGuiCol_MenuBarBg})
+    least = std::min(least, contrast(colours[ImGuiCol_Text], over(colours[ground], panel)));
+  for (const ui::Ink ink : {ui::Ink::warning, ui::Ink::danger, ui::Ink::good, ui::Ink::note})
+    least = std::min(least, contrast(ui::ink(ink), panel));
+  return least;
 }
 
 void add_setup(Lines& lines, const MillingSetup& setup) {
@@ -105,6 +184,7 @@ static std::string playback_text(Lines lines, const WindowContents& window) {
   lines.add("dialogue",
             window.view.dialogues.current() != nullptr ? window.view.dialogues.current()->text : "");
   add_controls(lines);
+  add_faults(lines);
   return lines.text();
 }
 
@@ -161,9 +241,12 @@ std::string state_text(const std::string& name, const WindowContents& window) {
     lines.add("debrief", work->folder().string());
   }
   lines.add("help", view.help);
+  lines.add("last_folder", view.last_folder);
   lines.add("message", view.message);
   lines.add("dialogue", view.dialogues.current() != nullptr ? view.dialogues.current()->text : "");
   add_controls(lines);
+  add_faults(lines);
+  lines.add("contrast", fmt::format("{:.2f}", least_contrast()));
   lines.add("ui_scale", fmt::format("{:.2f}", static_cast<double>(ui::px(1))));
   lines.add("size", fmt::format("{} x {}", size.width, size.height));
   return lines.text();
