@@ -84,6 +84,7 @@ const std::vector<Field<P>>& kept_numbers() {
                   on_or_off("ghost", "Show where the hand is", &P::ghost),
                   on_or_off("arrows", "Show force and torque as arrows", &P::arrows),
                   on_or_off("label-colours", "Colour the bone by its labels", &P::labels),
+                  on_or_off("help-seen", "The page that explains the controls was shown", &P::help_seen),
                   on_or_off("sound", "Let the spindle be heard", &P::sound),
                   group("show-controls", "Show the column of controls", &O::controls),
                   group("show-readings", "Show the readings", &O::readings),

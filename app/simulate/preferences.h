@@ -30,6 +30,8 @@ struct Preferences {
   bool arrows = true;
   bool labels = true;
   bool sound = true;
+  /// The page that explains the controls was shown, and comes by F1 alone.
+  bool help_seen = false;
   /// Whether a group of controls, or a panel, is more than its title.
   struct Open {
     bool controls = true, readings = true;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <ostream>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -12,7 +11,6 @@
 #include <fmt/core.h>
 #include <imgui.h>
 
-#include "osteomill/base/atomic_file.h"
 #include "osteomill/base/input_error.h"
 
 #include "app/config_file.h"
@@ -34,25 +32,6 @@ constexpr PixelSize kWindowSize{1280, 800};
 std::optional<double> text_scale_of(const SimulatorOptions& options) {
   const double remembered = options.remembered.text_scale;
   return options.ui_scale || remembered == 0 ? options.ui_scale : remembered;
-}
-
-// Returns whether this user has never seen the help on this machine. Leaves a file that says that it was
-// seen; if none can be left the help is shown at every start.
-bool note_first_help() {
-  const std::filesystem::path folder = state_folder();
-  if (folder.empty()) return true;
-  const std::filesystem::path marker = folder / "help-seen";
-  std::error_code unreadable;
-  if (std::filesystem::exists(marker, unreadable)) return false;
-  try {
-    create_folder(folder);
-    write_text_atomically(marker, [](std::ostream& text) {
-      text << "The page of osteomill simulate that explains the controls was shown; F1 shows it again.\n";
-    });
-  } catch (const InputError&) {
-    // Then it is shown again next time.
-  }
-  return true;
 }
 
 }  // namespace
@@ -306,7 +285,7 @@ void Simulator::take_opened() {
     leave_scan(opened.scan);
   } else if (!opened.playback) {
     view.requested_setup = opened.milling.session->setup();
-    view.help = view.help && note_first_help();
+    if (view.help) view.help = !std::exchange(view.help_seen, true);
   }
   options_.scan = opened.scan.source;
   start_page_.reset();

@@ -11,7 +11,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 export XDG_STATE_HOME=$folder/state
 mkdir -p state/osteomill
-touch state/osteomill/help-seen
+echo "help-seen = true" >state/osteomill/window.toml
 # The desktop's browser: notes what it is to open.
 mkdir bin
 printf '#!/bin/sh\necho "$1" >%s/opened\n' "$folder" >bin/xdg-open

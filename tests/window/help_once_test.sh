@@ -18,9 +18,9 @@ window() {
 
 export XDG_STATE_HOME=$folder/state
 window --no-help <<<"close" || fail "exit code $?"
-[ ! -e state/osteomill/help-seen ] || fail "a page that was not shown counts as seen"
+grep -qx "help-seen = false .*" state/osteomill/window.toml || fail "a page that was not shown counts as seen"
 printf '%s\n' "wait 0.3" "click Start milling" close | window || fail "no help the first time"
-[ -e state/osteomill/help-seen ] || fail "the marker is not there"
+grep -qx "help-seen = true .*" state/osteomill/window.toml || fail "nothing says that it was shown"
 printf '%s\n' "wait 0.3" "state second" "key f1" "wait 0.3" "click Start milling" close | window ||
   fail "F1 does not bring the help back"
 grep -qx "second.help=false" said || fail "help the second time too"
@@ -29,6 +29,6 @@ grep -qx "second.help=false" said || fail "help the second time too"
 : >no-folder
 export XDG_STATE_HOME=$folder/no-folder
 for _ in 1 2; do
-  printf '%s\n' "wait 0.3" "click Start milling" close | window || fail "no help without a folder for its marker"
-  ! grep -q no-folder errors || fail "a marker that cannot be left is complained about"
+  printf '%s\n' "wait 0.3" "click Start milling" close | window || fail "no help without a folder for the state"
+  ! grep -q no-folder errors || fail "a state that cannot be left is complained about"
 done

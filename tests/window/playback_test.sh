@@ -11,7 +11,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 export XDG_STATE_HOME=$folder/state
 mkdir -p state/osteomill
-touch state/osteomill/help-seen
+echo "help-seen = true" >state/osteomill/window.toml
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
