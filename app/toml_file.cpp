@@ -32,17 +32,22 @@ void require_readable(const std::string& file) {
 
 }  // namespace
 
-toml::table read_toml(const std::string& file) {
+toml::table parse_toml(const std::string& file) {
   const std::filesystem::file_status status = std::filesystem::status(file);
   if (!std::filesystem::exists(status)) throw InputError(file, "no such file");
   if (!std::filesystem::is_regular_file(status)) throw InputError(file, "is no regular file");
-  note_input(file);
   require_readable(file);
   try {
     return toml::parse_file(file);
   } catch (const toml::parse_error& error) {
     throw InputError(file, fmt::format("line {}: {}", error.source().begin.line, error.description()));
   }
+}
+
+toml::table read_toml(const std::string& file) {
+  toml::table table = parse_toml(file);
+  note_input(file);
+  return table;
 }
 
 std::vector<TomlEntry> entries_of(const toml::table& table) {

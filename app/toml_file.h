@@ -9,8 +9,11 @@
 
 namespace osteomill::app {
 
-/// Reads a TOML file as a table. Throws InputError naming the file, and the line if there is one.
+/// Reads a TOML file of the user as a table, and notes it as an input (input_files.h). Throws InputError
+/// naming the file, and the line if there is one.
 toml::table read_toml(const std::string& file);
+/// Reads a TOML file that the program writes itself. Throws as `read_toml` does.
+toml::table parse_toml(const std::string& file);
 
 /// A key of a table and what stands behind it, as long as the table lives.
 struct TomlEntry {

@@ -171,7 +171,8 @@ bool is_pushed(const ToolInput& input) {
 }
 
 // If nothing holds or pushes the tool any more, pulls the hand to where bone holds the tool, so that it
-// presses no longer. Bone then moves the tool out by the little that it gave, so this goes on for a moment.
+// presses no longer. Bone then moves a tool that rests out by the little that it gave, so this goes on for a
+// moment; a burr that turns would walk away with the hand.
 void relax_if_let_go(ViewState& view, Simulation& simulation, const ToolInput& input) {
   constexpr double kRelaxing_s = 1;
   const bool held = view.holding_tool || view.dragging_tool;
@@ -179,9 +180,11 @@ void relax_if_let_go(ViewState& view, Simulation& simulation, const ToolInput& i
   if (std::exchange(view.was_held, held) && !held) simulation.milling.set_spindle(false);
   if (held || is_pushed(input)) view.relaxing_s = kRelaxing_s;
   if (held || is_pushed(input) || view.relaxing_s <= 0 || view.X_W_destination) return;
+  const bool has_just_ended = view.relaxing_s == kRelaxing_s;
   view.relaxing_s -= input.passed_s;
-  if (!simulation.tool_source.is_pointer()) return;
-  view.X_W_target = simulation.milling.state().record.X_WT;
+  const TickRecord& record = simulation.milling.state().record;
+  if (!simulation.tool_source.is_pointer() || (!has_just_ended && record.spindle_rpm > 0)) return;
+  view.X_W_target = record.X_WT;
   simulation.hand.pull_to(view.X_W_target);
 }
 

@@ -124,7 +124,7 @@ namespace {
 // Throws InputError, naming file and line. Keys that are not known, of another version, are passed over.
 Preferences preferences_in(const std::string& file) {
   Preferences preferences;
-  const toml::table table = read_toml(file);
+  const toml::table table = parse_toml(file);
   for (const Field<P>& field : kept_numbers()) {
     const toml::node* const value = table.get(field.option);
     if (value == nullptr) continue;

@@ -183,7 +183,10 @@ void draw_row(const Simulation& simulation, std::size_t n) {
   ImGui::Dummy({side, side});
   ImGui::SameLine();
   const ImVec4 text = label.no_go ? ui::ink(ui::Ink::danger) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
+  // Beside the volume, over several lines if the name is long.
+  ImGui::PushTextWrapPos(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(" 0000.00 mm³").x);
   ImGui::TextColored(text, "%s%s", label.name.c_str(), label.no_go ? " (no-go)" : "");
+  ImGui::PopTextWrapPos();
   const LabelCount::Entry& entry = simulation.label_count.entries()[n];
   if (entry.contacts > 0) {
     ui::tooltip(
@@ -252,7 +255,7 @@ float draw_labels(ViewState& view, const Simulation& simulation, const VerticalS
   if (count == 0) return span.top_px;
   const float line_px = ImGui::GetTextLineHeightWithSpacing();
   const float rows_px = span.bottom_px - span.top_px - ui::px(kHead_px) - (view.help ? ui::px(kHelp_px) : 0);
-  const float rows = std::min({static_cast<float>(count), kMaxRows, rows_px / line_px});
+  const float rows = std::floor(std::min({static_cast<float>(count), kMaxRows, rows_px / line_px}));
   // Once help was read there is room for them.
   if (view.help && rows < kMinRows) return span.top_px;
   ui::begin_side_panel("Labels", span.top_px, nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
@@ -260,7 +263,7 @@ float draw_labels(ViewState& view, const Simulation& simulation, const VerticalS
       "label colours",
       "Shows bone in the colours of its label map. Beside each label stands how much of it was removed",
       &view.labels);
-  ImGui::BeginChild("##labels", {0, std::floor(std::max(rows, kMinRows) * line_px)});
+  ImGui::BeginChild("##labels", {0, std::max(rows, kMinRows) * line_px});
   for (std::size_t n = 0; n < count; ++n) draw_row(simulation, n);
   ImGui::EndChild();
   return ui::end_side_panel();

@@ -16,6 +16,7 @@ void colour(ImGuiStyle& style, ImGuiCol which, float red, float green, float blu
 void set_dark(ImGuiStyle& style) {
   ImGui::StyleColorsDark(&style);
   colour(style, ImGuiCol_WindowBg, 0.09f, 0.10f, 0.12f, 0.92f);
+  colour(style, ImGuiCol_PopupBg, 0.11f, 0.12f, 0.14f);
   colour(style, ImGuiCol_MenuBarBg, 0.13f, 0.15f, 0.18f);
   colour(style, ImGuiCol_Header, 0.20f, 0.30f, 0.40f, 0.7f);
   colour(style, ImGuiCol_SliderGrab, 0.24f, 0.42f, 0.63f);

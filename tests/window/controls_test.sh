@@ -159,17 +159,17 @@ window ball.nrrd --no-help <<'END'
 wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; click Laboratory ;; press page-up ;; wait 0.9 ;; state touching
 click ghost ;; state no-ghost ;; click ghost
 click arrows ;; state no-arrows ;; click arrows
-click spindle on ;; wait 0.6 ;; state milling ;; click sound ;; wait 0.1 ;; state silent ;; click sound
-click spindle on ;; wait 0.2 ;; state milled ;; release page-up
+click spindle on ;; wait 0.1 ;; release page-up ;; wait 0.4 ;; state milling ;; click sound ;; wait 0.1 ;; state silent ;; click sound
+click spindle on ;; wait 0.2 ;; state milled
 click pause ;; wait 0.1 ;; state paused ;; click pause ;; wait 0.1 ;; state goes-on
 glide 640 750 0 ;; key t ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space
 key t ;; wait 0.2 ;; state three-cuts ;; screenshot controls-3-milled.png
 click Undo cut ;; settle ;; wait 0.1 ;; state undone
 press control ;; key z ;; release control ;; settle ;; wait 0.1 ;; state undone-by-key
-click Reset bone ;; wait 0.1 ;; click Cancel ;; wait 0.1 ;; state not-reset
-click Reset bone ;; wait 0.1 ;; click Save ;; settle ;; wait 0.1 ;; state reset
+click Reset bone ;; wait 0.3 ;; click Cancel ;; wait 0.1 ;; state not-reset
+click Reset bone ;; wait 0.3 ;; click Save ;; settle ;; wait 0.1 ;; state reset
 glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; key space ;; wait 0.4 ;; key space ;; key t ;; state milled-again
-click Reset bone ;; wait 0.1 ;; click Discard ;; settle ;; wait 0.1 ;; state reset-again
+click Reset bone ;; wait 0.3 ;; click Discard ;; settle ;; wait 0.1 ;; state reset-again
 click 1 line-proxy ;; settle ;; state line-proxy
 drag stiffness 30 ;; settle ;; state line-proxy-stiffness
 click 4 barrier-shell ;; settle ;; state barrier-shell

@@ -33,7 +33,7 @@ look() {
   local size=$1 name=$1-$2 theme=$3
   rm -rf state
   {
-    echo "wait 0.3 ;; click Window ;; wait 0.2 ;; click $theme ;; wait 0.2 ;; state menu ;; screenshot layout-$name-menu.png"
+    echo "resize ${size/x/ } ;; wait 0.3 ;; click Window ;; wait 0.2 ;; click $theme ;; wait 0.2 ;; state menu ;; screenshot layout-$name-menu.png"
     echo "glide $((${size%x*} / 2)) $((${size#*x} - 40)) 0 ;; press left ;; wait 0.1 ;; release left ;; wait 0.1 ;; state start ;; screenshot layout-$name-start.png"
     echo "key f1 ;; wait 0.2 ;; state help ;; screenshot layout-$name-help.png ;; key f1"
     echo "click Choose burr ;; wait 0.3 ;; state burrs ;; screenshot layout-$name-burrs.png ;; click cutting 2 mm ;; settle"
@@ -43,6 +43,7 @@ look() {
     echo "screenshot layout-$name-laboratory.png ;; click Algorithm ;; click Tool ;; click Burr and drive ;; wait 0.2 ;; state drive ;; screenshot layout-$name-drive.png"
     echo "quit ;; wait 0.3 ;; state closing ;; screenshot layout-$name-closing.png ;; click Close without"
   } | window "$size" --ui-scale "$2" --labels labels.nrrd
+  [ "$(grep -cE '\.(unexplained|cut_off|outside|covered|contrast)=' said)" -eq 55 ] || fail "the window was not looked at"
   for moment in menu start help burrs recording saved cuts bone laboratory drive closing; do
     for fact in unexplained cut_off outside covered; do is $moment $fact ""; done
     awk -v c="$(value $moment contrast)" 'BEGIN { exit !(c >= 4.5) }' || fail "at $moment text has a contrast of $(value $moment contrast)"

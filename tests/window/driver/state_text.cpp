@@ -53,13 +53,11 @@ void add_controls(Lines& lines) {
   lines.add("shown", labels);
 }
 
-// Panels as they stand, without hints, menus and dialogues, which may lie over others.
-std::vector<const ImGuiWindow*> panels() {
+// The windows that are drawn and have none of these flags.
+std::vector<const ImGuiWindow*> windows_without(ImGuiWindowFlags flags) {
   std::vector<const ImGuiWindow*> found;
   for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
-    constexpr ImGuiWindowFlags kOver = ImGuiWindowFlags_ChildWindow | ImGuiWindowFlags_Tooltip |
-                                       ImGuiWindowFlags_Popup | ImGuiWindowFlags_Modal;
-    if (window->Active && !window->Hidden && !window->IsFallbackWindow && (window->Flags & kOver) == 0)
+    if (window->Active && !window->Hidden && !window->IsFallbackWindow && (window->Flags & flags) == 0)
       found.push_back(window);
   }
   return found;
@@ -76,12 +74,17 @@ void add_faults(Lines& lines) {
     if (state.is_cut_off) cut_off += "[" + label + "]";
   }
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const std::vector<const ImGuiWindow*> all = panels();
+  for (const ImGuiWindow* window : windows_without(0)) {
+    const float room_px = window->InnerRect.GetWidth() - 2 * window->WindowPadding.x;
+    if (!window->Collapsed && window->ContentSize.x > room_px + 1)
+      cut_off += fmt::format("[{}: {:.0f} in {:.0f}]", window->Name, window->ContentSize.x, room_px);
+  }
+  // Hints, menus and dialogues may lie over panels.
+  const std::vector<const ImGuiWindow*> all =
+      windows_without(ImGuiWindowFlags_ChildWindow | ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_Popup |
+                      ImGuiWindowFlags_Modal);
   for (std::size_t n = 0; n < all.size(); ++n) {
     const ImGuiWindow& one = *all[n];
-    const float room_px = one.InnerRect.GetWidth() - 2 * one.WindowPadding.x;
-    if (!one.Collapsed && one.ContentSize.x > room_px + 1)
-      cut_off += fmt::format("[{}: {:.0f} in {:.0f}]", one.Name, one.ContentSize.x, room_px);
     const ImRect rect = one.Rect();
     if (rect.Min.x < 0 || rect.Min.y < 0 || rect.Max.x > size.x || rect.Max.y > size.y)
       outside += fmt::format("[{}]", one.Name);
