@@ -20,6 +20,15 @@ namespace {
 
 constexpr float kWidth_px = 300;
 
+// Returns what a field means, without how the command line names it.
+std::string hint_of(const FieldDescription& field) {
+  std::string text = field.doc;
+  if (const auto from = text.find(" (--"); from != std::string::npos)
+    text.erase(from, text.find(')', from) + 1 - from);
+  for (auto at = text.find("--"); at != std::string::npos; at = text.find("--")) text.erase(at, 2);
+  return text;
+}
+
 // A slider for what takes long to change: true once it is let go of at another value.
 bool settle(const char* label, const std::string& hint, double& value, float min, float max,
             const char* format) {
@@ -39,7 +48,7 @@ bool settle_field(std::string_view option, MillingSetup& requested_setup, float 
   std::string label = field.option;
   std::ranges::replace(label, '-', ' ');
   double value = field.get(requested_setup);
-  const bool settled = settle(label.c_str(), field.doc, value, min, max,
+  const bool settled = settle(label.c_str(), hint_of(field), value, min, max,
                               fmt::format("%.{}f {}", decimals, field.unit).c_str());
   field.set(requested_setup, value);
   return settled;
@@ -51,7 +60,7 @@ bool choose_field(std::string_view option, MillingSetup& requested_setup) {
   bool changed = false;
   for (std::size_t n = 0; n < field.choices.size(); ++n) {
     if (n % 2 == 1) ImGui::SameLine(ui::px(kWidth_px / 2));
-    if (ui::radio(field.choices[n].c_str(), fmt::format("{}: {}", field.choices[n], field.doc),
+    if (ui::radio(field.choices[n].c_str(), fmt::format("{}: {}", field.choices[n], hint_of(field)),
                   static_cast<std::size_t>(field.get(requested_setup)) == n)) {
       field.set(requested_setup, static_cast<double>(n));
       changed = true;
@@ -172,7 +181,7 @@ bool choose_named_burr(MillingSetup& requested_setup) {
 bool switch_field(const char* label, const char* option, MillingSetup& requested_setup) {
   const Field<MillingSetup>& field = *field_of_option(fields_of<MillingSetup>(), option);
   bool on = field.get(requested_setup) != 0;
-  const bool changed = ui::checkbox(label, field.doc, &on);
+  const bool changed = ui::checkbox(label, hint_of(field), &on);
   if (changed) field.set(requested_setup, on ? 1 : 0);
   return changed;
 }

@@ -20,6 +20,8 @@ namespace {
 constexpr double kPointerReach_px = 12;
 constexpr double kTouching_N = 0.15;
 constexpr int kSteps = 100;
+// In this time a tool that was let go comes to rest; two or three pictures do if nothing else takes time.
+constexpr double kRelaxing_s = 1;
 
 bool is_key_down(int key) {
   return ImGui::IsKeyDown(key);
@@ -174,7 +176,6 @@ bool is_pushed(const ToolInput& input) {
 // presses no longer. Bone then moves a tool that rests out by the little that it gave, so this goes on for a
 // moment; a burr that turns would walk away with the hand.
 void relax_if_let_go(ViewState& view, Simulation& simulation, const ToolInput& input) {
-  constexpr double kRelaxing_s = 1;
   const bool held = view.holding_tool || view.dragging_tool;
   // A burr that turns would mill on alone.
   if (std::exchange(view.was_held, held) && !held) simulation.milling.set_spindle(false);
@@ -261,6 +262,8 @@ void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
   bool free = true;
   simulation.milling.follower().read([&](const Volume& bone) { free = tool_is_free(bone, core, X_WT); });
   if (!free) bring_tool(view, simulation, size, pixel_of(view.camera, size, X_WT.position_mm));
+  // A burr that grew where it was let go would press.
+  view.relaxing_s = kRelaxing_s;
 }
 
 }  // namespace osteomill::app

@@ -156,11 +156,11 @@ same start not-full size; is full size "1400 x 900"
 
 # --- Milling, what is drawn and heard, algorithm, tool, scan's isovalue ----------------------------------------------
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; click Laboratory ;; press page-up ;; wait 0.9 ;; state touching
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 36 0.6 ;; wait 0.5 ;; click Laboratory ;; wait 0.4 ;; state touching
 click ghost ;; state no-ghost ;; click ghost
 click arrows ;; state no-arrows ;; click arrows
-click spindle on ;; wait 0.1 ;; release page-up ;; wait 0.4 ;; state milling ;; click sound ;; wait 0.1 ;; state silent ;; click sound
-click spindle on ;; wait 0.2 ;; state milled
+click spindle on ;; wait 0.6 ;; state milling ;; click sound ;; wait 0.1 ;; state silent ;; click sound
+click spindle on ;; wait 0.2 ;; key t ;; wait 0.2 ;; state milled
 click pause ;; wait 0.1 ;; state paused ;; click pause ;; wait 0.1 ;; state goes-on
 glide 640 750 0 ;; key t ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space
 key t ;; wait 0.2 ;; state three-cuts ;; screenshot controls-3-milled.png
@@ -237,8 +237,8 @@ value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told 
 
 # --- A tool in bone that comes back, or grows ----------------------------------------------------------------------
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.3 ;; key t ;; click Laboratory ;; press page-up ;; wait 0.7
-click 3 point-shell ;; settle ;; drag spindle speed 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing ;; release page-up ;; wait 0.7 ;; state released
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 36 0.6 ;; wait 0.3 ;; click Laboratory ;; wait 0.4
+click 3 point-shell ;; settle ;; drag spindle speed 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing ;; key t ;; wait 1.2 ;; state released
 glide 640 750 0 ;; key t ;; key space ;; wheel 20 1 ;; wait 2 ;; key space ;; key t ;; wait 0.3 ;; state in-hole
 click Undo cut ;; settle ;; wait 0.5 ;; state out
 drag burr radius 60 ;; settle ;; wait 0.2 ;; state wide
@@ -246,7 +246,7 @@ close
 END
 more pressing out tool_seen 3; more in-hole pressing tool_seen 3; more in-hole out tool_seen 3; is out force_N 0.000
 awk -v f="$(value pressing force_N)" 'BEGIN { exit !(f > 0) }' || fault "the tool was taken away where it only pressed"
-awk -v f="$(value released force_N)" 'BEGIN { exit !(f < 0.05) }' || fault "a key that is up presses with $(value released force_N) N"
+awk -v f="$(value released force_N)" 'BEGIN { exit !(f < 0.05) }' || fault "a tool that was let go presses with $(value released force_N) N"
 is wide burr_mm 4.00
 
 # --- Cuts ---------------------------------------------------------------------------------------------------------

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# A tool that is let go deep in bone presses no longer, in whatever way it was held, with every algorithm:
+#   let_go_test.sh OSTEOMILL
+set -euo pipefail
+osteomill=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export XDG_STATE_HOME=$folder/state
+fail() { echo "FAILED: $1"; cat errors; grep force_N said; exit 1; }
+"$here/ball.sh" >ball.nrrd
+value() { sed -n "s/^$1\.$2=//p" said; }
+
+# A hole of some depth with a burr that is not the usual one; then the tool is pressed and let go in each way.
+sed 's/ *;; */\n/g' >actions <<'END'
+wait 0.5 ;; click S ;; glide 640 750 0 ;; key b ;; settle ;; wait 0.3 ;; key t ;; wheel 28 0.6 ;; wait 0.4 ;; key space ;; wait 1.2 ;; key space ;; wait 0.3 ;; state hole
+wheel 15 0.3 ;; wait 0.7 ;; state t-pressing ;; key t ;; wait 1.5 ;; state t-after
+key t ;; wheel 15 0.3 ;; wait 0.7 ;; state escape-pressing ;; key escape ;; wait 1.5 ;; state escape-after
+press page-up ;; wait 1 ;; state keys-pressing ;; release page-up ;; wait 1.5 ;; state keys-after
+click Find tool ;; wait 0.2 ;; glide 640 400 0.1 ;; wait 0.1 ;; press left ;; press page-up ;; wait 1 ;; release page-up ;; wait 0.5 ;; state drag-pressing
+release left ;; wait 1.5 ;; state drag-after
+close
+END
+for algorithm in line-proxy surface-points point-shell barrier-shell; do
+  xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 "$osteomill" simulate ball.nrrd --no-help --algorithm $algorithm \
+    --burr-radius 1.2 --stiffness 3 --script actions >said 2>errors || fail "exit code $?"
+  awk -v mm3="$(value hole removed_mm3)" 'BEGIN { exit !(mm3 > 0.1) }' || fail "with $algorithm there is no hole"
+  for way in t escape keys drag; do
+    echo "$algorithm, $way: $(value $way-pressing force_N) N, then $(value $way-after force_N) N"
+    awk -v before="$(value $way-pressing force_N)" -v after="$(value $way-after force_N)" 'BEGIN { exit !(before > 0.2 && after < 0.02) }' ||
+      fail "with $algorithm, a tool that is let go by $way presses with $(value $way-after force_N) N of $(value $way-pressing force_N) N"
+    [ "$(value $way-after spindle)" = false ] || fail "with $algorithm the spindle turns after $way"
+  done
+done
