@@ -21,7 +21,7 @@ fault() { echo "FAILED: $1"; faults=1; }
 # Works the window by the lines of standard input, with what it says in `said`.
 window() {
   rm -f state/osteomill/window.toml
-  { echo "controls $folder/controls"; sed 's/ *;; */\n/g'; } | tee -a worked_lines >actions
+  { echo "controls $folder/${controls:-controls}"; sed 's/ *;; */\n/g'; } | tee -a worked_lines >actions
   xvfb-run -a -s "-screen 0 1400x900x24" timeout 150 "$osteomill" simulate "$@" --out out --script actions >said 2>errors || {
     echo "FAILED: exit code $?"; cat errors; exit 1; }
   [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true
@@ -95,7 +95,6 @@ click Take the tool (T) ;; state button-taken
 click Let go (T) ;; state button-let-go
 key f11 ;; wait 0.3 ;; state full ;; key f11 ;; wait 0.3 ;; state not-full
 screenshot controls-2-keys.png
-click Window ;; wait 0.2 ;; click Start page ;; wait 1 ;; screenshot controls-2-start.png
 close
 END
 [ "$(value first tool_seen)" != "0.000 0.000 0.000" ] && same first before tool_seen || fault "the tool does not begin above the bone"
@@ -237,7 +236,7 @@ value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told 
 
 # --- A tool in bone that comes back, or grows ----------------------------------------------------------------------
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 36 0.6 ;; wait 0.3 ;; click Laboratory ;; wait 0.4
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 30 0.6 ;; wait 0.3 ;; click Laboratory ;; wait 0.4
 click 3 point-shell ;; settle ;; drag spindle speed 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing ;; key t ;; wait 1.2 ;; state released
 glide 640 750 0 ;; key t ;; key space ;; wheel 20 1 ;; wait 2 ;; key space ;; key t ;; wait 0.3 ;; state in-hole
 click Undo cut ;; settle ;; wait 0.5 ;; state out
@@ -381,10 +380,14 @@ END
 shows labelled "label colours"
 ! cmp -s labelled.png plain.png || fault "the colours of the labels are not seen"
 
-# --- The last recording is opened to be played; playback_test.sh works that page ----------------------------------
-window ball.nrrd --no-help <<'END'
+# --- The last recording is opened to be played, playback_test.sh works that page; the way back to the start ----------------------------------
+controls=pages window ball.nrrd --no-help <<'END'
 wait 0.3 ;; click Record ;; wait 0.5 ;; click Stop recording ;; settle ;; click Play back ;; close
 END
+controls=pages window ball.nrrd --no-help <<'END'
+wait 0.3 ;; click Window ;; wait 0.2 ;; click Start page ;; wait 1 ;; screenshot controls-2-start.png ;; click Built-in tooth ;; settle ;; state tooth ;; close
+END
+is tooth scan "built-in tooth"
 
 # --- Nothing was left out -----------------------------------------------------------------------------------------
 # Of the labels that were drawn, and of those that stand in the code; exercise_test.sh works the two pages of exercises, and
@@ -394,7 +397,7 @@ END
     'ui::(button|checkbox|radio|slider|text_field|header|begin_menu)\(\s*"\K[^"]+' "$source_folder"/*.cpp |
     tr '\0' '\n' | sed 's/##.*//; /^$/d'; } | sed '/[0-9] mm)\{0,1\}$/d' | sort -u >labels
 # Those of a haptic device are worked if there is one.
-{ sed -n 's/^worked //p' controls; sed -n 's/^click //p' "$here/device_test.sh"; } | sort -u >worked
+{ sed -n 's/^worked //p' controls pages; sed -n 's/^click //p' "$here/device_test.sh"; } | sort -u >worked
 cat "$here/device_test.sh" >>worked_lines
 [ "$(wc -l <labels)" -gt 30 ] || fault "the labels are not found"
 while read -r label; do fault "the control '$label' was never worked, or did nothing"; done < <(comm -23 labels worked)
