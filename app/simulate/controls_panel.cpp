@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cctype>
-#include <span>
+#include <cfloat>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -272,16 +272,6 @@ void draw_milling(ViewState& view, Simulation& simulation, ToolChoice& choice) {
   draw_undo(view, milling);
 }
 
-void draw_bars(const ImVec2& place, const ImVec2& size, std::span<const float> heights) {
-  const float most = *std::ranges::max_element(heights), width = size.x / static_cast<float>(heights.size());
-  const ImU32 colour = ImGui::GetColorU32(ImGuiCol_PlotHistogram);
-  for (std::size_t n = 0; n < heights.size() && most > 0; ++n) {
-    const float left = place.x + static_cast<float>(n) * width;
-    ImGui::GetWindowDrawList()->AddRectFilled({left, place.y + size.y * (1 - heights[n] / most)},
-                                              {left + width, place.y + size.y}, colour);
-  }
-}
-
 // Buttons for the densities that may bound bone, if there are several: only the user knows which does.
 // They stand beside the histogram, and below it if there is no room.
 void draw_boundaries(ViewState& view, Simulation& simulation) {
@@ -307,10 +297,11 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   float isovalue = view.isovalue.value_or(static_cast<float>(milling.isovalue()));
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const ImVec2 size(ImGui::CalcItemWidth(), 1.5f * ImGui::GetFontSize());
-  ImGui::GetWindowDrawList()->AddRectFilled(place, {place.x + size.x, place.y + size.y},
-                                            ImGui::GetColorU32(ImGuiCol_FrameBg));
-  draw_bars(place, size, histogram.log_counts);
-  ImGui::Dummy(size);
+  // Disabled, so that ImGui does not put a hint of its own there.
+  ImGui::BeginDisabled();
+  ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
+                       static_cast<int>(histogram.log_counts.size()), 0, nullptr, 0, FLT_MAX, size);
+  ImGui::EndDisabled();
   ui::tooltip(
       "How many voxels have each density, from the lowest to the highest; the line is where bone begins");
   const float share = (isovalue - histogram.min) / (histogram.max - histogram.min);

@@ -74,6 +74,7 @@ work() {
   [ $code -eq 0 ] || fail "exit code $code"
   local first branch
   first=$(value results last_recording)
+  for fact in unexplained cut_off outside covered; do is opened $fact ""; is fast $fact ""; done
   is opened tick 0; is opened playing false; is opened recorded_camera true
   value opened verdict | grep -q "^Comes out again to the bit: [0-9]* ticks$" || fail "$(value opened verdict)"
   [ "$(value opened bone)" = 0 ] || fail "the bone is not as scanned at first"

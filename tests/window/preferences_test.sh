@@ -25,7 +25,8 @@ is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")
 shows() { value "$1" shown | grep -qF "[$2]" || fail "at $1 there is no '$2'"; }
 hides() { ! value "$1" shown | grep -qF "[$2]" || fail "at $1 there is still '$2'"; }
 
-for size in "1024 600" "1280 800" "1900 1000"; do
+for size in "1024 600" "1280 800" "3840 2160"; do
+  screen=3840x2160
   rm -rf state
   window ball.nrrd <<END
 resize $size ;; wait 0.3 ;; state first ;; click ghost ;; click sound ;; click Choose burr ;; wait 0.2 ;; click diamond 014 (1.4 mm) ;; settle
@@ -47,6 +48,7 @@ END
   ! grep -q window.toml errors || fail "what was kept is complained about"
   grep -q '^theme = "dark"' $kept || fail "a second start keeps nothing"
 done
+unset screen
 grep -q '^ghost = false' $kept && grep -q '^sound = false' $kept && grep -q '^open-view = false' $kept ||
   fail "the file has not what was set"
 
