@@ -70,11 +70,13 @@ double screens_scale(GLFWmonitor* monitor, double content_scale) {
   return scale_for(screen);
 }
 
-// Returns whether a window that is kept there is in sight: it lies within a screen that is there now.
+// Returns whether a window that is kept there can be used: it lies within a screen that is there now, and has
+// some size.
 bool is_on_a_screen(const WindowPlace& place) {
+  constexpr int kLeast_px = 200;
   int count = 0;
   GLFWmonitor** const monitors = glfwGetMonitors(&count);
-  return place.width > 0 && place.height > 0 &&
+  return std::min(place.width, place.height) >= kLeast_px &&
          std::any_of(monitors, monitors + count, [&](GLFWmonitor* one) {
            int left = 0, top = 0, width = 0, height = 0;
            glfwGetMonitorWorkarea(one, &left, &top, &width, &height);

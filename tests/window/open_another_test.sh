@@ -44,6 +44,7 @@ wait 0.3
 say not-there
 click Close
 wait 0.3
+click Laboratory
 click 2 surface-points
 settle
 click Save picture
