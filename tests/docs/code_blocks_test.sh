@@ -28,10 +28,13 @@ for block in "$folder"/*.cpp; do
 osteomill/session/connected_device.h
 osteomill/session/hardware.h
 osteomill/base/real_time.h
+osteomill/ct/read_scan.h
 osteomill/live/live_milling.h
 osteomill/session/milling_entry.h
 osteomill/session/trajectory.h
+osteomill/recording/replay_recording.h
 osteomill/volume/bone_densities.h
+osteomill/volume/builtin_tooth.h
 HEADERS
       echo 'void part(const std::shared_ptr<osteomill::Volume>& bone) {'; cat "$block"; echo '}'; } >"$block.whole"
     mv "$block.whole" "$block"

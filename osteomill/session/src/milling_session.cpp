@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "osteomill/base/positive.h"
 #include "osteomill/haptics/sample_points.h"
 #include "osteomill/milling/pressing_reach.h"
 #include "osteomill/volume/sampling.h"
@@ -26,8 +27,10 @@ const Vec3 kNotANumber = Vec3::Constant(std::numeric_limits<double>::quiet_NaN()
 const Wrench kNotFinite{kNotANumber, Vec3::Zero()};
 const Pose kNoPose{kNotANumber, Quat::Identity()};
 
-// The bone, if the tool can work in it, and the algorithm holds the burr off structures that have a guard.
+// The bone, if the tool can work in it, the hand is guarded by numbers, and the algorithm holds the burr off
+// structures that have a guard.
 std::shared_ptr<Volume> workable(const MillingSetup& setup, std::shared_ptr<Volume> bone) {
+  require_workable(setup.guard);
   require_workable(setup.tool, bone->geometry());
   if (bone->no_go() && guard_count(*bone->no_go()) > 0 && !setup.algorithm.has_guards) {
     throw std::invalid_argument(setup.algorithm.id.name +
@@ -99,11 +102,17 @@ MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities
   algorithm_->prepare({volume_.get(), setup.tool, setup.tick_s});
 }
 
+// A length that is no time would stay in everything that is summed up over ticks.
+double MillingSession::usable_tick_s(double dt_s) const noexcept {
+  return is_positive(dt_s) ? dt_s : setup_.tick_s;
+}
+
 TickRecord MillingSession::begin_record(Device& device, const TickInput& input) {
-  if (input.late_s > 0 && last_X_WT_) device.tick_done(*last_X_WT_, input.late_s);
+  const double late_s = is_positive(input.late_s) ? input.late_s : 0;
+  if (late_s > 0 && last_X_WT_) device.tick_done(*last_X_WT_, late_s);
   TickRecord record;
   record.time_s = input.time_s;
-  record.dt_s = input.dt_s + input.late_s;
+  record.dt_s = usable_tick_s(input.dt_s) + late_s;
   record.paused = input.paused;
   record.fade_out = std::exchange(fade_out_requested_, false);
   if (record.fade_out) guard_.fade_out();
@@ -126,6 +135,21 @@ TickRecord MillingSession::begin_record(Device& device, const TickInput& input) 
 }
 
 TickRecord MillingSession::tick(Device& device, const TickInput& input) {
+  try {
+    return tick_of(device, input);
+  } catch (...) {
+    // Only the device throws. Whatever its hand feels now, it is to be zero, until the tool is out of bone.
+    guard_.hold_back();
+    try {
+      device.write_wrench({});
+    } catch (...) {
+      // The first failure is the one to report.
+    }
+    throw;
+  }
+}
+
+TickRecord MillingSession::tick_of(Device& device, const TickInput& input) {
   TickRecord record = begin_record(device, input);
   last_change_ = {};
   if (input.paused) {
@@ -139,7 +163,7 @@ TickRecord MillingSession::tick(Device& device, const TickInput& input) {
     record.no_go_distance_mm =
         no_go_distance_mm(*volume_->no_go(), record.X_WT.position_mm, setup_.tool.burr_radius_mm);
   record.bone_hash = volume_->change_hash();
-  device.tick_done(last_X_WT_.value_or(record.X_WD), input.dt_s);
+  device.tick_done(last_X_WT_.value_or(record.X_WD), usable_tick_s(input.dt_s));
   return record;
 }
 
@@ -224,7 +248,10 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
   if (milling_.reaction_share > 0) step.wrench = step.wrench + reaction_.wrench();
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
   const bool may_be_let = is_driven && (!guard_.is_held_back() || is_free(X_WD));
-  const SafeWrench safe = guard_.filter(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, may_be_let);
+  SafeWrench safe = guard_.filter(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, may_be_let);
+  // An algorithm that finds nothing to push against deep in bone asks for what is sent anyway.
+  if (safe.fault == WrenchFault::none && is_driven && guard_.is_held_back())
+    safe.fault = WrenchFault::held_back;
   if (safe.fault == WrenchFault::not_finite) {
     // Whatever led there is still in the algorithm's memory of contacts. The tool itself is still outside the
     // bone, where the device may have sunk into it.

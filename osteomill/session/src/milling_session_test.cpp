@@ -1,6 +1,7 @@
 #include "osteomill/session/milling_session.h"
 
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -231,6 +232,93 @@ TEST_F(MillingSessionTest, ADeviceWithoutAPoseGetsNothing) {
   EXPECT_EQ(record.fault, WrenchFault::pose_not_finite);
   EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
   EXPECT_EQ(record.X_WT.position_mm, Vec3(0, 0, 1.0)) << "the tool stays where it was last shown";
+}
+
+// Fails to write once, when it is asked to.
+class FailingDevice : public Device {
+ public:
+  PosedDevice posed;
+  bool fails_to_write = false;
+
+  Pose read_pose() override { return posed.read_pose(); }
+  void write_wrench(const Wrench& wrench) override {
+    if (std::exchange(fails_to_write, false)) throw std::runtime_error("lost");
+    posed.write_wrench(wrench);
+  }
+};
+
+TEST_F(MillingSessionTest, ADeviceThatThrowsIsLeftWithZeroAndFeelsNothingBeforeTheToolIsOut) {
+  start(testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
+                                      testing_support::plane(Vec3::Zero(), Vec3::UnitZ())),
+        {});
+  FailingDevice device;
+  const auto tick_at = [&](double height_mm, double force_N) {
+    device.posed.put({{0, 0, height_mm}, Quat::Identity()});
+    algorithm_->next.wrench.force_N = {0, 0, force_N};
+    return session_->tick(device, {});
+  };
+  tick_at(2, 0);
+  tick_at(1.45, 3);
+  ASSERT_GT(device.posed.sent().force_N.z(), 0);
+  device.fails_to_write = true;
+  EXPECT_THROW(tick_at(0.9, 3), std::runtime_error);
+  EXPECT_EQ(device.posed.sent().force_N, Vec3::Zero());
+  for (const double asked_N : {3.0, 0.0}) {
+    const TickRecord record = tick_at(0.5, asked_N);
+    EXPECT_EQ(record.fault, WrenchFault::held_back) << asked_N;
+    EXPECT_EQ(device.posed.sent().force_N, Vec3::Zero());
+  }
+  EXPECT_EQ(tick_at(2, 0).fault, WrenchFault::none);
+  tick_at(1.45, 3);
+  EXPECT_GT(device.posed.sent().force_N.z(), 0);
+}
+
+TEST_F(MillingSessionTest, ALengthThatIsNoTimeCountsAsAnOrdinaryTick) {
+  MillingSetup setup{.guard = GuardSettings::for_simulation()};
+  setup.vibration.on = setup.contact_transient.on = true;
+  start(testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
+                                      testing_support::plane(Vec3::Zero(), Vec3::UnitZ())),
+        setup);
+  algorithm_->next.wrench.force_N = {0, 0, 3};
+  algorithm_->next.burr_force_W_N = {0, 0, -3};
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kEver = std::numeric_limits<double>::infinity();
+  for (const double length_s : {kNone, kEver, 0.0, -1.0}) {
+    const TickRecord record =
+        session_->tick(device_, {.dt_s = length_s, .late_s = length_s, .spindle_on = true});
+    EXPECT_EQ(record.dt_s, setup.tick_s) << length_s;
+  }
+  const TickRecord after = tick();
+  EXPECT_EQ(after.fault, WrenchFault::none);
+  EXPECT_TRUE(after.wrench.force_N.allFinite());
+  EXPECT_GT(after.wrench.force_N.z(), 2);
+}
+
+TEST_F(MillingSessionTest, AGuardThatIsNoNumberIsRefused) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const auto refuses = [&](auto set) {
+    MillingSetup setup;
+    set(setup.guard);
+    try {
+      start(testing_support::shape_volume(testing_support::centred_cube(8, 1),
+                                          testing_support::plane(Vec3::Zero(), Vec3::UnitZ())),
+            setup);
+    } catch (const std::invalid_argument& refusal) {
+      return std::string(refusal.what()).starts_with("guard.");
+    }
+    return false;
+  };
+  for (const double value : {kNone, -1.0}) {
+    EXPECT_TRUE(refuses([=](GuardSettings& g) { g.limits.force_N = value; })) << value;
+    EXPECT_TRUE(refuses([=](GuardSettings& g) { g.limits.torque_Nmm = value; })) << value;
+    EXPECT_TRUE(refuses([=](GuardSettings& g) { g.rates.force_N_s = value; })) << value;
+    EXPECT_TRUE(refuses([=](GuardSettings& g) { g.rates.torque_Nmm_s = value; })) << value;
+    EXPECT_TRUE(refuses([=](GuardSettings& g) { g.blend_s = value; })) << value;
+    EXPECT_TRUE(refuses([=](GuardSettings& g) { g.max_move_mm = value; })) << value;
+    EXPECT_TRUE(refuses([=](GuardSettings& g) { g.max_turn_rad = value; })) << value;
+    EXPECT_TRUE(refuses([=](GuardSettings& g) { g.max_tick_s = value; })) << value;
+  }
+  EXPECT_FALSE(refuses([](GuardSettings&) {}));
 }
 
 TEST_F(MillingSessionTest, NoAlgorithmIsGivenAPoseFartherThanAnyWorkspace) {

@@ -1,6 +1,10 @@
 #include "osteomill/session/wrench_guard.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "osteomill/base/positive.h"
 
 namespace osteomill {
 
@@ -44,6 +48,20 @@ Wrench PassivityObserver::damping(double dt_s) const noexcept {
 
 GuardSettings GuardSettings::for_simulation(const WrenchLimits& limits, bool passivity_controller) {
   return {limits, WrenchRates{}, 0, kAny, kAny, kAny, passivity_controller};
+}
+
+void require_workable(const GuardSettings& settings) {
+  require_positive(settings.limits.force_N, "guard.limits.force_N, N,");
+  require_positive(settings.limits.torque_Nmm, "guard.limits.torque_Nmm, N mm,");
+  require_not_negative(settings.blend_s, "guard.blend_s, s,");
+  const auto require_some = [](double value, const std::string& what) {
+    if (!(value > 0)) throw std::invalid_argument("guard." + what + " must be above 0; infinity for any");
+  };
+  require_some(settings.rates.force_N_s, "rates.force_N_s");
+  require_some(settings.rates.torque_Nmm_s, "rates.torque_Nmm_s");
+  require_some(settings.max_move_mm, "max_move_mm");
+  require_some(settings.max_turn_rad, "max_turn_rad");
+  require_some(settings.max_tick_s, "max_tick_s");
 }
 
 void WrenchGuard::restart() noexcept {

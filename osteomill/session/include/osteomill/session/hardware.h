@@ -29,7 +29,7 @@ struct HardwareKind {
   /// Opens the device. Throws InputError naming it and why it cannot be opened.
   std::unique_ptr<Connection> (*open)(const std::string& address);
 
-  /// Looks for the device as `look_for` does; a device that is not there is a result, not an exception.
+  /// Looks for the device as `probe` does; a device that is not there is a result, not an exception.
   FoundDevice find(const std::string& at) const;
 };
 

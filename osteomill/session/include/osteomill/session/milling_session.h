@@ -47,7 +47,8 @@ struct SessionHandover {
 
 /// The time of a tick, and what is asked of it.
 struct TickInput {
-  /// Its beginning, and its length: the time since the tick before, and until the next.
+  /// Its beginning, which is only recorded, and its length: the time since the tick before, and until the
+  /// next. A length that is not a positive number counts as MillingSetup::tick_s.
   double time_s = 0;
   double dt_s = 1e-3;
   /// The time by which the tick before is longer ago, because ticks were missed.
@@ -63,15 +64,17 @@ struct TickInput {
 class MillingSession {
  public:
   /// Makes a session ready to tick; takes as long as the algorithm's preparation. A session that has milled
-  /// the same bone takes no further tick while this one lives. Throws std::invalid_argument if a setting is
-  /// out of range, the tool cannot work (`require_workable`), or structures of the bone have a guard that the
-  /// algorithm does not hold.
+  /// the same bone takes no further tick while this one lives, because algorithms follow only the milling of
+  /// their own session. Throws std::invalid_argument if a setting is out of range, the tool cannot work
+  /// (`require_workable`), or structures of the bone have a guard that the algorithm does not hold.
   MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
 
   /// Runs one haptic tick, all of it: reads the device's pose, computes and sends the wrench, removes as much
-  /// bone as the force that was sent pays for, and tells the device that the tick is done. A wrench that is
-  /// not finite, or a device pose that is not, sends zero and is recorded as the record's fault. Real-time
-  /// safe: no allocation, lock, log or system call, and no exception but the device's.
+  /// bone as the force that was sent pays for, and tells the device that the tick is done. If the wrench or
+  /// the device's pose is not finite, what is sent falls to zero as fast as the guard allows (20 N in 5 ms;
+  /// at once with GuardSettings::for_simulation) and the record's fault gives the reason. Real-time safe: no
+  /// allocation, lock, log or system call, and no exception except the device's own. After that one, zero was
+  /// written to the device, and the hand is held back (WrenchGuard::hold_back).
   TickRecord tick(Device& device, const TickInput& input) OSTEOMILL_NONBLOCKING;
 
   /// Returns the guard between the algorithm and the hand. As safe as `tick`.
@@ -113,6 +116,8 @@ class MillingSession {
   const BoneDensities& densities() const { return densities_; }
 
  private:
+  TickRecord tick_of(Device& device, const TickInput& input);
+  double usable_tick_s(double dt_s) const noexcept;
   TickRecord begin_record(Device& device, const TickInput& input);
   void work(Device& device, TickRecord& record);
   void pause(Device& device, TickRecord& record);

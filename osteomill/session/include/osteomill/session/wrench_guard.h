@@ -16,7 +16,8 @@ struct GuardSettings {
   WrenchRates rates = kHandWrenchRates;
   /// The time of a blend from the wrench sent before to the one asked for, when they need not agree.
   double blend_s = 0.1;
-  /// The furthest that a device may move and turn in a tick, and the longest tick; zero is sent beyond them.
+  /// The furthest that a device may move and turn in a tick, and the longest tick; beyond them the wrench
+  /// falls to zero at `rates`.
   double max_move_mm = 5;
   double max_turn_rad = 0.2;
   double max_tick_s = 0.005;
@@ -28,6 +29,10 @@ struct GuardSettings {
   /// single tick may bring all of 20 N.
   static GuardSettings for_simulation(const WrenchLimits& limits = {}, bool passivity_controller = false);
 };
+
+/// Throws std::invalid_argument, naming the setting, if a limit is not a positive number, or if a rate, a
+/// time or a longest move is not a number or negative.
+void require_workable(const GuardSettings& settings);
 
 /// Counts how much energy a session has given to the hand, and has a damper that takes it back if it is more
 /// than the hand gave: a passivity observer and controller in the time domain (Hannaford and Ryu, Time-domain
@@ -101,8 +106,8 @@ class WrenchGuard {
   bool is_at_rest() const { return is_zero(sent_); }
 
   /// Returns what to send for a wrench in a tick of `dt_s`, with the reason if that is not what was asked
-  /// for. A wrench that is not finite becomes zero, and the next ones come up slowly again. A tool that is in
-  /// bone (`is_free` false) stays held back.
+  /// for. Falls to zero at the settings' rates if the wrench is not finite, and lets the next ones come up
+  /// slowly again. A tool that is in bone (`is_free` false) stays held back.
   SafeWrench filter(const Wrench& asked, const Pose& X_WD, double dt_s,
                     bool is_free = true) noexcept OSTEOMILL_NONBLOCKING;
   /// Returns what to send in a tick in which nothing may be felt, because of a pause or because there is no
