@@ -261,6 +261,24 @@ std::vector<DicomPart> parts_of(DicomSeries& series, std::size_t number) {
   return parts;
 }
 
+SeriesSummary summary_of(const DicomPart& part) {
+  const DicomHeader& first = part.series->headers[part.slices.empty() ? 0 : part.slices.front().header];
+  SeriesSummary summary{part.number,
+                        first.modality,
+                        in_one_line(first.series_description),
+                        part.told_by,
+                        part.slices.size(),
+                        first.columns,
+                        first.rows,
+                        {}};
+  try {
+    summary.thickness_mm = stack_slices("", part.planes(), part.same_pixels()).geometry.spacing_mm.z();
+  } catch (const InputError&) {
+    // Then it is no volume.
+  }
+  return summary;
+}
+
 // Describes a series in a line: number, modality, description, what tells it from other parts,
 // size, spacing, where it lies, UID.
 std::string describe(const DicomPart& part) {
@@ -505,12 +523,18 @@ Scan read_images(const std::string& subject, DicomImages images, const ReadOptio
   for (std::size_t n = 0; n < all.size(); ++n) {
     for (DicomPart& part : parts_of(all[n], n + 1)) parts.push_back(std::move(part));
   }
-  const DicomPart& picked = pick_part(subject, parts, options.series, file);
+  std::string wanted = options.series;
+  if (parts.size() > 1 && wanted.empty() && file.empty() && options.choose_series) {
+    std::vector<SeriesSummary> choices;
+    for (const DicomPart& part : parts) choices.push_back(summary_of(part));
+    wanted = options.choose_series(choices);
+  }
+  const DicomPart& picked = pick_part(subject, parts, wanted, file);
   std::vector<std::string> lines;
   for (const DicomPart& part : parts) {
     if (parts.size() > 1) lines.push_back(describe(part));
   }
-  add_choice(picked, parts, all.size(), options.series, warnings);
+  add_choice(picked, parts, all.size(), wanted, warnings);
   DicomSeries& series =
       *std::find_if(all.begin(), all.end(), [&](const DicomSeries& of) { return &of == picked.series; });
   if (!series.left_out.empty()) {

@@ -1,6 +1,7 @@
 #include "osteomill/ct/read_scan.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <fstream>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "osteomill/base/work_progress.h"
 
 #include "dicom_file.h"
+#include "header_text.h"
 #include "picture_stack.h"
 #include "volume_file.h"
 
@@ -184,7 +186,26 @@ Scan read_any(const fs::path& path, const ReadOptions& options) {
       "is not a scan: neither DICOM nor a zip archive, nor NRRD, MetaImage, NIfTI, PNG or TIFF by its name");
 }
 
+bool begins_as_dicom(const fs::path& file) {
+  std::string head(132, '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), 132);
+  return head.ends_with("DICM");
+}
+
 }  // namespace
+
+bool may_be_scan(const fs::path& file) {
+  const std::string name = lower(file.filename().string());
+  for (const char* const ending : {".zip", ".dcm", ".ima"})
+    if (name.ends_with(ending)) return true;
+  if (name == "dicomdir") return true;
+  if (volume_format_of(file) != nullptr) return !header_of_voxels(file);
+  // Many programs name slices by their UIDs or numbers.
+  const std::string ending = file.extension().string();
+  const bool has_letters =
+      std::any_of(ending.begin(), ending.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+  return !has_letters && begins_as_dicom(file);
+}
 
 Scan read_scan(const fs::path& path, const ReadOptions& options) {
   try {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,22 @@ struct Scan {
   std::vector<LabelName> labels = {};
 };
 
+/// One of several DICOM series, or of the volumes in one, as a user chooses it.
+struct SeriesSummary {
+  /// What `ReadOptions::series` takes for it: 3, or 3.1 for one of several volumes in a series.
+  std::string number;
+  std::string modality;
+  std::string description;
+  /// The text that tells it from other volumes of its series; empty if it is all of one.
+  std::string told_by;
+  std::size_t slices = 0;
+  /// Pixels of a slice.
+  int columns = 0;
+  int rows = 0;
+  /// The distance from slice to slice, mm; nothing if the slices are no volume.
+  std::optional<double> thickness_mm;
+};
+
 /// The choice of what to read, and of how much of the machine that may take.
 struct ReadOptions {
   /// The DICOM series to read if there are several: its number (from 1; 3.1 for one of several volumes in a
@@ -49,7 +66,15 @@ struct ReadOptions {
   std::uint64_t max_memory_bytes = allowed_memory_bytes();
   /// The distances of voxels along columns, rows and slices, for pictures, which do not say them.
   std::optional<Vec3> spacing_mm = std::nullopt;
+  /// Is called before any pixel is read if there are several series, none is named in `series`, and the
+  /// path is not a file of one. Returns the number of the one to read. What it throws ends the reading.
+  std::function<std::string(const std::vector<SeriesSummary>&)> choose_series = {};
 };
+
+/// Returns whether a file may be a scan: by its name (volume files, .zip, .dcm, .ima, DICOMDIR), or, if its
+/// name has no ending in letters, because it begins as DICOM does. Pictures, which need a spacing, are not
+/// among them. Reads at most 132 bytes.
+bool may_be_scan(const std::filesystem::path& file);
 
 /// Reads a DICOM series (a folder and the folders in it, files in any order; a DICOMDIR; one of its files,
 /// with the rest of its series beside it; an Enhanced multi-frame file), NRRD, MetaImage, NIfTI, or pictures
