@@ -105,12 +105,7 @@ void draw_menu(ViewState& view) {
 void draw_scan(ViewState& view, const Simulation& simulation) {
   ImGui::TextUnformatted(fitting_suffix(simulation.scan.name).c_str());
   ui::tooltip(simulation.scan.name);
-  const bool entered = ui::text_field(
-      "scan", "Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window",
-      view.scan_path.data(), view.scan_path.size());
-  ImGui::SameLine();
-  const bool pressed = ui::button("Open", "Opens the scan whose path stands beside it, in place of this one");
-  if ((entered || pressed) && view.scan_path[0] != 0) view.scan_requested = view.scan_path.data();
+  view.open_requested = draw_open_buttons();
   for (const std::string& warning : simulation.warnings) ui::warning(warning);
 }
 

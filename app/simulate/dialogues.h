@@ -26,6 +26,8 @@ struct Dialogue {
   /// Once this is true the dialogue closes by itself and does `then`.
   std::function<bool()> until;
   Action then;
+  /// The choices stand below each other, because their labels are long.
+  bool is_list = false;
 };
 
 /// Dialogues, shown one at a time in the order in which they were added. For one thread.

@@ -104,7 +104,7 @@ void MillingScreen::draw(Stage& stage) {
   const PixelSize size = stage.window.size();
   start_requests(view);
   update(stage);
-  take_input(view, simulation_, space_mouse_, size);
+  take_input(view, simulation_, space_mouse_, gamepad_, size);
   stage.bone.take(simulation_.milling.take_changed_bricks(), stage.pictures_per_s());
   // The recording begins with a picture of the bone.
   if (exercise_begins_ && stage.bone.is_up_to_date() && stage.bone.triangle_count() > 0) {
@@ -130,6 +130,7 @@ void MillingScreen::draw_panels(Stage& stage) {
   draw_help(view, size, {top_px, bottom_px});
   if (const auto recording_s = stage.files.recording_s(simulation_)) draw_recording(*recording_s);
   draw_no_go(simulation_);
+  draw_hand(view);
   draw_exercise(view, simulation_, stage.files, size);
 }
 

@@ -8,6 +8,7 @@
 #include "osteomill/session/space_mouse.h"
 
 #include "app/device_option.h"
+#include "app/simulate/gamepad.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/stage.h"
 
@@ -45,6 +46,7 @@ class MillingScreen {
   // True from when an exercise was opened until it is recorded.
   bool exercise_begins_ = false;
   SpaceMouse space_mouse_;
+  Gamepad gamepad_;
   // The failure that the user was told of.
   std::exception_ptr device_failure_;
   std::unique_ptr<BoneSender> sender_;

@@ -21,6 +21,11 @@ using Prepare = std::function<PreparedMilling(std::shared_ptr<Volume> bone)>;
 
 constexpr const char* kMilledIsovalue = "as it was milled with";
 
+// Ends the reading of a folder before its pixels.
+struct SeveralSeries {
+  std::vector<SeriesSummary> series;
+};
+
 std::string isovalue_source(const ScanOptions& scan, const LoadedBone& loaded) {
   return scan.isovalue ? "given with --iso" : "suggested: " + loaded.isovalue_from;
 }
@@ -44,10 +49,17 @@ PreparedScan prepare_scan(const ScanOptions& scan, LoadedBone loaded, const Mill
 PreparedScan open_for_milling(const OpenRequest& request, const MillingSetup& setup) {
   const ScanOptions& scan = request.scan;
   const SessionStart milled = request.milled ? request.milled->start : SessionStart{};
-  LoadedBone loaded = [&] {
+  ScanOptions asking = scan;
+  if (!request.milled)
+    asking.read.choose_series = [](const auto& series) -> std::string { throw SeveralSeries{series}; };
+  std::optional<LoadedBone> read;
+  try {
     const WorkProgress::Part reading(0.4);
-    return load_bone(scan);
-  }();
+    read = load_bone(asking);
+  } catch (const SeveralSeries& several) {
+    return {.scan = {.name = scan.scan, .source = scan}, .series = several.series};
+  }
+  LoadedBone& loaded = *read;
   const std::string isovalue_from = milled.bricks.empty() ? isovalue_source(scan, loaded) : kMilledIsovalue;
   PreparedScan prepared = prepare_scan(
       scan, std::move(loaded), setup.tool, isovalue_from,

@@ -19,13 +19,16 @@ constexpr const char* kControls[][2] = {
     {"Take the tool in hand, let it go", "T (or drag the tool itself)"},
     {"Bring it to the bone under the pointer", "B"},
     {"Move it", "mouse, or arrow keys"},
-    {"Press it in, pull it back", "wheel, or Page Up and Page Down"},
+    {"Press it in, pull it back", "wheel, or W and S, or Page Up and Page Down"},
     {"Turn it", "Shift and mouse, or Shift and arrow keys"},
     {"Mill", "left button while the tool is in hand; Space switches the spindle on and off"},
     {"Move a cut", "Ctrl and left drag on it, or its slider"},
     {"Pause, take back the last cut", "P, Ctrl+Z"},
     {"Full screen, this page", "F11, F1"},
     {"With a SpaceMouse", "push and twist it; a button switches the spindle on and off"},
+    {"With a game controller",
+     "left stick moves, right stick turns, triggers press in and pull back; A mills, B lets go, X takes back "
+     "the last cut"},
     {"With a haptic device",
      "its first button mills; while you hold C or its second, your hand moves and the tool stays"},
 };
@@ -107,6 +110,13 @@ void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span)
   if (ui::is_key_pressed(GLFW_KEY_ENTER) || ui::is_key_pressed(GLFW_KEY_ESCAPE)) view.help = false;
 }
 
+void draw_hand(const ViewState& view) {
+  if (!view.holding_tool) return;
+  const float line_px = ImGui::GetTextLineHeight();
+  ui::badge("The tool is in your hand; T or Esc lets it go", ImGui::GetIO().DisplaySize.y - 3.5f * line_px,
+            0.5f * line_px, IM_COL32(40, 70, 100, 230), false);
+}
+
 std::string recording_text(double recording_s) {
   const auto whole_s = static_cast<int>(recording_s);
   return fmt::format("REC {}:{:02}", whole_s / 60, whole_s % 60);
@@ -118,12 +128,12 @@ void draw_recording(double recording_s) {
 }
 
 bool is_dialogue_open() {
-  return ImGui::IsPopupOpen(kPopup);
+  return ImGui::IsPopupOpen(kPopup) || ImGui::IsPopupOpen(kOpenPopup);
 }
 
 void draw_dialogue(DialogueQueue& dialogues) {
   const Dialogue* const shown = dialogues.current();
-  if (shown != nullptr && !is_dialogue_open()) ImGui::OpenPopup(kPopup);
+  if (shown != nullptr && !ImGui::IsPopupOpen(kPopup)) ImGui::OpenPopup(kPopup);
   const ImVec2 middle = ImGui::GetMainViewport()->GetCenter();
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
   const std::string title = (shown != nullptr ? shown->title : "") + kPopup;
@@ -137,7 +147,7 @@ void draw_dialogue(DialogueQueue& dialogues) {
     ImGui::Spacing();
     std::vector<ui::Choice> choices;
     for (const Dialogue::Choice& choice : shown->choices) choices.push_back({choice.label, choice.hint});
-    if (const auto chosen = ui::choice(choices)) dialogues.choose(*chosen);
+    if (const auto chosen = ui::choice(choices, shown->is_list)) dialogues.choose(*chosen);
   }
   ImGui::EndPopup();
 }

@@ -8,6 +8,7 @@
 
 #include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
+#include "app/simulate/gamepad.h"
 #include "app/simulate/playback.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
@@ -51,10 +52,15 @@ void draw_no_go(Simulation& simulation);
 /// Scale bar and orientation letters over the picture.
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient);
 
+/// While the tool is in the hand, how it is let go, at the lower edge.
+void draw_hand(const ViewState& view);
+
 /// A red badge with how long a recording has been going on.
 std::string recording_text(double recording_s);
 void draw_recording(double recording_s);
 
+/// The popup in which a scan is chosen.
+inline constexpr const char* kOpenPopup = "Open a scan###open";
 /// Returns whether a dialogue is open, which alone takes pointer and keys then.
 bool is_dialogue_open();
 /// The dialogue that is to be seen, if any. Takes down what is chosen.
@@ -65,9 +71,10 @@ void draw_dialogue(DialogueQueue& dialogues);
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
                   bool above);
 
-/// Takes what mouse, keyboard and SpaceMouse did since the last picture to the camera and the tool, as the
-/// help tells.
-void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size);
+/// Takes what mouse, keyboard, SpaceMouse and game controller did since the last picture to the camera and
+/// the tool, as the help tells.
+void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, Gamepad& gamepad,
+                const PixelSize& size);
 
 /// Takes what the pointer did since the last picture to the camera alone.
 void take_view_input(ViewState& view, const PixelSize& size);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -29,6 +30,12 @@ bool is_key_down(int key) {
 
 double key_axis(int forwards, int backwards) {
   return (is_key_down(forwards) ? 1.0 : 0.0) - (is_key_down(backwards) ? 1.0 : 0.0);
+}
+
+// What the wheel does, also while a button is held; W and S are on every keyboard.
+double away_axis() {
+  const double letters = ImGui::GetIO().KeyCtrl ? 0 : key_axis(GLFW_KEY_W, GLFW_KEY_S);
+  return std::clamp(key_axis(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN) + letters, -1.0, 1.0);
 }
 
 // Returns how far the pointer moved since the last picture.
@@ -126,8 +133,7 @@ ToolInput keys_for_tool() {
   input.turning = io.KeyShift;
   input.passed_s = static_cast<double>(io.DeltaTime);
   if (io.WantTextInput) return input;
-  input.keys = {key_axis(GLFW_KEY_RIGHT, GLFW_KEY_LEFT), key_axis(GLFW_KEY_UP, GLFW_KEY_DOWN),
-                key_axis(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN)};
+  input.keys = {key_axis(GLFW_KEY_RIGHT, GLFW_KEY_LEFT), key_axis(GLFW_KEY_UP, GLFW_KEY_DOWN), away_axis()};
   return input;
 }
 
@@ -189,6 +195,17 @@ void relax_if_let_go(ViewState& view, Simulation& simulation, const ToolInput& i
   simulation.hand.pull_to(view.X_W_target);
 }
 
+// Returns how a game controller moves the tool.
+SpaceMouseState take_gamepad(const GamepadInput& input, ViewState& view, LiveMilling& milling) {
+  if (input.is_mill_pressed || input.is_mill_released) milling.set_spindle(input.is_mill_pressed);
+  if (input.is_let_go) {
+    view.holding_tool = false;
+    milling.set_spindle(false);
+  }
+  if (input.is_undo && milling.follower().cuts() > 0) view.undo_requested = true;
+  return input.motion;
+}
+
 void release_buttons(ViewState& view, LiveMilling& milling) {
   if (view.pedal_down) milling.set_spindle(false);
   view.pedal_down = view.dragging_tool = view.dragging_view = false;
@@ -196,7 +213,9 @@ void release_buttons(ViewState& view, LiveMilling& milling) {
 
 }  // namespace
 
-void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size) {
+void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, Gamepad& gamepad,
+                const PixelSize& size) {
+  const GamepadInput by_gamepad = gamepad.read();
   if (is_dialogue_open()) {
     release_buttons(view, simulation.milling);
     relax_if_let_go(view, simulation, {.passed_s = static_cast<double>(ImGui::GetIO().DeltaTime)});
@@ -222,6 +241,9 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
 
   ToolInput input = keys_for_tool();
   input.space_mouse = space_mouse.read();
+  const SpaceMouseState also = take_gamepad(by_gamepad, view, milling);
+  input.space_mouse.push += also.push;
+  input.space_mouse.twist += also.twist;
   if (input.space_mouse.presses % 2 == 1) milling.set_spindle(!milling.is_spindle_requested());
   input.touching = state.record.wrench.force_N.norm() > kTouching_N;
   if (on_picture && (view.holding_tool || view.dragging_tool) && !io.MouseDown[1] && !io.MouseDown[2]) {

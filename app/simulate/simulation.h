@@ -56,6 +56,8 @@ struct PreparedScan {
   std::optional<AutosaveFile> milled_file = {};
   /// A recording that is to be played; nothing is then milled.
   std::unique_ptr<Playback> playback = {};
+  /// The series that a folder holds, if there are several and none was named. Nothing else was then read.
+  std::vector<SeriesSummary> series = {};
 };
 
 /// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.

@@ -61,6 +61,7 @@ void Simulator::run() {
     begin_picture();
     draw_screen();
     draw_dialogue(stage_.view.dialogues);
+    draw_open_dialog();
     finish_picture();
   }
   keeper_.keep_now(stage_.view);
@@ -81,6 +82,7 @@ bool Simulator::is_settled() {
 
 void Simulator::begin_picture() {
   stage_.window.begin_frame();
+  if (stage_.window.take_focus_lost()) stage_.view.holding_tool = false;
   if (is_driven()) {
     const std::chrono::duration<double> passed = Clock::now() - last_picture_;
     options_.driver->give_input(passed.count(), is_settled(), stage_.window);
@@ -114,6 +116,7 @@ void Simulator::finish_picture() {
                            stage_.bone.triangle_count()});
   }
   window.show();
+  window.hold_pointer(milling_ && view.holding_tool && !is_dialogue_open());
   stage_.pictures.count();
   if (std::exchange(view.full_screen_requested, false)) window.toggle_full_screen();
   if (const int steps = std::exchange(view.text_steps, 0); steps != 0) {
@@ -134,6 +137,8 @@ void Simulator::draw_start_page() {
   if (const auto dropped = stage_.window.take_dropped(); !dropped.empty())
     choice = StartChoice{"", "", dropped.back()};
   if (!choice) return;
+  stage_.view.open_requested = choice->open;
+  if (choice->open != OpenKind::none) return;
   if (choice->exercise.empty()) return begin_scan(choice->scan);
   ExerciseOptions exercise = options_.exercise;
   exercise.file = choice->exercise;
@@ -237,9 +242,35 @@ void Simulator::open_leftover() {
 void Simulator::cancel_opening() {
   const std::string what = opening_.request().name();
   opening_.stop();
+  give_up(what);
+}
+
+void Simulator::give_up(const std::string& what) {
   stage_.view.message = "Opening " + what + " was given up";
   // Without a scan or a page the window would stay empty.
   if (!milling_ && !start_page_ && !playback_) closing_ = true;
+}
+
+// What is chosen is opened as what is dropped.
+void Simulator::draw_open_dialog() {
+  ViewState& view = stage_.view;
+  const OpenKind kind = std::exchange(view.open_requested, OpenKind::none);
+  const bool is_waiting = view.dialogues.current() != nullptr;
+  if (const auto chosen = open_dialog_.draw(kind, is_waiting, view.last_folder)) stage_.window.drop(*chosen);
+}
+
+// Asks which series of a folder is meant. Returns whether there are several.
+bool Simulator::ask_for_series() {
+  if (opened_->series.empty()) return false;
+  const ScanInfo scan = opened_->scan;
+  const std::vector<SeriesSummary> series = std::exchange(opened_, std::nullopt)->series;
+  const auto open = [this, scan](const std::string& number) {
+    OpenRequest request{scan.source};
+    request.scan.read.series = number;
+    begin_opening(std::move(request));
+  };
+  stage_.view.dialogues.add(series_question(scan.name, series, open, [this, scan] { give_up(scan.name); }));
+  return true;
 }
 
 // Milling goes on until another scan was read and takes its place.
@@ -259,6 +290,7 @@ void Simulator::open_another() {
   }
   if (!opening_.is_ready()) return;
   if (!view.dialogues.run_reporting_errors([this] { opened_ = opening_.take(); })) return;
+  if (ask_for_series()) return;
   const auto take = [this] { after_writing("Writing ...", [this] { take_opened(); }); };
   ask_before("Opening another scan", take, [this] { opened_.reset(); });
 }
@@ -274,7 +306,7 @@ void Simulator::take_first() {
     if (is_leftover) begin_first();
     return;
   }
-  take_opened();
+  if (!ask_for_series()) take_opened();
 }
 
 void Simulator::take_opened() {

@@ -14,6 +14,7 @@
 #include "app/scan_options.h"
 #include "app/simulate/dialogues.h"
 #include "app/simulate/milling_screen.h"
+#include "app/simulate/open_dialog.h"
 #include "app/simulate/opening.h"
 #include "app/simulate/playback_screen.h"
 #include "app/simulate/preferences.h"
@@ -76,6 +77,9 @@ class Simulator {
   void open_leftover();
   void open_another();
   void cancel_opening();
+  void give_up(const std::string& what);
+  bool ask_for_series();
+  void draw_open_dialog();
   void take_first();
   void take_opened();
   void leave_scan(const ScanInfo& next);
@@ -111,6 +115,7 @@ class Simulator {
   // The screen: none of these until something is opened. Milling stands last because its ticks refer to all
   // that stands above.
   std::optional<StartPage> start_page_;
+  OpenDialog open_dialog_;
   std::unique_ptr<PlaybackScreen> playback_;
   std::unique_ptr<MillingScreen> milling_;
 };

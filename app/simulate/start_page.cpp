@@ -136,16 +136,8 @@ void StartPage::draw_exercises(std::optional<StartChoice>& choice) {
 
 void StartPage::draw_scans(std::optional<StartChoice>& choice) {
   ImGui::TextUnformatted("Scans");
-  ImGui::PushItemWidth(ui::px(360));
-  const bool entered = ui::text_field("scan##start",
-                                      "Path of a DICOM folder, of a NRRD, MetaImage or NIfTI file, or of a "
-                                      "recording to be played; or drop it onto the window",
-                                      scan_.data(), scan_.size());
-  ImGui::PopItemWidth();
-  ImGui::SameLine();
-  if ((ui::button("Open##start", "Opens the scan or the recording whose path stands beside it") || entered) &&
-      scan_[0] != 0)
-    choice = StartChoice{"", "", scan_.data()};
+  if (const OpenKind open = draw_open_buttons(); open != OpenKind::none)
+    choice = StartChoice{"", "", "", open};
   ImGui::SameLine();
   if (ui::button("Built-in tooth", "Opens a tooth that comes with the program, to try it"))
     choice = StartChoice{"", "", "builtin:tooth"};

@@ -10,6 +10,8 @@
 #include "osteomill/visual/camera.h"
 #include "osteomill/visual/picture_texture.h"
 
+#include "app/simulate/open_dialog.h"
+
 namespace osteomill::app {
 
 /// The choice of a user on the start page: an exercise with a name to record, or a scan.
@@ -17,6 +19,7 @@ struct StartChoice {
   std::string exercise;
   std::string trainee;
   std::string scan;
+  OpenKind open = OpenKind::none;
 };
 
 /// The page that the window opens with if neither a scan nor an exercise was named.
@@ -44,7 +47,6 @@ class StartPage {
   std::vector<Entry> entries_;
   std::vector<std::string> recent_;
   std::array<char, 256> name_{};
-  std::array<char, 4096> scan_{};
 };
 
 /// Returns the folder of the exercises that come along: beside the program or in a folder above it, or where

@@ -11,6 +11,7 @@
 #include "app/branch_options.h"
 #include "app/simulate/bone_view.h"
 #include "app/simulate/dialogues.h"
+#include "app/simulate/open_dialog.h"
 #include "app/simulate/preferences.h"
 
 namespace osteomill::app {
@@ -52,8 +53,8 @@ struct ViewState : Preferences {
   /// The number of changes of `requested_setup`.
   int changes = 0;
   bool help = true;
-  /// The text in the field for the scan to open, and the scan to be opened once its button was pressed.
-  std::array<char, 4096> scan_path{};
+  /// What a button asked to choose for opening, and the scan or recording to be opened.
+  OpenKind open_requested = OpenKind::none;
   std::string scan_requested;
   /// The tick of a recording to mill on from, as a button asked for.
   std::optional<BranchOptions> branch_requested;

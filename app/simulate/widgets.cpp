@@ -99,8 +99,16 @@ bool entry(const char* label, const std::string& hint, bool chosen) {
   return remember(label, hint, ImGui::Selectable(label, chosen, 0, {px(150), 0}) && !chosen);
 }
 
-bool text_field(const char* label, const std::string& hint, char* text, std::size_t size) {
-  return remember(label, hint, ImGui::InputText(label, text, size, ImGuiInputTextFlags_EnterReturnsTrue));
+bool text_field(const char* label, const std::string& hint, char* text, std::size_t size,
+                ImGuiInputTextFlags flags) {
+  return remember(label, hint,
+                  ImGui::InputText(label, text, size, flags | ImGuiInputTextFlags_EnterReturnsTrue));
+}
+
+bool row(const char* label, const std::string& hint, bool selected) {
+  constexpr ImGuiSelectableFlags kFlags =
+      ImGuiSelectableFlags_DontClosePopups | ImGuiSelectableFlags_AllowDoubleClick;
+  return remember(label, hint, ImGui::Selectable(label, selected, kFlags));
 }
 
 bool header(const char* label, const std::string& hint, bool& open) {
@@ -126,10 +134,10 @@ void same_line_if_room(const std::string& label) {
   if (ImGui::GetItemRectMax().x + width_px <= right_px) ImGui::SameLine();
 }
 
-std::optional<std::size_t> choice(const std::vector<Choice>& choices) {
+std::optional<std::size_t> choice(const std::vector<Choice>& choices, bool is_list) {
   std::optional<std::size_t> chosen;
   for (std::size_t n = 0; n < choices.size(); ++n) {
-    if (n > 0) ImGui::SameLine();
+    if (n > 0 && !is_list) ImGui::SameLine();
     if (button(choices[n].label.c_str(), choices[n].hint)) chosen = n;
   }
   if (choices.empty()) return chosen;

@@ -49,7 +49,10 @@ bool slider(const char* label, const std::string& hint, float* value, float min,
 /// Draws a line of a list. Returns true if it was chosen and was not before.
 bool entry(const char* label, const std::string& hint, bool chosen);
 /// Draws a text field. Returns true if Enter was pressed in it.
-bool text_field(const char* label, const std::string& hint, char* text, std::size_t size);
+bool text_field(const char* label, const std::string& hint, char* text, std::size_t size,
+                ImGuiInputTextFlags flags = 0);
+/// Draws a line of a list as wide as the list. Returns true if it was clicked.
+bool row(const char* label, const std::string& hint, bool selected);
 /// Draws the heading of a group. `open`: whether the group is shown below it, as the user left it.
 bool header(const char* label, const std::string& hint, bool& open);
 /// Draws a word of a menu bar. Returns true while its menu is open; ImGui::EndMenu ends it.
@@ -61,9 +64,9 @@ struct Choice {
   std::string label;
   std::string hint;
 };
-/// A dialogue's buttons in a row; Enter presses the first, Esc the last. Returns the number of the one that
-/// was pressed.
-std::optional<std::size_t> choice(const std::vector<Choice>& choices);
+/// A dialogue's buttons in a row, or each in a line of its own; Enter presses the first, Esc the last.
+/// Returns the number of the one that was pressed.
+std::optional<std::size_t> choice(const std::vector<Choice>& choices, bool is_list = false);
 /// White text on a rounded rectangle over everything else, `top_px` below the middle of the window's upper
 /// edge; with a dot before it if something is going on.
 void badge(const std::string& text, float top_px, float margin_px, ImU32 ground, bool dot);

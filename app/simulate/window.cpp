@@ -1,6 +1,7 @@
 #include "app/simulate/window.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -232,12 +233,32 @@ void Window::follow_scale() {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
+void Window::hold_pointer(bool is_held) {
+  if (is_pointer_held_ == is_held) return;
+  is_pointer_held_ = is_held;
+  is_pointer_moved_ = true;
+  glfwSetInputMode(window_, GLFW_CURSOR, is_held ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+}
+
+// A pointer that is held is far from all panels, which would take it otherwise.
+void Window::follow_pointer() {
+  constexpr float kFar_px = 1e5f;
+  ImGuiIO& io = ImGui::GetIO();
+  if (is_pointer_held_) io.MousePos = {io.MousePos.x + kFar_px, io.MousePos.y + kFar_px};
+  // The way there and back is no move of the hand.
+  if (std::exchange(is_pointer_moved_, false)) io.MousePosPrev = {-FLT_MAX, -FLT_MAX};
+  const bool has_focus = glfwGetWindowAttrib(window_, GLFW_FOCUSED) == GLFW_TRUE;
+  focus_lost_ = focus_lost_ || (has_focus_ && !has_focus);
+  has_focus_ = has_focus;
+}
+
 void Window::begin_frame() {
   glfwPollEvents();
   hand_over_keys();
   follow_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  follow_pointer();
 }
 
 void Window::end_frame() {

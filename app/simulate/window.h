@@ -52,6 +52,12 @@ class Window {
   /// Takes a file as if it had been dropped on the window.
   void drop(const std::string& path) { dropped_.push_back(path); }
 
+  /// Keeps the pointer to the window, unseen, so that it moves without an end and points at no panel; or
+  /// gives it back where it was.
+  void hold_pointer(bool is_held);
+  /// Returns whether the keyboard went to another window since the last call.
+  bool take_focus_lost() { return std::exchange(focus_lost_, false); }
+
   /// Takes the events in and begins ImGui's frame.
   void begin_frame();
   /// Draws ImGui over what is in the framebuffer.
@@ -70,12 +76,17 @@ class Window {
   void hand_over_keys();
 
   void follow_scale();
+  void follow_pointer();
 
   GLFWwindow* window_ = nullptr;
   std::optional<double> asked_scale_;
   double content_scale_ = 0;
   double screens_scale_ = 1;
   double scale_ = 0;
+  bool is_pointer_held_ = false;
+  bool is_pointer_moved_ = false;
+  bool has_focus_ = false;
+  bool focus_lost_ = false;
   std::deque<KeyEvent> key_events_;
   std::vector<std::string> dropped_;
   Theme theme_ = Theme::dark;

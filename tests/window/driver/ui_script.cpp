@@ -38,7 +38,7 @@ const std::map<std::string, int> kKeys{
     {"shift", GLFW_KEY_LEFT_SHIFT}, {"control", GLFW_KEY_LEFT_CONTROL}, {"arrow-up", GLFW_KEY_UP},
     {"arrow-down", GLFW_KEY_DOWN},  {"arrow-left", GLFW_KEY_LEFT},      {"arrow-right", GLFW_KEY_RIGHT},
     {"page-up", GLFW_KEY_PAGE_UP},  {"page-down", GLFW_KEY_PAGE_DOWN},  {"f1", GLFW_KEY_F1},
-    {"f11", GLFW_KEY_F11}};
+    {"f11", GLFW_KEY_F11},          {"backspace", GLFW_KEY_BACKSPACE}};
 
 // Actions that are done after the picture was drawn.
 const std::set<std::string> kDrawnFirst{"screenshot", "say", "state"};

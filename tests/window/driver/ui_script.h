@@ -18,7 +18,8 @@ namespace osteomill::app {
 ///     glide X Y SECONDS               moves the pointer there
 ///     press NAME, release NAME        the button left, middle or right, or a key
 ///     wheel STEPS SECONDS             turns it step by step
-///     key NAME, hold NAME SECONDS     a letter, or space, enter, escape, shift, control, f1, f11, page-up,
+///     key NAME, hold NAME SECONDS     a letter, or space, enter, escape, shift, control, f1, f11, backspace,
+///     page-up,
 ///                                     page-down, arrow-up, arrow-down, arrow-left, arrow-right
 ///     click LABEL                     the button, box or heading of that label
 ///     drag LABEL PIXELS               the slider of that label, to the right

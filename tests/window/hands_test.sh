@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Hands without a wheel, by events of the display itself: the pointer does not stop at the screen's edge while the tool is
+# in the hand, W and S press it in and pull it back while the left button mills, and the pointer comes back with Esc, a
+# dialogue, or when another window takes the keyboard:
+#   hands_test.sh OSTEOMILL
+set -euo pipefail
+osteomill=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+for tool in xvfb-run xdotool; do
+  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
+done
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export XDG_STATE_HOME=$folder/state DBUS_SESSION_BUS_ADDRESS=unix:path=$folder/no-bus
+pictures() { [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true; }
+fail() { pictures; echo "FAILED: $1"; cat said errors; exit 1; }
+"$here/ball.sh" >ball.nrrd
+
+moments=(taken pushed pulled milled beyond hovered escaped retaken dialogue closed unfocused)
+{
+  printf '%s\n' "wait 0.3" "state start"
+  for moment in "${moments[@]}"; do
+    printf '%s\n' "say $moment" "await $moment" "state $moment"
+    case $moment in taken | milled) echo "screenshot hands-$moment.png" ;; esac
+  done
+  echo close
+} >actions
+cat >hands <<'END'
+set -euo pipefail
+elsewhere=$(xdotool search --maxdepth 0 . 2>/dev/null || true)
+"$1" simulate ball.nrrd --no-help --script actions >said 2>errors & program=$!
+window=$(xdotool search --sync --onlyvisible --name '^ball.nrrd - osteomill$')
+xdotool windowfocus "$window" mousemove --window "$window" 640 400
+send() {
+  until grep -q "^$1: " said || ! kill -0 "$program"; do sleep 0.05; done
+  xdotool "${@:2}"
+  sleep 0.5
+  xdotool getmouselocation >"$1.pointer"
+  touch "$1"
+}
+send taken key --delay 0 b sleep 0.8 key --delay 0 t sleep 0.2
+send pushed mousedown 1 sleep 0.2 keydown w sleep 0.8 keyup w
+send pulled keydown s sleep 0.3 keyup s
+send milled keydown w sleep 2 keyup w sleep 0.3 mouseup 1
+pull=$(printf 'mousemove_relative -- 40 0 sleep 0.02 %.0s' {1..60})
+send beyond keydown s sleep 2 keyup s $pull
+# Over the left column, to which the pointer that is held does not point.
+send hovered $(sed 's/ 40 0/ -40 0/g' <<<"$pull") click 4 sleep 0.2
+send escaped key Escape
+send retaken key --delay 0 t
+send dialogue key --delay 0 ctrl+o
+send closed key Escape sleep 0.3
+send unfocused windowfocus "$elsewhere"
+wait "$program"
+END
+screen=${OSTEOMILL_SCREEN:-1280x800}
+xvfb-run -a -s "-screen 0 ${screen}x24" timeout 100 bash hands "$osteomill" || fail "exit code $?"
+pictures
+
+value() { sed -n "s/^$1\.$2=//p" said; }
+part() { value "$1" "$2" | cut -d' ' -f"$3"; }
+is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
+less() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }' || fail "$3: $1 is not below $2"; }
+is start in_hand false; is taken in_hand true
+is pushed spindle true; is pulled spindle true; is milled spindle false
+less "$(part pushed target_seen 3)" "$(part taken target_seen 3)" "W while the button mills"
+less "$(part pushed target_seen 3)" "$(part pulled target_seen 3)" "S while the button mills"
+less "$(value taken removed_mm3)" "$(value milled removed_mm3)" "the bone that is removed"
+# 2400 pixels to the right, in a window 1280 wide.
+less 1500 "$(part beyond tool_px 1)" "the tool beyond the screen's edge"
+less "$(part hovered tool_px 1)" "$(part beyond tool_px 1)" "the way back"
+less "$(part hovered target_seen 3)" "$(part beyond target_seen 3)" "the wheel above the column"
+is hovered distance_mm "$(value beyond distance_mm)"
+is escaped in_hand false; is retaken in_hand true; is closed in_hand true; is unfocused in_hand false
+# It comes back where it was taken from; while a dialogue is open, too.
+for moment in escaped dialogue unfocused; do
+  grep -q "^x:640 y:400 " $moment.pointer || fail "at $moment the pointer is at $(cat $moment.pointer)"
+done
