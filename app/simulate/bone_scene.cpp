@@ -43,6 +43,12 @@ void BoneScene::draw(const ViewScene& scene, const PixelSize& size) {
   renderer_->copy_to_window();
 }
 
+void BoneScene::draw_inset(const ViewScene& scene, const PixelSize& size, const Eigen::Vector2i& corner,
+                           const PixelSize& window) {
+  renderer_->draw_inset(scene, size);
+  renderer_->copy_inset_to_window(corner.x(), window.height - corner.y() - size.height);
+}
+
 Image BoneScene::picture(const ViewScene& scene, const PixelSize& size) {
   renderer_->draw(scene, size);
   for (int n = 0; n < kMaxPictures && !renderer_->is_settled(); ++n) renderer_->draw(scene, size);

@@ -25,6 +25,10 @@ class BoneScene {
                    const LabelMap* labels);
   /// Draws one picture into the window.
   void draw(const ViewScene& scene, const PixelSize& size);
+  /// Draws a small picture of the scene over the one in the window, whose size is `window`; `corner`: its
+  /// upper left one there.
+  void draw_inset(const ViewScene& scene, const PixelSize& size, const Eigen::Vector2i& corner,
+                  const PixelSize& window);
   /// Returns the picture of the scene in full detail.
   Image picture(const ViewScene& scene, const PixelSize& size);
 

@@ -134,6 +134,16 @@ void FilesPanel::save_picture(ViewState& view, const Image& picture) const {
   });
 }
 
+void FilesPanel::save_text(ViewState& view, const std::string& what, const std::string& text) const {
+  view.dialogues.run_reporting_errors([&] {
+    create_folder(folder_);
+    const fs::path path = name(what);
+    write_text_atomically(path, [&](std::ostream& out) { out << text; });
+    view.message = "Saved " + path.string();
+    view.result = path;
+  });
+}
+
 void FilesPanel::take_result(ViewState& view, Simulation& simulation) {
   if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   const auto version = std::exchange(saving_version_, std::nullopt);

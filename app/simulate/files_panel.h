@@ -47,6 +47,8 @@ class FilesPanel {
   void save_scan(ViewState& view, Simulation& simulation);
   /// Writes a picture of the window.
   void save_picture(ViewState& view, const Image& picture) const;
+  /// Writes a text to a file whose name ends in `what`.
+  void save_text(ViewState& view, const std::string& what, const std::string& text) const;
   /// Tells in the view how writing went, once it has ended.
   void take_result(ViewState& view, Simulation& simulation);
   /// Returns the length of the running recording, s; nothing if none runs.

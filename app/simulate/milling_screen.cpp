@@ -13,6 +13,7 @@
 #include "app/simulate/exercise_panel.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
+#include "app/simulate/seeing.h"
 
 namespace osteomill::app {
 
@@ -55,6 +56,7 @@ void MillingScreen::begin_view(Stage& stage) {
   view.holding_tool = view.dragging_tool = view.dragging_view = view.pedal_down = false;
   view.dragged_cut = -1;
   reset_cuts(view);
+  view.landmarks.clear();
   stage.bone.show(milling.follower().layout(), milling.geometry(), simulation_.shown_labels());
 }
 
@@ -105,16 +107,20 @@ void MillingScreen::draw(Stage& stage) {
   start_requests(view);
   update(stage);
   take_input(view, simulation_, space_mouse_, gamepad_, size);
+  update_seeing(view, simulation_, size);
   stage.bone.take(simulation_.milling.take_changed_bricks(), stage.pictures_per_s());
   // The recording begins with a picture of the bone.
   if (exercise_begins_ && stage.bone.is_up_to_date() && stage.bone.triangle_count() > 0) {
     exercise_begins_ = false;
     stage.files.begin_recording(view, simulation_, "exercise.h5");
   }
-  stage.bone.update_cuts(view, simulation_.milling.follower(), simulation_.scan.grey_window,
+  stage.bone.update_cuts(view, simulation_.milling.follower(),
+                         view.grey_window.value_or(simulation_.scan.grey_window),
                          simulation_.shows_labels(view) ? simulation_.shown_labels().get() : nullptr);
-  stage.bone.draw(scene_of(view, simulation_), size);
+  const ViewScene scene = scene_of(view, simulation_);
+  stage.bone.draw(scene, size);
   if (std::exchange(view.picture_requested, false)) save_picture(stage);
+  draw_seen(view, scene, stage.bone, size);
   draw_panels(stage);
   set_sound(stage);
 }

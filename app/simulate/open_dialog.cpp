@@ -50,7 +50,7 @@ OpenKind draw_open_buttons() {
     request = OpenKind::folder;
   const ImGuiIO& io = ImGui::GetIO();
   const bool by_key = io.KeyCtrl && !io.WantTextInput && ui::is_key_pressed(GLFW_KEY_O);
-  return by_key && !is_dialogue_open() ? OpenKind::file : request;
+  return by_key ? OpenKind::file : request;
 }
 
 void OpenDialog::begin(OpenKind request, const std::string& last_folder) {
@@ -132,7 +132,8 @@ void OpenDialog::draw_files() {
 }
 
 std::optional<std::string> OpenDialog::draw(OpenKind request, bool is_waiting, std::string& last_folder) {
-  if (request != OpenKind::none && !is_shown_ && !portal_.is_asking()) begin(request, last_folder);
+  if (request != OpenKind::none && !is_waiting && !is_shown_ && !portal_.is_asking())
+    begin(request, last_folder);
   if (const auto answer = portal_.take_answer()) {
     if (!answer->is_available) show();
     if (answer->path) last_folder = (folder_ = fs::path(*answer->path).parent_path()).string();

@@ -32,9 +32,9 @@ struct OpenRequest {
 };
 
 /// Opens what is requested; of a folder with several series, unless one is named or milled, only their list
-/// (`PreparedScan::series`). An exercise comes with that burr of its own which is nearest to the setup's. Takes
-/// seconds; any thread, also while another scan is milled. Throws InputError as `load_bone`, `load_exercise`,
-/// `open_branch`, `read_recorded_work` and Playback do, and if `milled` is of another scan;
+/// (`PreparedScan::series`). An exercise comes with that burr of its own which is nearest to the setup's.
+/// Takes seconds; any thread, also while another scan is milled. Throws InputError as `load_bone`,
+/// `load_exercise`, `open_branch`, `read_recorded_work` and Playback do, and if `milled` is of another scan;
 /// std::invalid_argument for settings out of range.
 PreparedScan open_requested(const OpenRequest& request, MillingSetup setup);
 

@@ -11,6 +11,7 @@
 #include "osteomill/session/milling_entry.h"
 
 #include "app/simulate/panels.h"
+#include "app/simulate/seeing.h"
 #include "app/simulate/tool_control.h"
 #include "app/simulate/widgets.h"
 
@@ -91,6 +92,20 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   const double full = 1 / mm_per_pixel(view.camera, size, depth_of(view.camera, anchor_W));
   if (normal_px.norm() < 0.2 * full) normal_px = Eigen::Vector2d(0, -full);
   cut.offset_mm += static_cast<float>(pointer_dragged_px().dot(normal_px) / normal_px.squaredNorm());
+  return true;
+}
+
+// Ctrl with the right button on a cut changes window and level of all cuts; true while it does.
+bool drag_grey(ViewState& view, const WindowLevel& first, const PixelSize& size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsMouseClicked(1) && io.KeyCtrl && !io.WantCaptureMouse)
+    view.dragging_grey =
+        cut_under(view, size, static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y))
+            .has_value();
+  if (!io.MouseDown[1]) view.dragging_grey = false;
+  if (!view.dragging_grey) return false;
+  const Eigen::Vector2d dragged_px = pointer_dragged_px();
+  view.grey_window = dragged_grey(view.grey_window.value_or(first), dragged_px.x(), dragged_px.y());
   return true;
 }
 
@@ -221,7 +236,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     relax_if_let_go(view, simulation, {.passed_s = static_cast<double>(ImGui::GetIO().DeltaTime)});
     return;
   }
-  if (drag_cut(view, size)) return;
+  if (drag_cut(view, size) || drag_grey(view, simulation.scan.grey_window, size)) return;
   const ImGuiIO& io = ImGui::GetIO();
   LiveMilling& milling = simulation.milling;
   const LiveState& state = milling.state();

@@ -61,44 +61,47 @@ Field<P> group(const char* key, const char* doc, bool P::Open::*member) {
 const std::vector<Field<P>>& kept_numbers() {
   using O = P::Open;
   constexpr NumberRange kPlace = {-100000, 100000, true}, kSize = NumberRange::count(0, 100000);
-  static const std::vector<Field<P>> all =
-      joined<P>({{number(
-                      "window-left", "px", kPlace, "Left edge of the window on the screens",
-                      [](auto& p) -> auto& { return p.place.left; }),
-                  number(
-                      "window-top", "px", kPlace, "Upper edge of the window on the screens",
-                      [](auto& p) -> auto& { return p.place.top; }),
-                  number(
-                      "window-width", "px", kSize, "Width of the window; 0: as usual",
-                      [](auto& p) -> auto& { return p.place.width; }),
-                  number(
-                      "window-height", "px", kSize, "Height of the window; 0: as usual",
-                      [](auto& p) -> auto& { return p.place.height; }),
-                  number("text-scale", "", {0, kMaxScale}, "Scale of the text; 0: as the screen asks for",
-                         &P::text_scale),
-                  field<P>({.range = NumberRange::count(0, 1),
-                            .doc = "Colours of the panels",
-                            .option = "theme",
-                            .choices = {"dark", "light"}},
-                           &P::theme),
-                  on_or_off("ghost", "Show where the hand is", &P::ghost),
-                  on_or_off("arrows", "Show force and torque as arrows", &P::arrows),
-                  on_or_off("label-colours", "Colour the bone by its labels", &P::labels),
-                  on_or_off("help-seen", "The page that explains the controls was shown", &P::help_seen),
-                  on_or_off("sound", "Let the spindle be heard", &P::sound),
-                  group("show-controls", "Show the column of controls", &O::controls),
-                  group("show-readings", "Show the readings", &O::readings),
-                  group("open-milling", "Open the group Milling", &O::milling),
-                  group("open-view", "Open the group View", &O::view),
-                  group("open-record-and-save", "Open the group Record and save", &O::files),
-                  group("open-bone", "Open the group Bone", &O::bone),
-                  group("open-cuts", "Open the group Cuts", &O::cuts),
-                  group("laboratory", "Show the laboratory's controls and readings", &O::laboratory),
-                  group("open-algorithm", "Open the laboratory's group Algorithm", &O::algorithm),
-                  group("open-tool", "Open the laboratory's group Tool", &O::tool),
-                  group("open-burr-and-drive", "Open the laboratory's group Burr and drive", &O::drive),
-                  group("open-all-measures", "Show all measures in results", &O::measures)},
-                 fields_within<P>(&P::tool, tool_fields_kept())});
+  static const std::vector<Field<P>> all = joined<P>(
+      {{number(
+            "window-left", "px", kPlace, "Left edge of the window on the screens",
+            [](auto& p) -> auto& { return p.place.left; }),
+        number(
+            "window-top", "px", kPlace, "Upper edge of the window on the screens",
+            [](auto& p) -> auto& { return p.place.top; }),
+        number(
+            "window-width", "px", kSize, "Width of the window; 0: as usual",
+            [](auto& p) -> auto& { return p.place.width; }),
+        number(
+            "window-height", "px", kSize, "Height of the window; 0: as usual",
+            [](auto& p) -> auto& { return p.place.height; }),
+        number("text-scale", "", {0, kMaxScale}, "Scale of the text; 0: as the screen asks for",
+               &P::text_scale),
+        field<P>({.range = NumberRange::count(0, 1),
+                  .doc = "Colours of the panels",
+                  .option = "theme",
+                  .choices = {"dark", "light"}},
+                 &P::theme),
+        on_or_off("ghost", "Show where the hand is", &P::ghost),
+        on_or_off("arrows", "Show force and torque as arrows", &P::arrows),
+        on_or_off("label-colours", "Colour the bone by its labels", &P::labels),
+        on_or_off("help-seen", "The page that explains the controls was shown", &P::help_seen),
+        on_or_off("sound", "Let the spindle be heard", &P::sound),
+        on_or_off("follow-burr", "Keep the burr in the middle of the view", &P::follow_burr),
+        on_or_off("loupe", "Show the surroundings of the burr magnified", &P::loupe),
+        number("loupe-power", "", {2, 4}, "How much larger the loupe shows the bone", &P::loupe_power),
+        group("show-controls", "Show the column of controls", &O::controls),
+        group("show-readings", "Show the readings", &O::readings),
+        group("open-milling", "Open the group Milling", &O::milling),
+        group("open-view", "Open the group View", &O::view),
+        group("open-record-and-save", "Open the group Record and save", &O::files),
+        group("open-bone", "Open the group Bone", &O::bone),
+        group("open-cuts", "Open the group Cuts", &O::cuts),
+        group("laboratory", "Show the laboratory's controls and readings", &O::laboratory),
+        group("open-algorithm", "Open the laboratory's group Algorithm", &O::algorithm),
+        group("open-tool", "Open the laboratory's group Tool", &O::tool),
+        group("open-burr-and-drive", "Open the laboratory's group Burr and drive", &O::drive),
+        group("open-all-measures", "Show all measures in results", &O::measures)},
+       fields_within<P>(&P::tool, tool_fields_kept())});
   return all;
 }
 

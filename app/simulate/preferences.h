@@ -30,6 +30,10 @@ struct Preferences {
   bool arrows = true;
   bool labels = true;
   bool sound = true;
+  bool follow_burr = false;
+  bool loupe = false;
+  /// How much larger the loupe shows the bone than the view.
+  float loupe_power = 2;
   /// The page that explains the controls was shown, and comes by F1 alone.
   bool help_seen = false;
   /// Whether a group of controls, or a panel, is more than its title.

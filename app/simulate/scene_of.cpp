@@ -30,9 +30,10 @@ void CutUpdates::update(const ViewState& view, const BoneFollower& bone, const W
     }
     const ClipPlane plane = plane_of(view.cuts[n]);
     const std::uint64_t version = bone.version();
-    const bool same_cut = shown && shown->plane == plane && shown->labels == labels;
+    const bool same_cut =
+        shown && shown->plane == plane && shown->labels == labels && shown->grey == grey_window;
     if (same_cut && (shown->bone_version == version || pictures_ % kPicturesBetween != 0)) continue;
-    shown = {plane, labels, version};
+    shown = {plane, labels, grey_window, version};
     bone.read([&](const Volume& now) {
       renderer.set_clip_face(n, clip_face(now.grid(), plane, grey_window, labels));
     });
@@ -42,6 +43,7 @@ void CutUpdates::update(const ViewState& view, const BoneFollower& bone, const W
 void reset_cuts(ViewState& view) {
   // The removed side lies towards the viewer of the usual views: above, in front, to the patient's left.
   const Vec3 normals[] = {-Vec3::UnitZ(), Vec3::UnitY(), -Vec3::UnitX(), -view.camera.towards_viewer_W()};
+  view.grey_window.reset();
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     view.cuts[n] = {};
     view.cuts[n].normal_W = normals[n];

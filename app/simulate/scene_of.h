@@ -31,13 +31,14 @@ class CutUpdates {
   struct Shown {
     ClipPlane plane;
     const LabelMap* labels;
+    WindowLevel grey;
     std::uint64_t bone_version;
   };
   std::array<std::optional<Shown>, kMaxClipPlanes> shown_;
   int pictures_ = 0;
 };
 
-/// Three planes across the patient and one that faces the camera, all off.
+/// Three planes across the patient and one that faces the camera, all off, in the first grey values.
 void reset_cuts(ViewState& view);
 
 /// A cut that is switched on begins at the burr's centre, or at the end of the bone nearest to it; on the

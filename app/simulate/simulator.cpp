@@ -109,6 +109,7 @@ void Simulator::draw_screen() {
 void Simulator::finish_picture() {
   Window& window = stage_.window;
   ViewState& view = stage_.view;
+  window.hold_pointer(milling_ && view.holding_tool && !is_dialogue_open());
   window.end_frame();
   if (is_driven()) {
     options_.driver->read({window, view, simulation(), playback_ ? &playback_->playback() : nullptr,
@@ -116,7 +117,6 @@ void Simulator::finish_picture() {
                            stage_.bone.triangle_count()});
   }
   window.show();
-  window.hold_pointer(milling_ && view.holding_tool && !is_dialogue_open());
   stage_.pictures.count();
   if (std::exchange(view.full_screen_requested, false)) window.toggle_full_screen();
   if (const int steps = std::exchange(view.text_steps, 0); steps != 0) {

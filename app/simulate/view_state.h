@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "osteomill/session/milling_setup.h"
+#include "osteomill/visual/clip_face.h"
 #include "osteomill/visual/scene.h"
 
 #include "app/branch_options.h"
@@ -13,6 +15,7 @@
 #include "app/simulate/dialogues.h"
 #include "app/simulate/open_dialog.h"
 #include "app/simulate/preferences.h"
+#include "app/simulate/view_aids.h"
 
 namespace osteomill::app {
 
@@ -89,6 +92,12 @@ struct ViewState : Preferences {
   std::array<Cut, kMaxClipPlanes> cuts;
   /// Which one the pointer drags, or -1.
   int dragged_cut = -1;
+  /// The densities that the cuts draw black and white, if the user has set them, and whether a drag does.
+  std::optional<WindowLevel> grey_window;
+  bool dragging_grey = false;
+  /// A click marks the bone. Each two landmarks in turn are the ends of a distance.
+  bool measuring = false;
+  std::vector<Landmark> landmarks;
   /// The isovalue that the slider shows while it is moved, and until the bone has it.
   std::optional<float> isovalue;
 };

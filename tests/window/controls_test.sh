@@ -81,6 +81,7 @@ press shift ;; glide 800 330 0.2 ;; release shift ;; wait 0.1 ;; state twisted
 wheel 5 0.3 ;; wait 0.1 ;; state pushed
 hold page-down 0.3 ;; wait 0.1 ;; state pulled
 hold page-up 0.3 ;; wait 0.1 ;; state pushed-again
+hold s 0.3 ;; wait 0.1 ;; state pulled-by-letter ;; hold w 0.3 ;; wait 0.1 ;; state pushed-by-letter
 hold arrow-right 0.3 ;; state key-right
 hold arrow-left 0.4 ;; state key-left
 hold arrow-up 0.3 ;; state key-up
@@ -145,6 +146,7 @@ is button-taken in_hand true; is button-let-go in_hand false
 more taken moved target_seen 1; more taken moved tool_seen 1; same taken moved towards_viewer
 changed moved twisted target_turned; same moved twisted target_seen
 more pushed twisted target_seen 3; more pushed pulled target_seen 3; more pushed-again pulled target_seen 3
+more pushed-again pulled-by-letter target_seen 3; more pushed-by-letter pulled-by-letter target_seen 3
 more pushed-again key-right target_seen 1; more key-left key-right target_seen 1
 more key-left key-up target_seen 2; more key-down key-up target_seen 2
 changed key-down key-twisted target_turned; same key-down key-twisted target_seen
@@ -297,8 +299,8 @@ click Save scan ;; settle ;; wait 0.1 ;; state saved-scan
 click Save surface ;; settle ;; wait 0.1 ;; state saved-surface
 click Save picture ;; wait 0.2 ;; state saved-picture ;; click Hide ;; wait 0.1 ;; state hidden
 open large.nrrd ;; wait 0.3 ;; click Cancel ;; wait 0.2 ;; state given-up
-click scan ;; type other.nrrd ;; click Open ;; settle ;; wait 0.3 ;; state opened
-click scan ;; press control ;; key a ;; release control ;; type bad.nrrd ;; wait 0.1 ;; key enter ;; settle ;; wait 0.3 ;; state at-fault
+open other.nrrd ;; settle ;; wait 0.3 ;; state opened
+open bad.nrrd ;; wait 0.1 ;; settle ;; wait 0.3 ;; state at-fault
 screenshot controls-7-fault.png ;; click Close ;; wait 0.1 ;; state fault-read
 quit ;; wait 60 ;; state still-there
 END
@@ -396,8 +398,10 @@ is tooth scan "built-in tooth"
   grep -hzoP --exclude=exercise_panel.cpp --exclude=start_page.cpp --exclude=playback_panel.cpp \
     'ui::(button|checkbox|radio|slider|text_field|header|begin_menu)\(\s*"\K[^"]+' "$source_folder"/*.cpp |
     tr '\0' '\n' | sed 's/##.*//; /^$/d'; } | sed '/[0-9] mm)\{0,1\}$/d' | sort -u >labels
-# Those of a haptic device are worked if there is one.
-{ sed -n 's/^worked //p' controls pages; sed -n 's/^click //p' "$here/device_test.sh"; } | sort -u >worked
+# Those of a haptic device are worked if there is one; open_test.sh and seeing_test.sh work theirs.
+{ sed -n 's/^worked //p' controls pages
+  sed 's/ *;; */\n/g' "$here/device_test.sh" "$here/open_test.sh" "$here/seeing_test.sh" |
+    sed -nE 's/^(.*[^a-z])?click (.*)/\2/p; s/^drag (.*) [0-9]+$/\1/p'; } | sort -u >worked
 cat "$here/device_test.sh" >>worked_lines
 [ "$(wc -l <labels)" -gt 30 ] || fault "the labels are not found"
 while read -r label; do fault "the control '$label' was never worked, or did nothing"; done < <(comm -23 labels worked)

@@ -36,9 +36,7 @@ wait 2
 key space
 say milling
 key t
-click scan
-type no-such-scan
-click Open
+open no-such-scan
 settle
 wait 0.3
 say not-there

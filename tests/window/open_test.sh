@@ -92,7 +92,8 @@ portal_answers "'file://$folder/scans/ball%202%20%C3%A4.nrrd'" cancel refuse
 is chosen scan "$folder/scans/ball 2 ä.nrrd"; hides chosen "Open this folder"
 is cancelled scan "$folder/scans/ball 2 ä.nrrd"; hides cancelled "Open this folder"
 shows refused "Open this folder"
-printf 'file %s\nfolder %s\nfile %s\n' "$folder/scans" "$folder/scans" "$folder/scans" | diff - asked || fail "the portal was asked otherwise"
+# Where the last scan was opened.
+printf 'file %s\nfolder %s\nfile %s\n' "$folder/scans/more" "$folder/scans" "$folder/scans" | diff - asked || fail "the portal was asked otherwise"
 
 [ -e "$two_series" ] || { echo "without the series, which are not on this machine"; exit 0; }
 window 1024x600 scans/ball.nrrd --no-help <<END

@@ -32,7 +32,7 @@ wait 0.2 ;; state untouched ;; $mill ;; state milled
 key space ;; wait 0.2 ;; state turning ;; quit ;; wait 0.2 ;; state asking ;; screenshot unsaved-1-asking.png
 key t ;; key space ;; key p ;; wait 0.1 ;; state keys
 key escape ;; wait 0.2 ;; state stayed
-click scan ;; type no-such-scan ;; key enter ;; settle ;; wait 0.2 ;; state complaint ;; quit ;; wait 0.2 ;; key enter ;; wait 0.2
+open no-such-scan ;; settle ;; wait 0.2 ;; state complaint ;; quit ;; wait 0.2 ;; key enter ;; wait 0.2
 state after-it ;; click Cancel ;; wait 0.2
 click Reset bone ;; wait 0.2 ;; state reset-asking ;; click Cancel ;; wait 0.2 ;; state not-reset
 open other.nrrd ;; settle ;; wait 0.2 ;; state open-asking ;; click Cancel ;; wait 0.2 ;; state not-opened

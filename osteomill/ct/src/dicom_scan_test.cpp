@@ -46,6 +46,35 @@ TEST_F(DicomSeries, IsReadFromItsFolderAndFromAnyOfItsFiles) {
   EXPECT_EQ(read_scan(folder_).format, "DICOM");
 }
 
+TEST_F(DicomSeries, SeriesAreOfferedBeforeAnyPixelIsRead) {
+  write_series();
+  for (int k = 0; k < 2; ++k)
+    write_slice({.file = "m" + std::to_string(k), .k = k, .series = "1.2.5", .modality = "MR"});
+  std::vector<SeriesSummary> offered;
+  ReadOptions options;
+  options.choose_series = [&](const std::vector<SeriesSummary>& series) {
+    offered = series;
+    return std::string("1");
+  };
+  expect_series(read_scan(folder_, options));
+  ASSERT_EQ(offered.size(), 2u);
+  EXPECT_EQ(offered[0].modality, "CT");
+  EXPECT_EQ(offered[0].number, "1");
+  EXPECT_EQ(offered[0].slices, 4u);
+  EXPECT_EQ(offered[0].columns, kColumns);
+  EXPECT_EQ(offered[0].rows, kRows);
+  EXPECT_NEAR(offered[0].thickness_mm.value(), 0.75, 1e-6);
+  EXPECT_EQ(offered[1].modality, "MR");
+  EXPECT_EQ(offered[1].slices, 2u);
+  struct GivenUp {};
+  options.choose_series = [](const auto&) -> std::string { throw GivenUp(); };
+  EXPECT_THROW(read_scan(folder_, options), GivenUp);
+  // A file says which series is meant, and so does its number.
+  expect_series(read_scan(folder_ / "f7", options));
+  options.series = "1";
+  expect_series(read_scan(folder_, options));
+}
+
 TEST_F(DicomSeries, EveryEncodingGivesTheSame) {
   for (const auto syntax : {EXS_LittleEndianImplicit, EXS_BigEndianExplicit, EXS_DeflatedLittleEndianExplicit,
                             EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {

@@ -244,6 +244,13 @@ std::string state_text(const std::string& name, const WindowContents& window) {
     lines.add("debrief", work->folder().string());
   }
   lines.add("help", view.help);
+  std::string landmarks;
+  for (const Landmark& mark : view.landmarks) landmarks += mark.name + " " + text_of(mark.point_W) + "; ";
+  lines.add("landmarks", landmarks);
+  if (view.landmarks.size() > 1)
+    lines.add("distance_mm_of_two", fmt::format("{:.4f}", distance_mm(view.landmarks[0], view.landmarks[1])));
+  const WindowLevel grey = view.grey_window.value_or(simulation.scan.grey_window);
+  lines.add("grey", fmt::format("{:.2f} {:.2f}", 0.5 * (grey.black + grey.white), grey.white - grey.black));
   lines.add("last_folder", view.last_folder);
   lines.add("message", view.message);
   lines.add("dialogue", view.dialogues.current() != nullptr ? view.dialogues.current()->text : "");

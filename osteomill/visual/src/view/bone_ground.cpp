@@ -174,6 +174,21 @@ void BoneGround::draw(const ViewScene& scene, const PixelSize& size) {
   ++drawn_;
 }
 
+void BoneGround::draw_inset(const ViewScene& scene, const PixelSize& size) {
+  if (!inset_ || inset_->picture.size() != size) inset_.emplace(size);
+  const Projection projection = projection_of(scene, size);
+  Detail detail = kFullDetail;
+  std::vector<VisibleBrick> visible = bone_.visible_bricks(scene, projection, detail);
+  while (detail.cell_px < kMaxCell_px && bone_.triangle_count(visible) > triangles_.budget() / 2) {
+    detail.cell_px *= std::numbers::sqrt2;
+    bone_.choose_levels(visible, detail);
+  }
+  clear_depths(inset_->picture);
+  bone_.draw(scene, projection, inset_->cavities, visible);
+  draw_surroundings(scene, projection);
+  inset_->cavities.blur(inset_->picture.depths(), projection.near_mm, projection.far_mm);
+}
+
 // The most pixels that there is time for. As with triangles, more only if that leaves some time.
 PixelSize BoneGround::affordable_size(const PixelSize& size) {
   const auto coarse = [&](int n) { return PixelSize{(size.width + n - 1) / n, (size.height + n - 1) / n}; };

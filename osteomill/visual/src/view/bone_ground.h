@@ -79,6 +79,9 @@ class BoneGround {
 
   /// Does one picture's work; `size` is that of the picture when the view rests.
   void draw(const ViewScene& scene, const PixelSize& size);
+  /// Draws once into a picture apart, in detail for which there is half a picture's time.
+  void draw_inset(const ViewScene& scene, const PixelSize& size);
+  const FrameTarget& inset() const { return inset_->picture; }
   const FrameTarget& picture() const { return *shown_; }
   /// Returns true if nothing is left to draw while neither view nor bone changes.
   bool is_settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
@@ -97,6 +100,12 @@ class BoneGround {
   void draw_surroundings(const ViewScene& scene, const Projection& projection);
   void update_cavities(const Projection& projection);
 
+  struct Inset {
+    explicit Inset(const PixelSize& size) : picture(size), cavities(size) {}
+    FrameTarget picture;
+    CavityPass cavities;
+  };
+
   BoneLayer bone_;
   ClipFaces cut_faces_;
   gl::ScreenProgram background_;
@@ -108,6 +117,7 @@ class BoneGround {
   // While the view moves, this number of the window's pixels along each side is one pixel of the picture.
   int coarseness_ = 1;
   std::optional<CavityPass> cavities_;
+  std::optional<Inset> inset_;
   std::optional<ViewScene> scene_;
   DrawingPace triangles_{20'000, 150'000};
   DrawingPace pixels_{500'000, 2'000'000};

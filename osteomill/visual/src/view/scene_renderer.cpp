@@ -235,6 +235,24 @@ struct SceneRenderer::Impl {
     shapes.arrow(burr_W, kArrow_mm_per_Nmm * scene.wrench.torque_Nmm, 0.8 * kArrowRadius_mm, kTorque, 2);
   }
 
+  // Into the picture that is bound.
+  void draw_solids(const ViewScene& scene, const PixelSize& size) const {
+    shapes.begin(projection_of(scene, size));
+    if (scene.X_WT) draw_tool(shapes, scene.tool, *scene.X_WT, kBurr, kShaft);
+    if (scene.X_WD) draw_ghost(shapes, scene.tool, *scene.X_WD);
+    if (scene.X_WT) draw_wrench(scene);
+  }
+
+  void copy_to_window(const FrameTarget& picture, int left_px, int bottom_px, const PixelSize& size) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(left_px, bottom_px, size.width, size.height);
+    glDisable(GL_DEPTH_TEST);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, picture.colours());
+    to_window.draw();
+    glEnable(GL_DEPTH_TEST);
+  }
+
   BoneGround ground;
   SolidShapes shapes;
   gl::ScreenProgram to_window{kPictureFragment};
@@ -286,12 +304,19 @@ void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {
   own.ground.draw(scene, size);
   const PixelSize drawn = own.ground.picture().size();
   if (!own.target || own.target->size() != drawn) own.target.emplace(drawn);
-  const Projection projection = projection_of(scene, drawn);
   own.copy_ground();
-  own.shapes.begin(projection);
-  if (scene.X_WT) draw_tool(own.shapes, scene.tool, *scene.X_WT, kBurr, kShaft);
-  if (scene.X_WD) draw_ghost(own.shapes, scene.tool, *scene.X_WD);
-  if (scene.X_WT) own.draw_wrench(scene);
+  own.draw_solids(scene, drawn);
+}
+
+void SceneRenderer::draw_inset(const ViewScene& scene, const PixelSize& size) {
+  impl_->ground.draw_inset(scene, size);
+  impl_->ground.inset().bind();
+  impl_->draw_solids(scene, size);
+}
+
+void SceneRenderer::copy_inset_to_window(int left_px, int bottom_px) const {
+  const FrameTarget& inset = impl_->ground.inset();
+  impl_->copy_to_window(inset, left_px, bottom_px, inset.size());
 }
 
 Image SceneRenderer::picture() const {
@@ -301,14 +326,7 @@ Image SceneRenderer::picture() const {
 // Drawn, since a processor that draws takes twice as long for glBlitFramebuffer, and half as long again where
 // what lies between a moving picture's wide pixels is filled in.
 void SceneRenderer::copy_to_window() const {
-  const PixelSize& to = impl_->asked_size;
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, to.width, to.height);
-  glDisable(GL_DEPTH_TEST);
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, impl_->target->colours());
-  impl_->to_window.draw();
-  glEnable(GL_DEPTH_TEST);
+  impl_->copy_to_window(*impl_->target, 0, 0, impl_->asked_size);
 }
 
 bool SceneRenderer::is_settled() const {

@@ -22,6 +22,7 @@ struct ClipFace {
 struct WindowLevel {
   double black = 0;
   double white = 1;
+  friend bool operator==(const WindowLevel&, const WindowLevel&) = default;
 };
 
 /// Returns a range from just below the surroundings to nearly the densest bone (the 0.2 % above are white

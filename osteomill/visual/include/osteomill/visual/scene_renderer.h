@@ -43,6 +43,12 @@ class SceneRenderer {
   /// Copies it into the window's framebuffer, which has the size that was asked for.
   void copy_to_window() const;
 
+  /// Draws the bone once more into a small picture of its own, as from a loupe; at once, with half as many
+  /// triangles as there is time for. Only after `draw`.
+  void draw_inset(const ViewScene& scene, const PixelSize& size);
+  /// Copies that into the window's framebuffer, with its lower left corner at this pixel.
+  void copy_inset_to_window(int left_px, int bottom_px) const;
+
   std::size_t triangle_count() const;
 
  private:
