@@ -17,7 +17,7 @@ struct GamepadState {
   bool a = false, b = false, x = false;
 };
 
-/// What a controller asks of the tool.
+/// A wish of the hand on a controller.
 struct GamepadInput {
   /// The left stick moves across the view, the right trigger presses in and the left one pulls back; the
   /// right stick turns, and the bumpers turn about the line of sight.

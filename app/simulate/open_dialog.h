@@ -15,7 +15,7 @@
 
 namespace osteomill::app {
 
-/// What a button asked to be opened.
+/// The kind of thing that a button asked to be opened.
 enum class OpenKind { none, file, folder };
 
 /// Draws the buttons that ask for a file or folder to be opened. Returns what was asked for.

@@ -33,7 +33,7 @@ double key_axis(int forwards, int backwards) {
   return (is_key_down(forwards) ? 1.0 : 0.0) - (is_key_down(backwards) ? 1.0 : 0.0);
 }
 
-// What the wheel does, also while a button is held; W and S are on every keyboard.
+// Returns what keys do in the place of the wheel, also while a button is held; W and S are on every keyboard.
 double away_axis() {
   const double letters = ImGui::GetIO().KeyCtrl ? 0 : key_axis(GLFW_KEY_W, GLFW_KEY_S);
   return std::clamp(key_axis(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN) + letters, -1.0, 1.0);

@@ -24,7 +24,7 @@ namespace {
 constexpr double kFollowing_s = 0.25;
 // A click that moves further turns the view.
 constexpr float kClick_px = 4;
-// Of the window's height.
+// The side of the loupe as a share of the window's height.
 constexpr double kLoupeShare = 0.4;
 
 ImVec2 at(const Eigen::Vector2d& place) {

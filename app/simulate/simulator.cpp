@@ -251,7 +251,7 @@ void Simulator::give_up(const std::string& what) {
   if (!milling_ && !start_page_ && !playback_) closing_ = true;
 }
 
-// What is chosen is opened as what is dropped.
+// Opens what is chosen as if it were dropped.
 void Simulator::draw_open_dialog() {
   ViewState& view = stage_.view;
   const OpenKind kind = std::exchange(view.open_requested, OpenKind::none);

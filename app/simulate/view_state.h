@@ -56,7 +56,7 @@ struct ViewState : Preferences {
   /// The number of changes of `requested_setup`.
   int changes = 0;
   bool help = true;
-  /// What a button asked to choose for opening, and the scan or recording to be opened.
+  /// The kind that a button asked to choose for opening, and the scan or recording to be opened.
   OpenKind open_requested = OpenKind::none;
   std::string scan_requested;
   /// The tick of a recording to mill on from, as a button asked for.

@@ -2,7 +2,7 @@
 # Hands without a wheel, by events of the display itself: the pointer does not stop at the screen's edge while the tool is
 # in the hand, W and S press it in and pull it back while the left button mills, and the pointer comes back with Esc, a
 # dialogue, or when another window takes the keyboard:
-#   hands_test.sh OSTEOMILL
+#   hands_test.sh OSTEOMILL GAMEPAD_STAND_IN
 set -euo pipefail
 osteomill=$1
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -19,7 +19,7 @@ fail() { pictures; echo "FAILED: $1"; cat said errors; exit 1; }
 
 moments=(taken pushed pulled milled beyond hovered escaped retaken dialogue closed unfocused)
 {
-  printf '%s\n' "wait 0.3" "state start"
+  printf '%s\n' "wait 0.3" "state start" display
   for moment in "${moments[@]}"; do
     printf '%s\n' "say $moment" "await $moment" "state $moment"
     case $moment in taken | milled) echo "screenshot hands-$moment.png" ;; esac
@@ -77,3 +77,43 @@ is escaped in_hand false; is retaken in_hand true; is closed in_hand true; is un
 for moment in escaped dialogue unfocused; do
   grep -q "^x:640 y:400 " $moment.pointer || fail "at $moment the pointer is at $(cat $moment.pointer)"
 done
+
+# A game controller that is plugged in moves the tool without another word: presses it in while A mills, lets go of it by
+# B, and takes the cut back by X.
+pad() { echo "$*" >pad.new && mv pad.new pad; }
+rest="0 0 0 0 -1 -1"
+pad $rest 0 0 0
+{
+  printf '%s\n' "wait 0.3" "state at-rest"
+  for moment in aside in-bone released held let-go undone; do
+    [ $moment != held ] || echo "key t"
+    printf '%s\n' "say $moment" "await $moment" "settle" "state $moment"
+  done
+  echo close
+} >actions
+cat >hands <<'END'
+set -euo pipefail
+send() {
+  until grep -q "^$1: " said || ! kill -0 "$program"; do sleep 0.05; done
+  echo "${*:3}" >pad.new && mv pad.new pad
+  sleep "$2"
+  touch "$1"
+}
+LD_PRELOAD=$2 OSTEOMILL_GAMEPAD=pad "$1" simulate ball.nrrd --no-help --script actions >said 2>errors & program=$!
+until grep -q "^aside: " said; do sleep 0.05; done
+send aside 0.5 0.6 0 0.5 0 -1 -1 0 0 0
+send in-bone 3 -0.4 0 0 0 -1 1 1 0 0
+send released 0.5 0 0 0 0 -1 -1 0 0 0
+send held 0.3 0 0 0 0 -1 -1 0 0 0
+send let-go 0.5 0 0 0 0 -1 -1 0 1 0
+send undone 0.5 0 0 0 0 -1 -1 0 0 1
+wait "$program"
+END
+rm -f said
+xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash hands "$osteomill" "$2" || fail "exit code $?"
+less "$(part at-rest target_seen 1)" "$(part aside target_seen 1)" "the left stick to the right"
+[ "$(value at-rest target_turned)" != "$(value aside target_turned)" ] || fail "the right stick does not turn"
+is in-bone spindle true; is released spindle false
+less 0.1 "$(value in-bone removed_mm3)" "the bone that a controller mills"
+is held in_hand true; is let-go in_hand false
+is undone cuts 0; is undone removed_mm3 0.000

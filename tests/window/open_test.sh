@@ -6,7 +6,7 @@
 set -euo pipefail
 osteomill=$1 portal=$2 two_series=${3:-}
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-for tool in xvfb-run dbus-run-session; do
+for tool in xvfb-run xdotool dbus-run-session; do
   command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
 done
 folder=$(mktemp -d)
@@ -37,11 +37,11 @@ echo "not a scan" >scans/bad.nrrd
 echo "a note" >scans/notes.txt
 "$here/ball.sh" >scans/.hidden.nrrd
 
-# From the start page, at the smallest size: down to a folder by two clicks, up by Backspace, a file by its button; then
+# From the start page, at the smallest size: down to a folder by Enter, up by Backspace, a file by its button; then
 # another by keys, a scan at fault, Esc, a typed path, and one that was opened before.
 window 1024x600 --no-help <<END
 wait 0.3 ;; click Open ;; wait 0.4 ;; click path ;; type $folder/scans ;; key enter ;; wait 0.3 ;; say listed ;; screenshot open-start.png
-click more/ ;; click more/ ;; wait 0.3 ;; screenshot open-more.png ;; key backspace ;; wait 0.3
+click more/ ;; wait 0.2 ;; key enter ;; wait 0.3 ;; screenshot open-more.png ;; key backspace ;; wait 0.3
 click ball.nrrd ;; wait 0.2 ;; click Open selected ;; settle ;; wait 0.3 ;; state by-button ;; say opened
 press control ;; key o ;; release control ;; wait 0.4 ;; state by-key-shown ;; screenshot open-milling.png
 key t ;; key arrow-down ;; key arrow-down ;; key enter ;; wait 0.3 ;; key arrow-down ;; key enter ;; settle ;; wait 0.3 ;; state by-keys
@@ -62,6 +62,23 @@ value at-fault dialogue | grep -q "^$folder/scans/more/../bad.nrrd: .\|^$folder/
 is at-fault scan "$folder/scans/more/other.nrrd"; is goes-on scan "$folder/scans/more/other.nrrd"; is goes-on dialogue ""
 shows up ball.nrrd; hides home bad.nrrd
 is recent scan "$folder/scans/ball.nrrd"; is this-folder scan "$folder/scans/more"; hides empty more/
+
+# A double click of the display's own shows a folder.
+sed 's/ *;; */\n/g' >actions <<END
+wait 0.3 ;; click Open ;; wait 0.4 ;; click path ;; type $folder/scans ;; key enter ;; wait 0.4 ;; state shown ;; display ;; say doubled ;; await doubled ;; state doubled ;; close
+END
+cat >hands <<END
+set -euo pipefail
+"$osteomill" simulate scans/ball.nrrd --no-help --script actions >said 2>errors & program=\$!
+window=\$(xdotool search --sync --onlyvisible --name '^ball.nrrd - osteomill\$')
+xdotool windowfocus "\$window"
+until grep -q "^doubled: " said || ! kill -0 "\$program"; do sleep 0.05; done
+xdotool mousemove --window "\$window" \$(sed -n 's|^shown\.place of more/=||p' said) sleep 0.5 click --repeat 2 --delay 100 1 sleep 1
+touch doubled
+wait "\$program"
+END
+xvfb-run -a -s "-screen 0 1280x800x24" timeout 60 bash hands || fail "exit code $?"
+shows doubled other.nrrd; hides doubled bad.nrrd
 
 # A folder with very many entries does not hold the window up: the clicks that follow still come through.
 mkdir many && (cd many && seq -f "%06g.txt" 100000 | xargs touch && touch zebra.nrrd)
@@ -92,7 +109,7 @@ portal_answers "'file://$folder/scans/ball%202%20%C3%A4.nrrd'" cancel refuse
 is chosen scan "$folder/scans/ball 2 ä.nrrd"; hides chosen "Open this folder"
 is cancelled scan "$folder/scans/ball 2 ä.nrrd"; hides cancelled "Open this folder"
 shows refused "Open this folder"
-# Where the last scan was opened.
+# It begins in the folder of the scan that was opened last.
 printf 'file %s\nfolder %s\nfile %s\n' "$folder/scans/more" "$folder/scans" "$folder/scans" | diff - asked || fail "the portal was asked otherwise"
 
 [ -e "$two_series" ] || { echo "without the series, which are not on this machine"; exit 0; }

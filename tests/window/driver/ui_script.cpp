@@ -28,10 +28,10 @@ constexpr int kClickPictures = 6;
 constexpr int kDragPictures = 12;
 
 const std::map<std::string, std::size_t> kWords{
-    {"at-once", 0},    {"resize", 2},   {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},
-    {"release", 1},    {"wheel", 2},    {"key", 1},  {"hold", 2},   {"click", 1}, {"drag", 2},
-    {"screenshot", 1}, {"say", 1},      {"type", 1}, {"open", 1},   {"quit", 0},  {"close", 0},
-    {"state", 1},      {"controls", 1}, {"await", 1}};
+    {"at-once", 0},    {"resize", 2},   {"wait", 1},  {"settle", 0}, {"glide", 3}, {"press", 1},
+    {"release", 1},    {"wheel", 2},    {"key", 1},   {"hold", 2},   {"click", 1}, {"drag", 2},
+    {"screenshot", 1}, {"say", 1},      {"type", 1},  {"open", 1},   {"quit", 0},  {"close", 0},
+    {"state", 1},      {"controls", 1}, {"await", 1}, {"display", 0}};
 
 const std::map<std::string, int> kKeys{
     {"space", GLFW_KEY_SPACE},      {"enter", GLFW_KEY_ENTER},          {"escape", GLFW_KEY_ESCAPE},
@@ -141,6 +141,8 @@ void UiScript::begin(const Action& action, Window& window) {
     window.ask_to_close();
   } else if (name == "controls") {
     controls_path_ = action.text;
+  } else if (name == "display") {
+    is_of_display_ = true;
   } else if (name == "close") {
     closed_ = true;
   }
@@ -177,11 +179,13 @@ void UiScript::give_input(double passed_s, bool is_settled, Window& window) {
     wheel = share < 1 ? std::trunc(share * wheel_left_) : wheel_left_;
     wheel_left_ -= wheel;
     time_left_s_ -= passed_s;
-    std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
-    for (const int key : keys_) io.KeysDown[key] = true;
-    for (const int key : held_keys_) io.KeysDown[key] = true;
-    io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT];
-    io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL];
+    if (!is_of_display_) {
+      std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+      for (const int key : keys_) io.KeysDown[key] = true;
+      for (const int key : held_keys_) io.KeysDown[key] = true;
+      io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT];
+      io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL];
+    }
     const bool waits = action.name == "settle" && !is_settled;
     const bool drawn_first = kDrawnFirst.count(action.name) != 0;
     const bool over = time_left_s_ <= 0 && !waits && !drawn_first;
@@ -189,6 +193,7 @@ void UiScript::give_input(double passed_s, bool is_settled, Window& window) {
     // Up again for a picture, so that the same key twice is two taps.
     if (over) keys_.clear();
   }
+  if (is_of_display_) return;
   io.MousePos = {x_, y_};
   for (std::size_t n = 0; n < 3; ++n) io.MouseDown[n] = buttons_[n];
   io.MouseDown[0] = io.MouseDown[0] || pressed;

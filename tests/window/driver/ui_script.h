@@ -31,6 +31,7 @@ namespace osteomill::app {
 ///     controls FILE                   once the window has closed, adds to it the labels of all controls that
 ///                                     were drawn ("drawn LABEL") and of those that acted ("worked LABEL")
 ///     await FILE                      until it is there; meanwhile pointer and keys are the display's own
+///     display                         from here on pointer and keys are the display's own
 ///     resize WIDTH HEIGHT             the window
 ///     quit                            asks to close, as the window's own button does
 ///     close                           closes without a question
@@ -70,6 +71,7 @@ class UiScript : public WindowDriver {
   double time_left_s_ = 0;
   bool begun_ = false;
   bool closed_ = false;
+  bool is_of_display_ = false;
   // The pointer and what is pressed, as ImGui is told at every picture.
   float x_ = 400;
   float y_ = 300;

@@ -42,7 +42,7 @@ struct Scan {
 
 /// One of several DICOM series, or of the volumes in one, as a user chooses it.
 struct SeriesSummary {
-  /// What `ReadOptions::series` takes for it: 3, or 3.1 for one of several volumes in a series.
+  /// The text that `ReadOptions::series` takes for it: 3, or 3.1 for one of several volumes in a series.
   std::string number;
   std::string modality;
   std::string description;
