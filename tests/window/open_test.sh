@@ -73,7 +73,7 @@ set -euo pipefail
 window=\$(xdotool search --sync --onlyvisible --name '^ball.nrrd - osteomill\$')
 xdotool windowfocus "\$window"
 until grep -q "^doubled: " said || ! kill -0 "\$program"; do sleep 0.05; done
-xdotool mousemove --window "\$window" \$(sed -n 's|^shown\.place of more/=||p' said) sleep 0.5 click --repeat 2 --delay 100 1 sleep 1
+xdotool mousemove --window "\$window" \$(sed -n 's|^shown\.place of more/=||p' said) sleep 0.5 click --repeat 2 --delay 170 1 sleep 1
 touch doubled
 wait "\$program"
 END
