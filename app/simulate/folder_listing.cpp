@@ -21,7 +21,7 @@ bool may_be_opened(const fs::path& file) {
 }  // namespace
 
 FolderListing list_folder(const fs::path& folder, const std::atomic<bool>& is_stopped) {
-  FolderListing listing{folder, {}, "", false};
+  FolderListing listing{folder, {}, "", false, false};
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end && !is_stopped;
        entry.increment(error)) {
@@ -34,7 +34,8 @@ FolderListing list_folder(const fs::path& folder, const std::atomic<bool>& is_st
     if (listing.has_more) break;
     listing.entries.push_back({name, is_folder});
   }
-  if (error) listing.complaint = folder.string() + ": cannot be read: " + error.message();
+  listing.is_file = error == std::errc::not_a_directory;
+  if (error && !listing.is_file) listing.complaint = folder.string() + ": cannot be read: " + error.message();
   std::ranges::sort(listing.entries, [](const auto& a, const auto& b) {
     return std::tie(b.is_folder, a.name) < std::tie(a.is_folder, b.name);
   });

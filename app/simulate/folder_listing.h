@@ -21,6 +21,8 @@ struct FolderListing {
   std::vector<Entry> entries;
   /// One line on why the folder cannot be read; empty if it can.
   std::string complaint;
+  /// It is no folder but a file.
+  bool is_file = false;
   /// True if the folder holds more than are listed.
   bool has_more = false;
 };

@@ -40,6 +40,13 @@ TEST_F(ListFolder, NamesAFolderThatCannotBeReadInOneLine) {
   EXPECT_EQ(listing.complaint, (folder_ / "gone").string() + ": cannot be read: No such file or directory");
 }
 
+TEST_F(ListFolder, SaysWhetherItIsAFile) {
+  touch("a.nrrd");
+  EXPECT_TRUE(list_folder(folder_ / "a.nrrd", false).is_file);
+  EXPECT_EQ(list_folder(folder_ / "a.nrrd", false).complaint, "");
+  EXPECT_FALSE(list_folder(folder_, false).is_file);
+}
+
 TEST_F(ListFolder, EndsAtItsLimitAndWhenStopped) {
   for (std::size_t n = 0; n <= kMaxListed; ++n) touch(std::to_string(n) + ".mha");
   const FolderListing listing = list_folder(folder_, false);

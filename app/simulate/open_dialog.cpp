@@ -22,11 +22,6 @@ namespace {
 constexpr const char* kFolderHint = "A folder; a double click or Enter shows it";
 constexpr const char* kFileHint = "A scan or a recording; a double click or Enter opens it";
 
-bool is_folder(const fs::path& path) {
-  std::error_code unreadable;
-  return fs::is_directory(path, unreadable);
-}
-
 fs::path home() {
   const char* const folder = std::getenv("HOME");
   return folder != nullptr && *folder != 0 ? fs::path(folder) : fs::path("/");
@@ -76,11 +71,19 @@ void OpenDialog::go_to(const fs::path& folder) {
   reader_.begin(folder_);
 }
 
-// Shows a folder, or chooses a file.
-void OpenDialog::enter(const fs::path& path) {
-  const fs::path whole = folder_ / path;
-  if (is_folder(whole)) return go_to(whole);
-  chosen_ = whole.string();
+void OpenDialog::enter(const FolderListing::Entry& entry) {
+  if (entry.is_folder) return go_to(folder_ / entry.name);
+  chosen_ = (folder_ / entry.name).string();
+}
+
+// Only the thread that lists knows whether a path that was typed is a file: asking may take long.
+void OpenDialog::take_listing() {
+  std::optional<FolderListing> listing = reader_.take();
+  if (!listing) return;
+  listing_ = *std::move(listing);
+  if (!listing_.is_file) return;
+  chosen_ = folder_.string();
+  folder_ = folder_.parent_path();
 }
 
 void OpenDialog::take_keys() {
@@ -93,7 +96,7 @@ void OpenDialog::take_keys() {
   }
   if (ui::is_key_pressed(GLFW_KEY_BACKSPACE)) return go_to(folder_.parent_path());
   if (ui::is_key_pressed(GLFW_KEY_ENTER) && selected_ >= 0)
-    enter(listing_.entries[static_cast<std::size_t>(selected_)].name);
+    enter(listing_.entries[static_cast<std::size_t>(selected_)]);
 }
 
 void OpenDialog::draw_places() {
@@ -106,12 +109,12 @@ void OpenDialog::draw_places() {
 }
 
 void OpenDialog::draw_files() {
-  if (auto listing = reader_.take()) listing_ = *std::move(listing);
+  take_listing();
   if (reader_.is_reading()) ImGui::TextDisabled("Reading the folder ...");
   if (!listing_.complaint.empty()) ui::warning(listing_.complaint);
   if (!reader_.is_reading() && listing_.complaint.empty() && listing_.entries.empty())
     ImGui::TextDisabled("No folder and no file that can be opened");
-  std::optional<std::string> entered;
+  std::optional<FolderListing::Entry> entered;
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(listing_.entries.size()));
   if (selected_ >= 0 && !std::exchange(is_scrolled_to_, true))
@@ -123,7 +126,7 @@ void OpenDialog::draw_files() {
       const std::string label = entry.is_folder ? entry.name + "/" : entry.name;
       if (ui::row(label.c_str(), entry.is_folder ? kFolderHint : kFileHint, n == selected_)) {
         selected_ = n;
-        if (ImGui::IsMouseDoubleClicked(0)) entered = entry.name;
+        if (ImGui::IsMouseDoubleClicked(0)) entered = entry;
       }
     }
   }
@@ -156,7 +159,7 @@ std::optional<std::string> OpenDialog::draw(OpenKind request, bool is_waiting, s
   if (ui::text_field("path", "Path of a file or folder; Enter opens it", path_.data(), path_.size(),
                      ImGuiInputTextFlags_AutoSelectAll) &&
       path_[0] != 0)
-    enter(path_.data());
+    go_to(folder_ / path_.data());
   const float below_px = ImGui::GetFrameHeightWithSpacing();
   ImGui::BeginChild("places", {ui::px(190), -below_px}, true);
   draw_places();
@@ -167,7 +170,7 @@ std::optional<std::string> OpenDialog::draw(OpenKind request, bool is_waiting, s
   ImGui::EndChild();
   const bool is_selected = selected_ >= 0 && static_cast<std::size_t>(selected_) < listing_.entries.size();
   if (ui::button("Open selected", "Opens the file that is selected, or shows the folder", is_selected))
-    enter(listing_.entries[static_cast<std::size_t>(selected_)].name);
+    enter(listing_.entries[static_cast<std::size_t>(selected_)]);
   ImGui::SameLine();
   if (ui::button("Open this folder",
                  "Opens the DICOM slices, or the only scan, of this folder and those in it"))

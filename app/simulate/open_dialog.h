@@ -35,7 +35,8 @@ class OpenDialog {
   void begin(OpenKind request, const std::string& last_folder);
   void show();
   void go_to(const std::filesystem::path& folder);
-  void enter(const std::filesystem::path& path);
+  void enter(const FolderListing::Entry& entry);
+  void take_listing();
   void take_keys();
   void draw_places();
   void draw_files();
