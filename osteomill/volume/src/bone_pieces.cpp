@@ -1,9 +1,12 @@
 #include "osteomill/volume/bone_pieces.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 namespace osteomill {
@@ -34,6 +37,15 @@ class ConnectedRuns {
   void for_each_in_row(int j, int k, const Use& use) {
     for (std::size_t n = begin_of_row_[row(j, k)]; n < begin_of_row_[row(j, k) + 1]; ++n)
       use(runs_[n], piece_of(n));
+  }
+
+  // Returns the piece of a voxel; nothing if it is no bone.
+  std::optional<std::size_t> piece_with(const VoxelIndex& voxel) {
+    std::optional<std::size_t> found;
+    for_each_in_row(voxel.j, voxel.k, [&](const Run& run, std::size_t piece) {
+      if (run.first <= voxel.i && voxel.i <= run.last) found = piece;
+    });
+    return found;
   }
 
   // Returns how many voxels each piece has, by its number; 0 for numbers that are no piece's.
@@ -94,6 +106,65 @@ class ConnectedRuns {
   std::vector<std::size_t> begin_of_row_;
 };
 
+std::vector<std::size_t> largest_first(std::vector<std::size_t> sizes) {
+  std::erase(sizes, std::size_t{0});
+  std::sort(sizes.begin(), sizes.end(), std::greater<>());
+  return sizes;
+}
+
+// Calls `use(run, its piece, j, k)` with every run of the grid.
+template <typename Use>
+void for_each_run(const GridGeometry& geometry, ConnectedRuns& runs, const Use& use) {
+  VoxelBox rows = geometry.all_voxels();
+  rows.last.i = 0;
+  for_each_with_progress(rows, [&](const VoxelIndex& row) {
+    runs.for_each_in_row(row.j, row.k,
+                         [&](const Run& run, std::size_t piece) { use(run, piece, row.j, row.k); });
+  });
+}
+
+// Copies bricks of a grid, in which voxels are then given its least density.
+class EmptiedBricks {
+ public:
+  EmptiedBricks(const DensityGrid& grid, std::size_t max_bricks)
+      : grid_(grid), max_bricks_(max_bricks), last_brick_(grid.geometry().all_voxels().bricks(kSide).last) {
+    const std::array<int, 3> bricks{last_brick_.i + 1, last_brick_.j + 1, last_brick_.k + 1};
+    places_.assign(cell_count(bricks), kNone);
+  }
+
+  void empty(const Run& run, int j, int k) {
+    for (int i = run.first; i <= run.last;) {
+      DensityBlock& brick = brick_at({i / kSide, j / kSide, k / kSide});
+      const int end = std::min(run.last, brick.last().i) + 1;
+      std::fill_n(&brick.densities[brick.index_of({i, j, k})], end - i, grid_.outside_density());
+      i = end;
+    }
+  }
+  std::vector<DensityBlock> take() { return std::move(bricks_); }
+
+ private:
+  static constexpr int kSide = DensityBlock::kVoxels;
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  DensityBlock& brick_at(const VoxelIndex& brick) {
+    std::size_t& place = places_[row_major({last_brick_.i + 1, last_brick_.j + 1, last_brick_.k + 1}, brick.i,
+                                           brick.j, brick.k)];
+    if (place == kNone) {
+      if (bricks_.size() == max_bricks_)
+        throw std::length_error("bricks_without: the pieces take more bricks than are allowed");
+      place = bricks_.size();
+      bricks_.emplace_back(grid_, VoxelBox::of_brick(brick, kSide).first);
+    }
+    return bricks_[place];
+  }
+
+  const DensityGrid& grid_;
+  std::size_t max_bricks_;
+  VoxelIndex last_brick_;
+  std::vector<std::size_t> places_;
+  std::vector<DensityBlock> bricks_;
+};
+
 }  // namespace
 
 template <>
@@ -110,10 +181,7 @@ const std::vector<Field<PieceChoice>>& fields_of<PieceChoice>() {
 }
 
 std::vector<std::size_t> piece_sizes(const DensityGrid& grid, double isovalue) {
-  std::vector<std::size_t> sizes = ConnectedRuns(grid, isovalue).sizes();
-  std::erase(sizes, std::size_t{0});
-  std::sort(sizes.begin(), sizes.end(), std::greater<>());
-  return sizes;
+  return largest_first(ConnectedRuns(grid, isovalue).sizes());
 }
 
 PiecesLeftOut leave_out_pieces(DensityGrid& grid, double isovalue, const PieceChoice& choice) {
@@ -131,15 +199,46 @@ PiecesLeftOut leave_out_pieces(DensityGrid& grid, double isovalue, const PieceCh
     ++(is_kept(piece) ? result.kept : result.pieces);
     if (!is_kept(piece)) result.voxels += sizes[piece];
   }
-  VoxelBox rows = grid.geometry().all_voxels();
-  rows.last.i = 0;
-  for_each_with_progress(rows, [&](const VoxelIndex& row) {
-    runs.for_each_in_row(row.j, row.k, [&](const Run& run, std::size_t piece) {
-      if (is_kept(piece)) return;
-      for (int i = run.first; i <= run.last; ++i) grid.set({i, row.j, row.k}, grid.outside_density());
-    });
+  for_each_run(grid.geometry(), runs, [&](const Run& run, std::size_t piece, int j, int k) {
+    if (is_kept(piece)) return;
+    for (int i = run.first; i <= run.last; ++i) grid.set({i, j, k}, grid.outside_density());
   });
   return result;
+}
+
+std::optional<BonePiece> piece_at(const DensityGrid& grid, double isovalue, const VoxelIndex& voxel) {
+  ConnectedRuns runs(grid, isovalue);
+  const auto chosen = runs.piece_with(voxel);
+  if (!chosen) return std::nullopt;
+  BonePiece result;
+  result.sizes = runs.sizes();
+  result.voxels = result.sizes[*chosen];
+  for_each_run(grid.geometry(), runs, [&](const Run& run, std::size_t piece, int j, int k) {
+    if (piece != *chosen) return;
+    result.box.include({run.first, j, k});
+    result.box.include({run.last, j, k});
+  });
+  result.sizes = largest_first(std::move(result.sizes));
+  return result;
+}
+
+std::vector<DensityBlock> bricks_without(const DensityGrid& grid, double isovalue,
+                                         const PieceRemoval& removal, std::size_t max_bricks) {
+  using Which = PieceRemoval::Which;
+  ConnectedRuns runs(grid, isovalue);
+  const std::vector<std::size_t> sizes = runs.sizes();
+  const auto chosen = runs.piece_with(removal.voxel);
+  if (removal.which != Which::smaller && !chosen)
+    throw std::invalid_argument("bricks_without: there is no bone where the piece was chosen");
+  const double voxel_mm3 = grid.geometry().voxel_volume_mm3();
+  EmptiedBricks bricks(grid, max_bricks);
+  for_each_run(grid.geometry(), runs, [&](const Run& run, std::size_t piece, int j, int k) {
+    const bool is_removed = removal.which == Which::smaller
+                                ? static_cast<double>(sizes[piece]) * voxel_mm3 < removal.min_mm3
+                                : (piece == *chosen) == (removal.which == Which::chosen);
+    if (is_removed) bricks.empty(run, j, k);
+  });
+  return bricks.take();
 }
 
 }  // namespace osteomill

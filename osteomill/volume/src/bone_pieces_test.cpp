@@ -4,6 +4,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -27,24 +28,30 @@ DensityGrid made_of(const GridGeometry& geometry, const std::function<bool(const
 }
 
 // Fills piece after piece, voxel by voxel.
-std::vector<std::size_t> filled_sizes(const DensityGrid& grid) {
+std::vector<std::vector<VoxelIndex>> filled_pieces(const DensityGrid& grid) {
   std::vector<bool> seen(grid.geometry().voxel_count());
-  std::vector<std::size_t> sizes;
+  std::vector<std::vector<VoxelIndex>> pieces;
   for_each(grid.geometry().all_voxels(), [&](const VoxelIndex& start) {
     std::vector<VoxelIndex> waiting{start};
-    std::size_t size = 0;
+    std::vector<VoxelIndex> piece;
     while (!waiting.empty()) {
       const VoxelIndex v = waiting.back();
       waiting.pop_back();
       if (!grid.contains(v) || seen[grid.linear_index(v)] || static_cast<double>(grid[v]) <= kIsovalue)
         continue;
       seen[grid.linear_index(v)] = true;
-      ++size;
+      piece.push_back(v);
       for_each({{v.i - 1, v.j - 1, v.k - 1}, {v.i + 1, v.j + 1, v.k + 1}},
                [&](const VoxelIndex& next) { waiting.push_back(next); });
     }
-    if (size > 0) sizes.push_back(size);
+    if (!piece.empty()) pieces.push_back(std::move(piece));
   });
+  return pieces;
+}
+
+std::vector<std::size_t> filled_sizes(const DensityGrid& grid) {
+  std::vector<std::size_t> sizes;
+  for (const auto& piece : filled_pieces(grid)) sizes.push_back(piece.size());
   std::sort(sizes.begin(), sizes.end(), std::greater<>());
   return sizes;
 }
@@ -61,6 +68,57 @@ TEST(BonePieces, AreThoseOfAFloodFillAtEveryShareOfBone) {
       EXPECT_EQ(filled_sizes(grid), piece_sizes(grid, kIsovalue)) << share;
     }
   }
+}
+
+// Every piece of random bones, by each of its voxels and each kind of removal.
+TEST(BonePieces, RemovedOnesAreThoseOfAFloodFill) {
+  std::mt19937 random(11);
+  GridGeometry geometry = centred_cube(1, 0.5);
+  std::size_t removals = 0;
+  for (const auto& dims : {std::array{13, 11, 9}, std::array{1, 17, 5}, std::array{20, 1, 1}}) {
+    geometry.dims = dims;
+    for (const double share : {0.05, 0.1, 0.2}) {
+      std::bernoulli_distribution is_bone(share);
+      const DensityGrid grid = made_of(geometry, [&](const VoxelIndex&) { return is_bone(random); });
+      const auto pieces = filled_pieces(grid);
+      const auto expect_left = [&](const PieceRemoval& removal, const auto& is_removed) {
+        DensityGrid left = grid, expected = grid;
+        const std::vector<DensityBlock> bricks = bricks_without(grid, kIsovalue, removal, 1000);
+        for (const DensityBlock& brick : bricks) {
+          bool changed = false;
+          for_each(brick.voxels_in(geometry), [&](const VoxelIndex& v) {
+            changed = changed || brick.densities[brick.index_of(v)] != grid[v];
+            left.set(v, brick.densities[brick.index_of(v)]);
+          });
+          EXPECT_TRUE(changed);
+        }
+        for (const auto& piece : pieces) {
+          if (is_removed(piece))
+            for (const VoxelIndex& v : piece) expected.set(v, grid.outside_density());
+        }
+        ++removals;
+        EXPECT_EQ(expected.densities(), left.densities());
+      };
+      for (const auto& chosen : pieces) {
+        VoxelBox box;
+        for (const VoxelIndex& v : chosen) box.include(v);
+        for (const VoxelIndex& v : {chosen.front(), chosen.back(), chosen[chosen.size() / 2]}) {
+          const auto piece = piece_at(grid, kIsovalue, v);
+          ASSERT_TRUE(piece);
+          EXPECT_EQ(chosen.size(), piece->voxels);
+          EXPECT_EQ(box, piece->box);
+          EXPECT_EQ(filled_sizes(grid), piece->sizes);
+          expect_left({PieceRemoval::Which::chosen, v}, [&](const auto& one) { return &one == &chosen; });
+          expect_left({PieceRemoval::Which::all_but_chosen, v},
+                      [&](const auto& one) { return &one != &chosen; });
+        }
+        const double min_mm3 = static_cast<double>(chosen.size()) * geometry.voxel_volume_mm3();
+        expect_left({PieceRemoval::Which::smaller, {}, min_mm3},
+                    [&](const auto& one) { return one.size() < chosen.size(); });
+      }
+    }
+  }
+  EXPECT_GT(removals, 500u);
 }
 
 // A ball of 6 mm, one of 3 mm and a lone voxel in a grid of 0.25 mm.
@@ -110,6 +168,17 @@ TEST_F(TwoBalls, PiecesBelowASizeGo) {
   EXPECT_EQ(2u, kept({.min_mm3 = 1.001 * geometry_.voxel_volume_mm3()}));
   EXPECT_EQ(1u, kept({.min_mm3 = 1.02 * mm3(3)}));
   EXPECT_EQ(0u, kept({.min_mm3 = 1.02 * mm3(6)}));
+}
+
+TEST_F(TwoBalls, OfAnEmptyVoxelThereIsNoPieceAndTooManyBricksAreRefused) {
+  const VoxelIndex in_small{80, 49, 49};
+  EXPECT_FALSE(piece_at(grid(), kIsovalue, {0, 0, 0}));
+  EXPECT_THROW(bricks_without(grid(), kIsovalue, {PieceRemoval::Which::chosen, {0, 0, 0}}, 1000),
+               std::invalid_argument);
+  const auto bricks = bricks_without(grid(), kIsovalue, {PieceRemoval::Which::chosen, in_small}, 1000);
+  EXPECT_THROW(bricks_without(grid(), kIsovalue, {PieceRemoval::Which::chosen, in_small}, bricks.size() - 1),
+               std::length_error);
+  EXPECT_NO_THROW(bricks_without(grid(), kIsovalue, {PieceRemoval::Which::chosen, in_small}, bricks.size()));
 }
 
 TEST(BonePieces, OfGridWithoutBoneThereIsNone) {
