@@ -149,6 +149,7 @@ void Autosave::update(LiveMilling& milling) {
       std::async(std::launch::async, [&milling, path = file_->path(), milled = std::move(milled)]() mutable {
         const Clock::time_point start = Clock::now();
         milled.bricks = milling.follower().touched_bricks();
+        milled.piece_drops = milling.follower().piece_drops();
         if (milled.bricks.size() > kMaxBricks) throw InputError(path.string(), "would take more than 1 GiB");
         write_start(path, milled);
         return Clock::now() - start;

@@ -55,8 +55,11 @@ std::vector<SessionSettings> settings_of(const Recording& recording) {
 PlaybackMarks marks_of(const Recording& recording) {
   const std::vector<TickRecord>& records = recording.records;
   PlaybackMarks marks;
-  marks.cuts = spans_of(
-      recording, [&](std::size_t n) { return n > 0 && records[n].removed_mm3 > records[n - 1].removed_mm3; });
+  marks.cuts = spans_of(recording, [&](std::size_t n) {
+    // From one session to the next, a cut is made again.
+    return n > 0 && records[n].removed_mm3 > records[n - 1].removed_mm3 &&
+           records[n].session == records[n - 1].session;
+  });
   marks.contacts = spans_of(recording, [&](std::size_t n) { return records[n].contacts > 0; });
   marks.no_go = spans_of(recording, [&](std::size_t n) { return touches_no_go(recording, records[n]); });
   marks.faults = spans_of(recording, [&](std::size_t n) {

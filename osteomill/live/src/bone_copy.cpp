@@ -7,6 +7,26 @@
 
 namespace osteomill {
 
+namespace {
+
+// A sum for each label, by its place.
+std::vector<double> no_drops(const Volume& bone) {
+  return std::vector<double>(bone.labels() ? bone.labels()->labels().size() + 1 : 0);
+}
+
+void add_drops(const DensityBlock& before, const Volume& now, std::vector<double>& drops) {
+  if (drops.empty()) return;
+  const double voxel_mm3 = now.geometry().voxel_volume_mm3();
+  for_each(before.voxels_in(now.geometry()), [&](const VoxelIndex& v) {
+    const LabelMap::LabelIndex label = now.labels()->at(v);
+    if (label == 0) return;
+    const float was = before.densities[before.index_of(v)];
+    drops[label] += voxel_mm3 * (static_cast<double>(was) - static_cast<double>(now.grid()[v]));
+  });
+}
+
+}  // namespace
+
 BoneCopy::BoneCopy(std::shared_ptr<Volume> bone, std::size_t undo_bytes,
                    std::function<void(const VoxelBox&)> changed)
     : bone_(std::move(bone)),
@@ -14,12 +34,21 @@ BoneCopy::BoneCopy(std::shared_ptr<Volume> bone, std::size_t undo_bytes,
       changed_(std::move(changed)),
       history_(undo_bytes) {}
 
-void BoneCopy::load_milled(const std::vector<DensityBlock>& milled) {
+void BoneCopy::load_milled(const std::vector<DensityBlock>& milled, const std::vector<double>& piece_drops) {
   for (DensityBlock block : milled) {
     DensityBlock same = block;
     EditableVolume(*bone_).swap(same);
     if (put(block)) history_.save(block);
   }
+  history_.set_piece_drops(piece_drops);
+}
+
+std::vector<double> BoneCopy::drops_by_label() const {
+  std::vector<double> drops = no_drops(*copy_);
+  for (const auto& [place, before] : history_.original_bricks()) add_drops(before, *copy_, drops);
+  const std::vector<double> pieces = history_.piece_drops();
+  for (std::size_t n = 0; n < std::min(drops.size(), pieces.size()); ++n) drops[n] -= pieces[n];
+  return drops;
 }
 
 VoxelBox BoneCopy::drain_queue(DensityHandover& handover) {
@@ -53,19 +82,32 @@ void BoneCopy::set_isovalue(double isovalue) {
   EditableVolume(*copy_).set_isovalue(isovalue);
 }
 
-BoneCopy::NextBone BoneCopy::without(const CutHistory::PriorState& cuts, UndoScope undo_scope) {
-  undo_scope_ = undo_scope;
-  for (const auto& [place, block] : cuts.bricks) differing_.push_back(block);
+BoneCopy::NextBone BoneCopy::with(const CutHistory::SavedState& state, Step step, double removed_mm3) {
+  step_ = step;
+  removed_mm3_ = removed_mm3;
+  for (const auto& [place, block] : state.bricks) differing_.push_back(block);
   put_differing();
-  return {copy_, cuts.removed_mm3, {}};
+  return {copy_, state.removed_mm3, {}};
 }
 
-BoneCopy::NextBone BoneCopy::without_last_cut() {
-  return without(history_.state_before_last_cut(), UndoScope::last_cut);
+BoneCopy::NextBone BoneCopy::without_last_cut(double removed_mm3) {
+  return with(history_.state_before_last_cut(), Step::undo, removed_mm3);
+}
+
+BoneCopy::NextBone BoneCopy::with_undone_cut(double removed_mm3) {
+  return with(history_.state_after_undone_cut(), Step::redo, removed_mm3);
 }
 
 BoneCopy::NextBone BoneCopy::without_all_cuts() {
-  return without(history_.state_before_all_cuts(), UndoScope::all);
+  return with(history_.state_before_all_cuts(), Step::reset, 0);
+}
+
+BoneCopy::NextBone BoneCopy::without_pieces(std::vector<DensityBlock> without, double removed_mm3) {
+  step_ = Step::pieces;
+  removed_mm3_ = removed_mm3;
+  differing_ = std::move(without);
+  put_differing();
+  return {copy_, removed_mm3, {}};
 }
 
 BoneCopy::NextBone BoneCopy::with_emptied(double surroundings, double removed_mm3,
@@ -77,10 +119,26 @@ BoneCopy::NextBone BoneCopy::with_emptied(double surroundings, double removed_mm
   return {copy_, removed_mm3, densities};
 }
 
+void BoneCopy::note_step() {
+  switch (std::exchange(step_, Step::none)) {
+    case Step::none:
+      return;
+    case Step::undo:
+      return history_.take_back_last(differing_, removed_mm3_);
+    case Step::redo:
+      return history_.make_again(differing_, removed_mm3_);
+    case Step::reset:
+      return history_.drop_all();
+    case Step::pieces:
+      break;
+  }
+  std::vector<double> drops = no_drops(*copy_);
+  for (const DensityBlock& before : differing_) add_drops(before, *copy_, drops);
+  history_.add_pieces(differing_, removed_mm3_, std::move(drops));
+}
+
 void BoneCopy::exchange() {
-  if (undo_scope_ == UndoScope::last_cut) history_.drop_last();
-  if (undo_scope_ == UndoScope::all) history_.drop_all();
-  undo_scope_ = UndoScope::nothing;
+  note_step();
   std::swap(bone_, copy_);
   const Volume& bone = *bone_;
   EditableVolume copy(*copy_);
@@ -95,7 +153,7 @@ void BoneCopy::exchange() {
 void BoneCopy::discard_next() {
   put_differing();
   differing_.clear();
-  undo_scope_ = UndoScope::nothing;
+  step_ = Step::none;
   set_isovalue(bone_->isovalue());
 }
 

@@ -26,11 +26,14 @@ class BoneCopy {
 
   const Volume& volume() const { return *copy_; }
   const CutHistory& history() const { return history_; }
+  /// Returns as BoneFollower::drops_by_label does.
+  std::vector<double> drops_by_label() const;
   /// The bone that is milled: the haptic thread alone reads and writes its densities.
   const std::shared_ptr<Volume>& bone() const { return bone_; }
 
-  /// Puts blocks that were milled at another time into bone and copy, as one cut. Before the first tick.
-  void load_milled(const std::vector<DensityBlock>& milled);
+  /// Puts blocks that were milled at another time into bone and copy, as one cut, of which `piece_drops` is
+  /// pieces. Before the first tick.
+  void load_milled(const std::vector<DensityBlock>& milled, const std::vector<double>& piece_drops);
   /// Puts what has arrived into the copy, at most as many blocks as can be on their way. Returns the voxels
   /// that it changed.
   VoxelBox drain_queue(DensityHandover& handover);
@@ -41,26 +44,31 @@ class BoneCopy {
   /// Makes the copy the bone that is to be next; `exchange` or `discard_next` ends that. Each is as the
   /// function of the same name of BoneFollower (`exchange` as its `swap`); the last one lowers what milling
   /// had emptied once the copy has its isovalue, at which `densities` were estimated.
-  NextBone without_last_cut();
+  NextBone without_last_cut(double removed_mm3);
+  NextBone with_undone_cut(double removed_mm3);
   NextBone without_all_cuts();
+  NextBone without_pieces(std::vector<DensityBlock> without, double removed_mm3);
   NextBone with_emptied(double surroundings, double removed_mm3, const BoneDensities& densities);
   void exchange();
   void discard_next();
 
  private:
-  enum class UndoScope { nothing, last_cut, all };
+  // Names what the exchange means for the history.
+  enum class Step { none, undo, redo, reset, pieces };
 
   bool put(DensityBlock& block);
   void put_differing();
-  NextBone without(const CutHistory::PriorState& cuts, UndoScope undo_scope);
+  NextBone with(const CutHistory::SavedState& state, Step step, double removed_mm3);
+  void note_step();
 
   std::shared_ptr<Volume> bone_;
   std::shared_ptr<Volume> copy_;
   std::function<void(const VoxelBox&)> changed_;
   CutHistory history_;
-  // While the copy is to become the bone: how the two differ, and what of the history is then over.
+  // While the copy is to become the bone: how the two differ, by what step, and what is removed of the bone.
   std::vector<DensityBlock> differing_;
-  UndoScope undo_scope_ = UndoScope::nothing;
+  Step step_ = Step::none;
+  double removed_mm3_ = 0;
   // The highest density that a voxel milled empty may have kept, at this isovalue or one before.
   float emptied_ = std::numeric_limits<float>::lowest();
 };

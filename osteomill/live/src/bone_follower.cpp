@@ -84,9 +84,10 @@ BoneFollower::BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes)
 
 BoneFollower::~BoneFollower() = default;
 
-void BoneFollower::load_milled(const std::vector<DensityBlock>& milled) {
+void BoneFollower::load_milled(const std::vector<DensityBlock>& milled,
+                               const std::vector<double>& piece_drops) {
   const std::lock_guard lock(parts_->mutex);
-  parts_->copy.load_milled(milled);
+  parts_->copy.load_milled(milled, piece_drops);
 }
 
 void BoneFollower::bone_changed(const Volume& bone, const VolumeChange& change) noexcept {
@@ -126,6 +127,11 @@ std::size_t BoneFollower::cuts() const {
   return parts_->copy.history().cuts();
 }
 
+std::size_t BoneFollower::undone_cuts() const {
+  const std::shared_lock lock(parts_->mutex);
+  return parts_->copy.history().undone_cuts();
+}
+
 bool BoneFollower::is_touched() const {
   const std::shared_lock lock(parts_->mutex);
   return parts_->copy.history().is_touched();
@@ -142,18 +148,12 @@ std::vector<DensityBlock> BoneFollower::touched_bricks() const {
 
 std::vector<double> BoneFollower::drops_by_label() const {
   const std::shared_lock lock(parts_->mutex);
-  const Volume& bone = parts_->copy.volume();
-  if (!bone.labels()) return {};
-  std::vector<double> drops(bone.labels()->labels().size() + 1);
-  for (const auto& [place, first] : parts_->copy.history().original_bricks()) {
-    const float* before = first.densities.data();
-    for_each({first.first, first.last()}, [&](const VoxelIndex& v) {
-      const LabelMap::LabelIndex label = bone.labels()->at(v);
-      if (label != 0) drops[label] += static_cast<double>(*before) - static_cast<double>(bone.grid()[v]);
-      ++before;
-    });
-  }
-  return drops;
+  return parts_->copy.drops_by_label();
+}
+
+std::vector<double> BoneFollower::piece_drops() const {
+  const std::shared_lock lock(parts_->mutex);
+  return parts_->copy.history().piece_drops();
 }
 
 bool BoneFollower::catch_up() {
@@ -163,9 +163,23 @@ bool BoneFollower::catch_up() {
   return all_sent && parts_->handover.front() == nullptr;
 }
 
-BoneFollower::NextBone BoneFollower::without_last_cut() {
+BoneFollower::NextBone BoneFollower::without_last_cut(double removed_mm3) {
   const std::lock_guard lock(parts_->mutex);
-  return parts_->copy.without_last_cut();
+  return parts_->copy.without_last_cut(removed_mm3);
+}
+
+BoneFollower::NextBone BoneFollower::with_undone_cut(double removed_mm3) {
+  const std::lock_guard lock(parts_->mutex);
+  return parts_->copy.with_undone_cut(removed_mm3);
+}
+
+BoneFollower::NextBone BoneFollower::without_pieces(const PieceRemoval& removal, double removed_mm3) {
+  // Goes through every voxel, while others read.
+  const Volume& bone = parts_->copy.volume();
+  std::vector<DensityBlock> without =
+      bricks_without(bone.grid(), bone.isovalue(), removal, parts_->copy.history().max_bricks());
+  const std::lock_guard lock(parts_->mutex);
+  return parts_->copy.without_pieces(std::move(without), removed_mm3);
 }
 
 BoneFollower::NextBone BoneFollower::without_all_cuts() {

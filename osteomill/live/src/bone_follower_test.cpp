@@ -159,7 +159,7 @@ TEST_F(BoneFollowerTest, TakesCutsBackInBothCopies) {
   catch_up();
   EXPECT_EQ(follower_.cuts(), 2u);
 
-  const BoneFollower::NextBone next = follower_.without_last_cut();
+  const BoneFollower::NextBone next = follower_.without_last_cut(1.5);
   EXPECT_EQ(next.removed_mm3, 2.5);
   swap(next);
   EXPECT_EQ(now(), after_first);
@@ -189,7 +189,7 @@ TEST_F(BoneFollowerTest, WhatIsGivenUpIsAsItWas) {
     if (all) {
       follower_.without_all_cuts();
     } else {
-      follower_.without_last_cut();
+      follower_.without_last_cut(1.5);
     }
     EXPECT_NE(densities_of(follower_), now());
     follower_.discard_next();

@@ -1,5 +1,8 @@
 #include "cut_history.h"
 
+#include <random>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "osteomill/volume/editable_volume.h"
@@ -19,17 +22,26 @@ class CutHistoryTest : public ::testing::Test {
     history_.save(before);
   }
   double undo() {
-    const double removed_mm3 = put(history_.state_before_last_cut());
-    history_.drop_last();
-    return removed_mm3;
+    const double removed_mm3 = history_.state_before_last_cut().removed_mm3;
+    history_.take_back_last(put(history_.state_before_last_cut()), removed_mm3_);
+    return removed_mm3_ = removed_mm3;
+  }
+  double redo() {
+    const double removed_mm3 = history_.state_after_undone_cut().removed_mm3;
+    history_.make_again(put(history_.state_after_undone_cut()), removed_mm3_);
+    return removed_mm3_ = removed_mm3;
   }
   void reset() {
     put(history_.state_before_all_cuts());
     history_.drop_all();
+    removed_mm3_ = 0;
   }
-  double put(const CutHistory::PriorState& before) {
-    for (auto [place, brick] : before.bricks) EditableVolume(bone_).swap(brick);
-    return before.removed_mm3;
+  // Returns the bricks as they were before.
+  std::vector<DensityBlock> put(const CutHistory::SavedState& state) {
+    std::vector<DensityBlock> were;
+    for (const auto& [place, brick] : state.bricks) were.push_back(brick);
+    for (DensityBlock& brick : were) EditableVolume(bone_).swap(brick);
+    return were;
   }
   const CopyOnWriteFloats& now() const { return bone_.grid().densities(); }
 
@@ -37,6 +49,8 @@ class CutHistoryTest : public ::testing::Test {
                                                testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   const CopyOnWriteFloats before_ = bone_.grid().densities();
   CutHistory history_{std::size_t{1} << 20};
+  // Counted by some tests.
+  double removed_mm3_ = 0;
 };
 
 TEST_F(CutHistoryTest, TakesCutsBackOneByOne) {
@@ -85,10 +99,11 @@ TEST_F(CutHistoryTest, WhatBeginsBeforeACutIsDroppedIsAnotherCut) {
   mill({3, 4, 5});
   history_.begin_cut(2.5);
   mill({18, 2, 9});
-  EXPECT_EQ(put(history_.state_before_last_cut()), 2.5);
+  EXPECT_EQ(history_.state_before_last_cut().removed_mm3, 2.5);
+  const std::vector<DensityBlock> were = put(history_.state_before_last_cut());
   history_.begin_cut(4);
   EXPECT_EQ(history_.state_before_last_cut().removed_mm3, 2.5);
-  history_.drop_last();
+  history_.take_back_last(were, 4);
   EXPECT_EQ(history_.cuts(), 1u);
   mill({18, 2, 9});
   EXPECT_EQ(history_.cuts(), 2u);
@@ -144,6 +159,122 @@ TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPa
   untouched.set({3, 4, 2}, -30);
   EXPECT_EQ(now(), untouched.densities());
   undo();
+  EXPECT_EQ(now(), before_);
+}
+
+// Against whole copies of the bone in a plain list.
+TEST_F(CutHistoryTest, UndoAndRedoInAnyOrderGiveTheBonesOfAListOfCopies) {
+  std::mt19937 random(5);
+  const auto any = [&](int count) { return std::uniform_int_distribution(0, count - 1)(random); };
+  struct State {
+    CopyOnWriteFloats densities;
+    double removed_mm3;
+  };
+  std::vector<State> states{{now(), 0}};
+  std::size_t at = 0;
+  int undone = 0, redone = 0, over = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const int what = any(20);
+    if (what < 8) {
+      if (at > 0) --at, ++undone;
+      EXPECT_EQ(undo(), states[at].removed_mm3);
+    } else if (what < 14) {
+      if (at + 1 < states.size()) {
+        ++at, ++redone;
+        EXPECT_EQ(redo(), states[at].removed_mm3);
+      }
+    } else if (what == 14 && any(10) == 0) {
+      reset();
+      states.resize(1);
+      at = 0;
+    } else {
+      over += at + 1 < states.size() ? 1 : 0;
+      states.resize(at + 1);
+      if (what == 19) {
+        const DensityBlock before(bone_.grid(), {8 * any(3), 8 * any(3), 8 * any(3)});
+        DensityBlock emptied = before;
+        emptied.densities.fill(static_cast<float>(-n));
+        EditableVolume(bone_).swap(emptied);
+        history_.add_pieces({before}, removed_mm3_, {});
+      } else {
+        history_.begin_cut(removed_mm3_);
+        for (int voxels = 1 + any(4); voxels > 0; --voxels) mill({any(20), any(20), any(20)});
+        removed_mm3_ += 1 + n;
+      }
+      states.push_back({now(), removed_mm3_});
+      ++at;
+    }
+    ASSERT_EQ(now(), states[at].densities) << n;
+    ASSERT_EQ(history_.cuts(), at);
+    ASSERT_EQ(history_.undone_cuts(), states.size() - 1 - at);
+    ASSERT_EQ(history_.is_touched(), at > 0);
+  }
+  EXPECT_GT(undone, 400);
+  EXPECT_GT(redone, 200);
+  EXPECT_GT(over, 100);
+}
+
+TEST_F(CutHistoryTest, UndoneCutsTakeTheMemoryOfCutsAndAreOverOnceSomethingElseIsCut) {
+  history_ = CutHistory(3 * sizeof(DensityBlock));
+  for (int n = 0; n < 3; ++n) {
+    history_.begin_cut(n);
+    mill({n, 4, 5});
+  }
+  const CopyOnWriteFloats all = now();
+  undo();
+  undo();
+  EXPECT_EQ(history_.undone_cuts(), 2u);
+  history_.begin_cut(1);
+  EXPECT_EQ(history_.undone_cuts(), 2u);
+  redo();
+  redo();
+  EXPECT_EQ(now(), all);
+  EXPECT_EQ(history_.cuts(), 3u);
+  undo();
+  undo();
+  mill({9, 4, 5});
+  EXPECT_EQ(history_.undone_cuts(), 0u);
+  history_.begin_cut(2);
+  mill({9, 4, 5});
+  history_.begin_cut(3);
+  mill({9, 4, 5});
+  EXPECT_EQ(history_.cuts(), 3u);
+}
+
+// A cut that was taken back holds voxels milled empty, which a lower isovalue must not bring back with it.
+TEST_F(CutHistoryTest, WhatIsMadeAgainAtALowerIsovalueStaysEmpty) {
+  while (bone_.grid()[{3, 4, 3}] > 0) mill({3, 4, 3});
+  DensityGrid milled = bone_.grid();
+  undo();
+  EXPECT_TRUE(history_.lower_emptied_bricks(bone_.grid(), 300, -50, -80).empty());
+  redo();
+  milled.set({3, 4, 3}, -80);
+  EXPECT_EQ(now(), milled.densities());
+}
+
+TEST_F(CutHistoryTest, DropsOfPiecesAreThoseThatAreRemovedNow) {
+  const auto remove = [&](int n, double drop) {
+    const DensityBlock before(bone_.grid(), {8 * n, 0, 0});
+    bone_.lower_density({8 * n, 4, 5}, -1000);
+    history_.add_pieces({before}, 0, {0, drop});
+  };
+  history_ = CutHistory(2 * sizeof(DensityBlock));
+  remove(0, 1);
+  mill({3, 4, 5});
+  EXPECT_EQ(history_.piece_drops(), (std::vector<double>{0, 1}));
+  undo();
+  remove(1, 2);
+  EXPECT_EQ(history_.piece_drops(), (std::vector<double>{0, 3}));
+  undo();
+  EXPECT_EQ(history_.piece_drops(), (std::vector<double>{0, 1}));
+  redo();
+  EXPECT_EQ(history_.piece_drops(), (std::vector<double>{0, 3}));
+  // The first one cannot be taken back any more, and is gone all the same.
+  remove(2, 4);
+  EXPECT_EQ(history_.cuts(), 2u);
+  EXPECT_EQ(history_.piece_drops(), (std::vector<double>{0, 7}));
+  reset();
+  EXPECT_TRUE(history_.piece_drops().empty());
   EXPECT_EQ(now(), before_);
 }
 

@@ -46,7 +46,7 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
     const WorkProgress::Part meshing(0.8);
     follower = std::make_unique<BoneFollower>(bone);
   }
-  follower->load_milled(before.bricks);
+  follower->load_milled(before.bricks, before.piece_drops);
   const WorkProgress::Part preparing(1);
   auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
   session->count_removed_from(before.removed_mm3);
@@ -64,7 +64,7 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const ResumedRecor
     const WorkProgress::Part meshing(0.8);
     follower = std::make_unique<BoneFollower>(bone);
   }
-  follower->load_milled(milled);
+  follower->load_milled(milled, from.piece_drops);
   const WorkProgress::Part preparing(1);
   MillingSetup setup = before.setup();
   setup.guard = guard;
@@ -126,11 +126,20 @@ bool LiveMilling::change_isovalue(double isovalue) {
 }
 
 bool LiveMilling::undo() {
-  return prepare(setup(), [this] { return follower_->without_last_cut(); });
+  return prepare(setup(), [this] { return follower_->without_last_cut(live_.session().removed_mm3()); });
+}
+
+bool LiveMilling::redo() {
+  return prepare(setup(), [this] { return follower_->with_undone_cut(live_.session().removed_mm3()); });
 }
 
 bool LiveMilling::reset() {
   return prepare(setup(), [this] { return follower_->without_all_cuts(); });
+}
+
+bool LiveMilling::remove_pieces(const PieceRemoval& removal) {
+  return prepare(
+      setup(), [this, removal] { return follower_->without_pieces(removal, live_.session().removed_mm3()); });
 }
 
 // Another bone is the follower's copy, since that can be written while the bone is felt.
@@ -199,7 +208,7 @@ void LiveMilling::drop_recorder_without_session() {
 std::vector<double> LiveMilling::removed_by_label() const {
   std::vector<double> removed_mm3 = follower_->drops_by_label();
   for (double& drop : removed_mm3) {
-    drop *= geometry().voxel_volume_mm3() / (densities().reference - densities().surroundings);
+    drop /= densities().reference - densities().surroundings;
   }
   return removed_mm3;
 }
@@ -245,7 +254,7 @@ void LiveMilling::record_session_start(const SessionHandover& handover) {
   RunDescription run = recorded_;
   describe_current(run);
   recorder_->begin_session(live_.session_number(), {std::move(run), handover, live_.session().removed_mm3(),
-                                                    follower_->touched_bricks(), ""});
+                                                    follower_->touched_bricks(), follower_->piece_drops()});
 }
 
 std::filesystem::path LiveMilling::stop_recording() {

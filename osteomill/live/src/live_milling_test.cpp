@@ -14,11 +14,13 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/base/input_error.h"
+#include "osteomill/recording/recorded_bone.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/session/milling_entry.h"
 #include "osteomill/session/virtual_hand.h"
 #include "osteomill/visual/surface_mesh.h"
+#include "osteomill/volume/bone_pieces.h"
 
 #include "tests/no_more_threads.h"
 #include "tests/shapes.h"
@@ -51,7 +53,8 @@ std::shared_ptr<Volume> ball_of_bone() {
 // A hand presses the burr into the top of a ball of bone.
 class LiveMillingTest : public ::testing::Test {
  protected:
-  LiveMillingTest() {
+  LiveMillingTest() : LiveMillingTest(ball_of_bone()) {}
+  explicit LiveMillingTest(std::shared_ptr<Volume> scan) : bone_(std::move(scan)) {
     milling_.start();
     hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
   }
@@ -107,7 +110,7 @@ class LiveMillingTest : public ::testing::Test {
     return false;
   }
 
-  std::shared_ptr<Volume> bone_ = ball_of_bone();
+  std::shared_ptr<Volume> bone_;
   MillingSetup setup_;
   MillingEntry entry_ = place_entry(*bone_, setup_.tool);
   VirtualHand hand_{{}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2)};
@@ -255,6 +258,143 @@ TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
   EXPECT_FALSE(milling_.follower().is_touched());
   milling_.follower().read([](const Volume& bone) { EXPECT_EQ(bone.isovalue(), 300); });
   EXPECT_TRUE(surface_is_the_bones());
+}
+
+// A session with the ball of bone and a small one beside it.
+class LiveMillingOfTwoPiecesTest : public LiveMillingTest {
+ protected:
+  static constexpr VoxelIndex kInSmall{47, 47, 47};
+  static std::shared_ptr<Volume> two_balls() {
+    const auto ball = ball_of_bone();
+    DensityGrid grid = ball->grid();
+    for_each({{45, 45, 45}, {49, 49, 49}}, [&](const VoxelIndex& v) { grid.set(v, 900); });
+    auto bone = std::make_shared<Volume>(std::move(grid), kIsovalue);
+    bone->set_labels(ball->labels());
+    return bone;
+  }
+  LiveMillingOfTwoPiecesTest() : LiveMillingTest(two_balls()) {}
+
+  void finish(bool begun) {
+    EXPECT_TRUE(begun);
+    milling_.finish_preparing();
+  }
+  bool has_small() {
+    bool is_bone = false;
+    milling_.follower().read([&](const Volume& now) { is_bone = now.is_bone(kInSmall); });
+    return is_bone;
+  }
+};
+
+TEST_F(LiveMillingOfTwoPiecesTest, PiecesGoAndComeBackLikeCutsAndDoNotCountAsMilled) {
+  mill(0.2);
+  const CopyOnWriteFloats milled = bone();
+  const double removed_mm3 = milling_.state().record.removed_mm3;
+  const std::vector<double> of_label_mm3 = milling_.removed_by_label();
+  EXPECT_TRUE(has_small());
+  finish(milling_.remove_pieces({PieceRemoval::Which::chosen, kInSmall}));
+  EXPECT_FALSE(has_small());
+  const CopyOnWriteFloats without = bone();
+  EXPECT_EQ(milling_.follower().cuts(), 2u);
+  EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
+  for (std::size_t label = 0; label < 3; ++label)
+    EXPECT_NEAR(milling_.removed_by_label()[label], of_label_mm3[label], 1e-9);
+  EXPECT_TRUE(surface_is_the_bones());
+  // The haptic thread mills the bone without it, and that is a cut of its own.
+  mill(0.2);
+  EXPECT_FALSE(has_small());
+  EXPECT_EQ(milling_.follower().cuts(), 3u);
+  const CopyOnWriteFloats milled_on = bone();
+  const double removed_then_mm3 = milling_.state().record.removed_mm3;
+  finish(milling_.undo());
+  EXPECT_EQ(bone(), without);
+  finish(milling_.undo());
+  EXPECT_EQ(bone(), milled);
+  EXPECT_EQ(milling_.follower().undone_cuts(), 2u);
+  finish(milling_.redo());
+  EXPECT_EQ(bone(), without);
+  EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
+  finish(milling_.redo());
+  EXPECT_EQ(bone(), milled_on);
+  EXPECT_EQ(milling_.state().record.removed_mm3, removed_then_mm3);
+  EXPECT_TRUE(surface_is_the_bones());
+  const std::vector<double> now_mm3 = milling_.removed_by_label();
+  EXPECT_NEAR(now_mm3[1] + now_mm3[2], removed_then_mm3, 1e-6);
+  finish(milling_.reset());
+  EXPECT_TRUE(has_small());
+  EXPECT_EQ(milling_.follower().undone_cuts(), 0u);
+  EXPECT_TRUE(surface_is_the_bones());
+}
+
+TEST_F(LiveMillingOfTwoPiecesTest, ARemovalThatCannotBeLeavesAllAsItWas) {
+  const CopyOnWriteFloats before = bone();
+  EXPECT_TRUE(milling_.remove_pieces({PieceRemoval::Which::chosen, {0, 0, 0}}));
+  EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
+  // There is no piece as small as that.
+  finish(milling_.remove_pieces({PieceRemoval::Which::smaller, {}, 0.1}));
+  EXPECT_EQ(bone(), before);
+  EXPECT_EQ(milling_.follower().cuts(), 0u);
+  EXPECT_FALSE(milling_.follower().is_touched());
+  mill(0.1);
+}
+
+// Pieces removed, taken back and removed again in a recording, with cuts between, come out to the bit.
+TEST_F(LiveMillingOfTwoPiecesTest, ARecordingHasTheBoneWithoutThemAndIsReplayedToTheBit) {
+  const testing_support::TestFolder folder;
+  mill(0.1);
+  milling_.start_recording(folder / "a.h5", milling_.describe("balls", ""));
+  mill(0.1);
+  finish(milling_.remove_pieces({PieceRemoval::Which::all_but_chosen, {25, 25, 20}}));
+  EXPECT_FALSE(has_small());
+  mill(0.1);
+  finish(milling_.undo());
+  finish(milling_.undo());
+  mill(0.05);
+  finish(milling_.undo());
+  finish(milling_.remove_pieces({PieceRemoval::Which::smaller, {}, 100}));
+  mill(0.1);
+  finish(milling_.undo());
+  finish(milling_.redo());
+  mill(0.05);
+  const CopyOnWriteFloats at_end = bone();
+  const std::vector<double> of_label_mm3 = milling_.removed_by_label();
+  milling_.stop();
+  milling_.stop_recording();
+  const Recording recording = read_recording(folder / "a.h5");
+  EXPECT_GE(recording.sessions.size(), 8u);
+  const auto scan = two_balls();
+  const Verification verified = verify_recording(*scan, recording);
+  EXPECT_FALSE(verified.difference) << verified.difference->sentence();
+  EXPECT_EQ(verified.ticks, recording.records.size());
+  EXPECT_GT(verified.compared_bones, 5u);
+  Volume milled = *scan;
+  repeat_milling(milled, recording);
+  EXPECT_EQ(milled.grid().densities(), at_end);
+  // Played forwards and back, every session's bone is that which was milled.
+  RecordedBone played(*scan, recording);
+  EXPECT_EQ(played.bone().grid().densities(), at_end);
+  played.go_to(1);
+  EXPECT_TRUE(played.bone().is_bone(kInSmall));
+  played.go_to(recording.records.size());
+  EXPECT_EQ(played.bone().grid().densities(), at_end);
+
+  // Milled on from its end, and from what a window keeps for its next start.
+  const double end_s = recording.records.back().time_s;
+  VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
+  LiveMilling branch(prepare_milling(two_balls(), resume_recording(*scan, recording, end_s), {}), hand);
+  const SessionStart before{.run = milling_.describe("balls", ""),
+                            .removed_mm3 = recording.records.back().removed_mm3,
+                            .bricks = milling_.follower().touched_bricks(),
+                            .piece_drops = milling_.follower().piece_drops()};
+  LiveMilling again(prepare_milling(two_balls(), setup_, before), hand);
+  for (LiveMilling* next : {&branch, &again}) {
+    next->follower().read([&](const Volume& now) { EXPECT_EQ(now.grid().densities(), at_end); });
+    for (std::size_t label = 0; label < 3; ++label)
+      EXPECT_NEAR(next->removed_by_label()[label], of_label_mm3[label], 1e-9);
+    EXPECT_TRUE(next->undo());
+    next->finish_preparing();
+    next->follower().read([&](const Volume& now) { EXPECT_TRUE(now.is_bone(kInSmall)); });
+    EXPECT_EQ(next->removed_by_label(), (std::vector<double>{0, 0, 0}));
+  }
 }
 
 // The bone that an ended window had milled continues in another.

@@ -44,8 +44,8 @@ static void pass(PipeEnd& pipe, RunDescription& run) {
 }
 static auto members_of(SessionStart& start) {
   return std::tie(start.run, start.handover.X_WT, start.handover.sent, start.handover.held_back,
-                  start.handover.spindle_rpm, start.removed_mm3, start.bricks, start.continues_from,
-                  start.continues_after);
+                  start.handover.spindle_rpm, start.removed_mm3, start.bricks, start.piece_drops,
+                  start.continues_from, start.continues_after);
 }
 static auto members_of(RecordedSession& session) {
   return std::tie(session.first, session.start);
@@ -222,7 +222,12 @@ std::vector<RecordedSession> read_sessions(const Hdf5File& open, const Recording
     if (!right || row > recording.records.size()) open.refuse("'" + place + "' begins at a wrong row");
     const RunDescription* first = sessions.empty() ? &recording.description : nullptr;
     sessions.push_back({row, read_session_start(open, group.get(), place, first)});
-    sessions.back().start.run.labels = recording.description.labels;
+    SessionStart& start = sessions.back().start;
+    start.run.labels = recording.description.labels;
+    if (const Attributes read(open.path, group.get()); read.has("piece_drops")) {
+      start.piece_drops.resize(start.run.labels.size() + 1);
+      read.get_reals("piece_drops", start.piece_drops);
+    }
   }
   if (sessions.empty() && !recording.records.empty()) open.refuse("has ticks of no session");
   return sessions;

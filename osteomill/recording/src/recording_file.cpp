@@ -254,6 +254,7 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
     write.put("tool_mm", X_WT->position_mm);
     write.put_reals("tool_wxyz", std::array{q.w(), q.x(), q.y(), q.z()});
   }
+  if (!start.piece_drops.empty()) write.put_reals("piece_drops", start.piece_drops);
   if (!start.bricks.empty()) write_bricks(group.get(), start.bricks);
   if (sessions_ > 0) {
     // The labels are the recording's.

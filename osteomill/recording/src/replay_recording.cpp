@@ -222,7 +222,8 @@ ResumedRecording resume_recording(const Volume& scan, const Recording& recording
   };
   auto session = run_from(0, nullptr, scan, recording, hooks);
   if (const auto& difference = comparison.verified().difference) refuse(recording, difference->sentence());
-  return {std::move(session), ticks, recording.records[ticks - 1]};
+  const TickRecord& last = recording.records[ticks - 1];
+  return {std::move(session), ticks, last, recording.sessions[last.session].start.piece_drops};
 }
 
 void replay_rest(ResumedRecording resumed, const Volume& scan, const Recording& recording,

@@ -10,6 +10,7 @@
 #include "osteomill/visual/surface_bricks.h"
 #include "osteomill/visual/surface_upkeep.h"
 #include "osteomill/volume/bone_densities.h"
+#include "osteomill/volume/bone_pieces.h"
 #include "osteomill/volume/density_block.h"
 #include "osteomill/volume/volume.h"
 
@@ -32,8 +33,9 @@ class BoneFollower {
   explicit BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes = kUndoBytes);
   ~BoneFollower();
 
-  /// Puts what was milled of this bone at another time into bone and copy, as one cut. Before the first tick.
-  void load_milled(const std::vector<DensityBlock>& milled);
+  /// Puts what was milled of this bone at another time into bone and copy, as one cut, of which `piece_drops`
+  /// was removed as pieces. Before the first tick.
+  void load_milled(const std::vector<DensityBlock>& milled, const std::vector<double>& piece_drops = {});
 
   /// Hands over what a tick changed of the bone. The haptic thread calls it at every tick, with an empty
   /// change too: a part of what is to be copied may have been left to later ticks. Safe in the haptic tick:
@@ -57,15 +59,19 @@ class BoneFollower {
   /// Begins another cut, to which all that is milled from now on belongs; `removed_mm3` is what was removed
   /// before it.
   void begin_cut(double removed_mm3);
-  /// Returns how many cuts can be taken back.
+  /// Returns how many cuts can be taken back; the removal of pieces is one.
   std::size_t cuts() const;
-  /// Returns whether anything was milled since the beginning.
+  /// Returns how many cuts that were taken back can be made again: none once something else was cut.
+  std::size_t undone_cuts() const;
+  /// Returns whether anything was milled, or a piece removed, since the beginning.
   bool is_touched() const;
-  /// Returns every brick that was ever milled, as it is now.
+  /// Returns every brick that was ever changed, as it is now.
   std::vector<DensityBlock> touched_bricks() const;
-  /// Returns by how much densities have fallen since the beginning, summed over each label's voxels, by its
-  /// place; empty for a bone without labels.
+  /// Returns by how much densities have fallen since the beginning times the voxels' volume, mm^3, summed
+  /// over each label's voxels, by its place; removed pieces do not count. Empty for a bone without labels.
   std::vector<double> drops_by_label() const;
+  /// Returns the same of the pieces that are removed; empty if there are none.
+  std::vector<double> piece_drops() const;
 
   /// Puts what has arrived into the copy. Returns true if nothing is left to come, so that the copy is the
   /// bone, provided that the bone is frozen (HapticThread::freeze_bone).
@@ -79,10 +85,16 @@ class BoneFollower {
     /// Given if another isovalue changes them.
     std::optional<BoneDensities> densities;
   };
-  /// Returns the copy with the last cut taken back. Call this, and each of the next two, while the bone is
-  /// frozen and the copy is caught up; from then until `swap` or `discard_next` no thread writes into either.
-  /// The surface shows the change at once; the cut is gone with `swap`.
-  NextBone without_last_cut();
+  /// Returns the copy with the last cut taken back; `removed_mm3` is removed of the bone now. Call this, and
+  /// each of the next four, while the bone is frozen and the copy is caught up; from then until `swap` or
+  /// `discard_next` no thread writes into either. The surface shows the change at once; the cut is gone with
+  /// `swap`.
+  NextBone without_last_cut(double removed_mm3);
+  /// Returns the copy with the cut made again that was taken back last.
+  NextBone with_undone_cut(double removed_mm3);
+  /// Returns the copy without some of its pieces, as another cut, which does not count as milled. Throws as
+  /// `bricks_without` does, with the bricks that `undo_bytes` has room for.
+  NextBone without_pieces(const PieceRemoval& removal, double removed_mm3);
   /// Returns the copy as the bone was at the beginning.
   NextBone without_all_cuts();
   /// Returns the copy with another isovalue. Voxels that milling had emptied (cut down to `surroundings`)

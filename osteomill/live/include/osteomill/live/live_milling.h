@@ -88,11 +88,17 @@ class LiveMilling {
   [[nodiscard]] bool change_isovalue(double isovalue);
   /// Begins to take the last cut back. Returns as `change` does.
   [[nodiscard]] bool undo();
+  /// Begins to make the cut again that was taken back last. Returns as `change` does.
+  [[nodiscard]] bool redo();
   /// Begins to take all cuts back. Returns as `change` does.
   [[nodiscard]] bool reset();
+  /// Begins to remove pieces of the bone, which `undo` and `reset` bring back. It is no milling: it changes
+  /// neither TickRecord::removed_mm3 nor `removed_by_label`. Returns as `change` does; what is prepared
+  /// throws as BoneFollower::without_pieces.
+  [[nodiscard]] bool remove_pieces(const PieceRemoval& removal);
 
-  /// Returns how much of each label's bone is gone, mm^3 of reference density, by the labels' places from 1;
-  /// what was taken back does not count. Empty for a bone without labels.
+  /// Returns how much of each label's bone was milled, mm^3 of reference density, by the labels' places from
+  /// 1; what was taken back does not count. Empty for a bone without labels.
   std::vector<double> removed_by_label() const;
 
   /// Returns what a recording says about the milling as it is now.

@@ -69,6 +69,8 @@ struct ResumedRecording {
   /// The number of the recording's ticks until then, at least 1, and the last of them.
   std::size_t ticks = 0;
   TickRecord last;
+  /// The part of what is gone that was removed as pieces (SessionStart::piece_drops).
+  std::vector<double> piece_drops = {};
 };
 
 /// Returns how many of the recording's ticks had begun at a time (TickRecord::time_s). Throws InputError,
