@@ -86,18 +86,64 @@ Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, cons
   return showing_whole(camera_on(box.bounds(), -towards_W, up_W), box, size);
 }
 
-std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                                     const PixelSize& size, double x_px, double y_px) {
-  const Vec3 ray_W = ray_through(camera, size, x_px, y_px);
-  const GridGeometry& geometry = bone.geometry();
+namespace {
+
+// The part of a line of sight that may meet bone.
+struct Sight {
+  Vec3 from_W;
+  Vec3 to_W;
+};
+
+std::optional<Sight> sight_through(const GridGeometry& geometry, const Camera& camera, const Vec3& ray_W) {
   const Vec3 last = Vec3(geometry.dims[0] - 1, geometry.dims[1] - 1, geometry.dims[2] - 1);
   const Vec3 centre_W = geometry.world_from_voxel(Vec3(0.5 * last));
   const double radius_mm =
       0.5 * geometry.spacing_mm.cwiseProduct(last).norm() + 2 * geometry.spacing_mm.maxCoeff();
   const double middle_mm = ray_W.dot(centre_W - camera.eye_W());
   if (middle_mm + radius_mm <= 0) return std::nullopt;
-  const auto point_W = first_crossing(bone, camera.eye_W() + std::max(0.0, middle_mm - radius_mm) * ray_W,
-                                      camera.eye_W() + (middle_mm + radius_mm) * ray_W);
+  return Sight{camera.eye_W() + std::max(0.0, middle_mm - radius_mm) * ray_W,
+               camera.eye_W() + (middle_mm + radius_mm) * ray_W};
+}
+
+// Returns the part of it that a cut leaves.
+std::optional<Sight> beyond(const Sight& sight, const ClipPlane& cut) {
+  const double from_mm = cut.normal_W.dot(sight.from_W) - cut.offset_mm;
+  const double to_mm = cut.normal_W.dot(sight.to_W) - cut.offset_mm;
+  if (from_mm < 0 && to_mm < 0) return std::nullopt;
+  if (from_mm >= 0 && to_mm >= 0) return sight;
+  const Vec3 on_cut_W = sight.from_W + from_mm / (from_mm - to_mm) * (sight.to_W - sight.from_W);
+  return from_mm < 0 ? Sight{on_cut_W, sight.to_W} : Sight{sight.from_W, on_cut_W};
+}
+
+}  // namespace
+
+std::optional<VoxelIndex> bone_voxel_seen_at(const Volume& bone, const Camera& camera, const PixelSize& size,
+                                             const Eigen::Vector2d& pixel, std::span<const ClipPlane> cuts) {
+  const GridGeometry& geometry = bone.geometry();
+  auto sight = sight_through(geometry, camera, ray_through(camera, size, pixel.x(), pixel.y()));
+  for (const ClipPlane& cut : cuts)
+    if (sight) sight = beyond(*sight, cut);
+  const auto point_W = sight ? first_crossing(bone, sight->from_W, sight->to_W) : std::nullopt;
+  if (!point_W) return std::nullopt;
+  const Vec3 point = geometry.voxel_from_world(*point_W);
+  const VoxelIndex middle{static_cast<int>(std::lround(point.x())), static_cast<int>(std::lround(point.y())),
+                          static_cast<int>(std::lround(point.z()))};
+  std::optional<VoxelIndex> nearest;
+  double nearest_mm = 0;
+  for_each(VoxelBox{middle, middle}.grown(1), [&](const VoxelIndex& v) {
+    const double away_mm = (geometry.world_from_voxel(v) - *point_W).norm();
+    if (!bone.is_bone_in_grid(v) || (nearest && away_mm >= nearest_mm)) return;
+    nearest = v;
+    nearest_mm = away_mm;
+  });
+  return nearest;
+}
+
+std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                                     const PixelSize& size, double x_px, double y_px) {
+  const Vec3 ray_W = ray_through(camera, size, x_px, y_px);
+  const auto sight = sight_through(bone.geometry(), camera, ray_W);
+  const auto point_W = sight ? first_crossing(bone, sight->from_W, sight->to_W) : std::nullopt;
   if (!point_W) return std::nullopt;
   // Before the point in the direction of the eye, so that the tool is seen at the pixel.
   const Vec3 right_W = camera.up_W().cross(-ray_W).normalized();

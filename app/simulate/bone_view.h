@@ -2,11 +2,13 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "osteomill/exercise/placed_exercise.h"
 #include "osteomill/haptics/milling_tool.h"
 #include "osteomill/visual/camera.h"
+#include "osteomill/visual/clip_face.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::app {
@@ -33,6 +35,10 @@ Camera first_camera(const BoneBox& box, const PixelSize& size);
 
 /// The view into which the target's surface faces, with all of the bone.
 Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, const PixelSize& size);
+
+/// Returns a voxel of the bone that is seen at a pixel, of what these cuts leave; nothing if no bone is.
+std::optional<VoxelIndex> bone_voxel_seen_at(const Volume& bone, const Camera& camera, const PixelSize& size,
+                                             const Eigen::Vector2d& pixel, std::span<const ClipPlane> cuts);
 
 /// The tool free of bone, before the point of bone that is seen at a pixel; nothing if no bone is.
 std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,

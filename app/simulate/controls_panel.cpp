@@ -223,13 +223,20 @@ void draw_drive(ViewState& view, ToolChoice& choice, bool& changed) {
 void draw_undo(ViewState& view, const LiveMilling& milling) {
   const bool free = !milling.is_preparing();
   const auto cuts = static_cast<int>(milling.follower().cuts());
-  if (ui::button("Undo cut",
-                 "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are "
-                 "kept). Ctrl+Z does the same",
-                 free && cuts > 0))
+  if (ui::button(
+          "Undo cut",
+          "Puts back what was milled since the spindle was last switched on, or the pieces of bone that "
+          "were removed last (up to 256 MB of cuts are kept). Ctrl+Z does the same",
+          free && cuts > 0))
     view.undo_requested = true;
+  ui::same_line_if_room("Redo");
+  if (ui::button("Redo",
+                 "Makes the cut again that was put back last, as long as nothing else was cut since. Ctrl+Y "
+                 "does the same",
+                 free && milling.follower().undone_cuts() > 0))
+    view.redo_requested = true;
   ui::same_line_if_room("Reset bone");
-  if (ui::button("Reset bone", "Puts back all that was milled of this bone",
+  if (ui::button("Reset bone", "Puts back all that was milled of this bone, and its removed pieces",
                  free && milling.follower().is_touched()))
     view.reset_requested = true;
   const std::string text = fmt::format("{} {}", cuts, cuts == 1 ? "cut" : "cuts");
@@ -266,6 +273,7 @@ void draw_milling(ViewState& view, Simulation& simulation, ToolChoice& choice) {
   choice.changed = choose_named_burr(view.requested_setup) || choice.changed;
   ImGui::EndDisabled();
   draw_undo(view, milling);
+  draw_piece_controls(view, simulation);
 }
 
 // Buttons for the densities that may bound bone, if there are several: only the user knows which does.

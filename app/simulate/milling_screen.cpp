@@ -20,7 +20,8 @@ namespace osteomill::app {
 namespace {
 
 void drop_requests(ViewState& view) {
-  view.undo_requested = view.reset_confirmed = view.finish_requested = false;
+  view.undo_requested = view.redo_requested = view.reset_confirmed = view.finish_requested = false;
+  view.chosen_piece.requested.reset();
   view.isovalue_requested.reset();
 }
 
@@ -52,6 +53,7 @@ void MillingScreen::begin_view(Stage& stage) {
   view.requested_setup.tool = milling.setup().tool;
   view.isovalue.reset();
   drop_requests(view);
+  view.chosen_piece = {};
   view.X_W_destination.reset();
   view.holding_tool = view.dragging_tool = view.dragging_view = view.pedal_down = false;
   view.dragged_cut = -1;
@@ -64,8 +66,9 @@ bool MillingScreen::is_settled(const Stage& stage) {
   const ViewState& view = stage.view;
   return stage.bone.is_up_to_date() && !exercise_begins_ && !simulation_.milling.is_preparing() &&
          !simulation_.milling.is_placing() && !view.X_W_destination && !view.setup_changed &&
-         !view.undo_requested && !view.reset_confirmed && !view.isovalue_requested &&
-         !stage.files.is_busy() && !(simulation_.exercise && simulation_.exercise->is_measuring());
+         !view.undo_requested && !view.redo_requested && !view.reset_confirmed && !view.isovalue_requested &&
+         view.chosen_piece.is_settled() && !stage.files.is_busy() &&
+         !(simulation_.exercise && simulation_.exercise->is_measuring());
 }
 
 // Begins the requested changes; each waits until nothing else is being prepared.
@@ -73,6 +76,9 @@ void MillingScreen::start_requests(ViewState& view) {
   LiveMilling& milling = simulation_.milling;
   const bool begun = view.dialogues.run_reporting_errors([&] {
     if (view.undo_requested) view.undo_requested = !milling.undo();
+    if (view.redo_requested) view.redo_requested = !milling.redo();
+    if (auto& removal = view.chosen_piece.requested; removal && milling.remove_pieces(*removal))
+      removal.reset();
     if (view.reset_confirmed) view.reset_confirmed = !milling.reset();
     if (view.isovalue_requested && milling.change_isovalue(*view.isovalue_requested))
       view.isovalue_requested.reset();
@@ -86,7 +92,10 @@ void MillingScreen::update(Stage& stage) {
     const bool prepared = simulation_.milling.is_preparing();
     simulation_.update();
     if (sender_) sender_->show_tool(simulation_.milling.state().record);
-    if (prepared && !simulation_.milling.is_preparing()) free_tool(view, simulation_, stage.window.size());
+    if (prepared && !simulation_.milling.is_preparing()) {
+      free_tool(view, simulation_, stage.window.size());
+      measure_bone(view.chosen_piece, simulation_);
+    }
   });
   if (!updated) view.requested_setup = simulation_.milling.setup();
   report_device_failure(view);
@@ -130,6 +139,7 @@ void MillingScreen::draw_panels(Stage& stage) {
   const PixelSize size = stage.window.size();
   draw_annotations(view, size, !is_builtin(simulation_.scan.source.scan));
   draw_controls(view, simulation_, stage.files, size);
+  draw_piece_menu(view, simulation_, size);
   const float bottom_px = stage.files.draw_message(view, simulation_, size);
   float top_px = draw_readings(view, simulation_, stage.pictures_per_s(), size);
   top_px = draw_labels(view, simulation_, {top_px, bottom_px});

@@ -162,7 +162,9 @@ void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if (is_key_pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().record.paused);
   if (is_key_pressed(GLFW_KEY_F1)) view.help = !view.help;
   if (is_key_pressed(GLFW_KEY_F11)) view.full_screen_requested = true;
-  if (io.KeyCtrl && is_key_pressed(GLFW_KEY_Z) && milling.follower().cuts() > 0) view.undo_requested = true;
+  const bool z = io.KeyCtrl && is_key_pressed(GLFW_KEY_Z), y = io.KeyCtrl && is_key_pressed(GLFW_KEY_Y);
+  if (z && !io.KeyShift && milling.follower().cuts() > 0) view.undo_requested = true;
+  if ((y || (z && io.KeyShift)) && milling.follower().undone_cuts() > 0) view.redo_requested = true;
 }
 
 // Places the tool before the bone that is seen at the pixel, or else before the bone in the middle.

@@ -14,6 +14,7 @@
 #include "app/simulate/bone_view.h"
 #include "app/simulate/dialogues.h"
 #include "app/simulate/open_dialog.h"
+#include "app/simulate/pieces_panel.h"
 #include "app/simulate/preferences.h"
 #include "app/simulate/view_aids.h"
 
@@ -71,10 +72,12 @@ struct ViewState : Preferences {
   bool reset_requested = false;
   /// Requests that wait until nothing else is being prepared.
   bool undo_requested = false;
+  bool redo_requested = false;
   bool reset_confirmed = false;
   std::optional<double> isovalue_requested;
   bool full_screen_requested = false;
   bool picture_requested = false;
+  ChosenPiece chosen_piece;
   DialogueQueue dialogues;
   /// The text on what was done last, and the file or folder that it made, if any.
   std::string message;

@@ -151,7 +151,9 @@ class EmptiedBricks {
                                            brick.j, brick.k)];
     if (place == kNone) {
       if (bricks_.size() == max_bricks_)
-        throw std::length_error("bricks_without: the pieces take more bricks than are allowed");
+        throw std::length_error(
+            "the pieces take more memory than can be taken back; "
+            "--keep-largest and --min-piece leave pieces out when a scan is opened");
       place = bricks_.size();
       bricks_.emplace_back(grid_, VoxelBox::of_brick(brick, kSide).first);
     }
@@ -229,7 +231,7 @@ std::vector<DensityBlock> bricks_without(const DensityGrid& grid, double isovalu
   const std::vector<std::size_t> sizes = runs.sizes();
   const auto chosen = runs.piece_with(removal.voxel);
   if (removal.which != Which::smaller && !chosen)
-    throw std::invalid_argument("bricks_without: there is no bone where the piece was chosen");
+    throw std::invalid_argument("there is no bone any more where the piece was chosen");
   const double voxel_mm3 = grid.geometry().voxel_volume_mm3();
   EmptiedBricks bricks(grid, max_bricks);
   for_each_run(grid.geometry(), runs, [&](const Run& run, std::size_t piece, int j, int k) {

@@ -216,6 +216,13 @@ std::string state_text(const std::string& name, const WindowContents& window) {
   lines.add("warnings", simulation.warnings.empty() ? "" : simulation.warnings.front());
   lines.add("removed_mm3", fmt::format("{:.3f}", state.record.removed_mm3));
   lines.add("cuts", milling.follower().cuts());
+  lines.add("undone_cuts", milling.follower().undone_cuts());
+  if (const auto& piece = view.chosen_piece.piece) {
+    const double voxel_mm3 = milling.geometry().voxel_volume_mm3();
+    lines.add("piece_mm3", fmt::format("{:.3f}", static_cast<double>(piece->voxels) * voxel_mm3));
+    lines.add("pieces", piece->sizes.size());
+  }
+  lines.add("bone_size_mm", text_of(view.box.corners_W.back() - view.box.corners_W.front()));
   for (std::size_t n = 0; n < simulation.label_count.labels().size(); ++n) {
     const bool counted = n + 1 < simulation.removed_by_label_mm3.size();
     lines.add("removed of " + simulation.label_count.labels()[n].name,

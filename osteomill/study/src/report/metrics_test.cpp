@@ -1,6 +1,8 @@
 #include "osteomill/study/metrics.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -152,6 +154,25 @@ TEST(RunMetrics, BoneIsRemovedPerSecondOfCutting) {
   EXPECT_NEAR(run_metrics(cutting).removal_mm3_per_s, 4, 0.02);
   for (TickRecord& record : cutting.records) record.spindle_on = false;
   EXPECT_TRUE(std::isnan(run_metrics(cutting).removal_mm3_per_s));
+}
+
+// Five mm^3 milled, taken back, made again, and three more milled.
+TEST(RunMetrics, ACutMadeAgainIsNotCountedTwice) {
+  Recording recording = simple_recording(1000);
+  for (std::size_t n = 0; n < 1000; ++n) {
+    TickRecord& record = recording.records[n];
+    const std::size_t session = std::min<std::size_t>(n / 250, 2);
+    const double more_mm3 = std::clamp(0.02 * (static_cast<double>(n) - 600), 0.0, 3.0);
+    record.session = static_cast<std::uint32_t>(session);
+    record.spindle_on = n < 200 || n > 600;
+    record.removed_mm3 = session == 0 ? std::min(5.0, 0.1 * static_cast<double>(n)) : 0;
+    if (session == 2) record.removed_mm3 = 5 + more_mm3;
+  }
+  EXPECT_NEAR(run_metrics(recording).put_back_mm3, 0, 1e-12);
+  EXPECT_NEAR(run_metrics(recording).removed_mm3, 8, 1e-12);
+  recording.records.resize(500);
+  EXPECT_NEAR(run_metrics(recording).put_back_mm3, 5, 1e-12);
+  EXPECT_NEAR(run_metrics(recording).removed_mm3, 5, 1e-12);
 }
 
 // Free air before and after changes nothing but the shares: only what is felt is measured.
