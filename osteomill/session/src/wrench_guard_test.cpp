@@ -317,5 +317,12 @@ TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
   }
 }
 
+TEST(SentFraction, IsOneForWhatIsTooSmallToBeSquared) {
+  EXPECT_EQ(sent_fraction(Vec3(0, 2, 0), Vec3(3, 1, 0)), 0.5);
+  EXPECT_EQ(sent_fraction(Vec3::Zero(), Vec3(1, 0, 0)), 1);
+  EXPECT_EQ(sent_fraction(Vec3(1e-170, -1e-200, 0), Vec3(1e-171, 0, 0)), 1);
+  EXPECT_EQ(sent_fraction(Vec3(1e-161, 0, 0), Vec3(0, 1, 0)), 0);
+}
+
 }  // namespace
 }  // namespace osteomill

@@ -11,7 +11,9 @@ namespace osteomill {
 /// Returns the share, 0 to 1, of a force that was asked for that the force which was sent gives in its
 /// direction. Safe in the haptic tick.
 inline double sent_fraction(const Vec3& asked, const Vec3& sent) noexcept {
-  return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
+  // Zero for a vector that is too small to be squared, too.
+  const double square = asked.squaredNorm();
+  return sent == asked || square == 0 ? 1 : std::clamp(sent.dot(asked) / square, 0.0, 1.0);
 }
 
 /// The source of poses and the receiver of wrenches: hardware behind its thread (ConnectedDevice), a
