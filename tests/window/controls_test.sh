@@ -15,6 +15,7 @@ export XDG_STATE_HOME=$folder/state
 "$here/ball.sh" >ball.nrrd
 "$here/ball.sh" 4 >other.nrrd
 "$here/ball.sh" 1 >small.nrrd
+"$here/balls.sh" >balls.nrrd
 
 faults=0
 fault() { echo "FAILED: $1"; faults=1; }
@@ -167,6 +168,9 @@ glide 640 750 0 ;; key t ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space ;;
 key t ;; wait 0.2 ;; state three-cuts ;; screenshot controls-3-milled.png
 click Undo cut ;; settle ;; wait 0.1 ;; state undone
 press control ;; key z ;; release control ;; settle ;; wait 0.1 ;; state undone-by-key
+click Redo ;; settle ;; wait 0.1 ;; state redone
+press control ;; key y ;; release control ;; settle ;; wait 0.1 ;; state redone-by-key
+click Undo cut ;; settle ;; click Undo cut ;; settle ;; wait 0.1
 click Reset bone ;; wait 0.3 ;; click Cancel ;; wait 0.1 ;; state not-reset
 click Reset bone ;; wait 0.3 ;; click Save ;; settle ;; wait 0.1 ;; state reset
 glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; key space ;; wait 0.4 ;; key space ;; key t ;; state milled-again
@@ -210,6 +214,7 @@ is milling heard_rpm "$(value milling rpm)"; is silent heard_rpm 0; is milled he
 is paused paused true; is goes-on paused false
 is three-cuts cuts 3; more milled three-cuts removed_mm3
 is undone cuts 2; more undone three-cuts removed_mm3
+is redone cuts 2; same undone redone removed_mm3; is redone-by-key cuts 3; same three-cuts redone-by-key removed_mm3
 is undone-by-key cuts 1; more undone-by-key undone removed_mm3; same milled undone-by-key removed_mm3
 is not-reset cuts 1; is reset cuts 0; is reset removed_mm3 0.000
 more reset milled-again removed_mm3; is reset-again removed_mm3 0.000
@@ -235,6 +240,27 @@ is no-vibration cutting_reaction true; is no-pull cutting_reaction false
 more no-vibration isovalue isovalue; is typed isovalue 500
 value no-vibration isovalue_from | grep -q "^suggested: " || fault "nobody is told that the isovalue was suggested"
 value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told that the isovalue was set"
+
+# --- Pieces of bone: a large ball, a small one and a lone voxel -----------------------------------------------------
+window balls.nrrd --iso 700 --no-help <<'END'
+wait 0.3 ;; click S ;; settle ;; wait 0.5
+click Choose piece ;; wait 0.1 ;; state choosing ;; click Click on bone ... ;; glide 755 428 0.1 ;; press left ;; release left ;; wait 0.3 ;; state not-choosing
+click Choose piece ;; glide 755 428 0.1 ;; press left ;; release left ;; settle ;; wait 0.2 ;; state chosen ;; screenshot controls-8-piece.png ;; key escape ;; wait 0.1 ;; state closed
+press right ;; glide 755 470 0.1 ;; release right ;; wait 0.3 ;; state dragged ;; press right ;; glide 755 428 0.1 ;; release right ;; wait 0.2
+glide 440 428 0.1 ;; press right ;; release right ;; settle ;; wait 0.2 ;; state small ;; drag volume -20 ;; wait 0.1
+click Remove pieces below ;; settle ;; wait 0.2 ;; state without-crumb
+glide 440 428 0.1 ;; press right ;; release right ;; settle ;; wait 0.2 ;; click Remove this piece ;; settle ;; wait 0.2 ;; state without-small
+click Undo cut ;; settle ;; click Undo cut ;; settle ;; glide 440 428 0.1 ;; press right ;; release right ;; settle ;; wait 0.2
+click Keep only this piece ;; settle ;; wait 0.2 ;; state only-small
+glide 755 428 0.1 ;; press right ;; release right ;; wait 0.2 ;; state beside
+close
+END
+shows choosing "Click on bone ..."; shows not-choosing "Choose piece"; hides not-choosing "Remove this piece"
+shows chosen "Remove this piece"; is chosen pieces 3; more small chosen piece_mm3; is small pieces 3; is chosen cuts 0
+hides closed "Remove this piece"; hides dragged "Remove this piece"
+is without-crumb cuts 1; is without-small cuts 2; is only-small cuts 1; hides beside "Remove this piece"
+more without-crumb chosen bone_size_mm 2; more without-small without-crumb bone_size_mm; more only-small without-small bone_size_mm
+is only-small removed_mm3 0.000
 
 # --- A tool in bone that comes back, or grows ----------------------------------------------------------------------
 window ball.nrrd --no-help <<'END'

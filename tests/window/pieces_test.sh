@@ -15,7 +15,7 @@ export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
-between() { awk -v x="$(value "$1" "$2")" -v a="$3" -v b="$4" 'BEGIN { exit !(x > a && x < b) }' || fail "at $1, $2 is $(value "$1" "$2")"; }
+between() { awk -v x="$(value "$1" "$2")" -v a="$3" -v b="$4" 'BEGIN { exit !(x + 0 > a && x + 0 < b) }' || fail "at $1, $2 is $(value "$1" "$2")"; }
 keep_pictures() { [ -z "${OSTEOMILL_PICTURES:-}" ] || for picture in *.png; do mv "$picture" "$OSTEOMILL_PICTURES/pieces-$1-$picture"; done; }
 "$here/balls.sh" >balls.nrrd
 
@@ -29,7 +29,14 @@ until window=$(xdotool search --name balls.nrrd 2>/dev/null | tail -1) && [ -n "
 when() { until grep -q "^$1\(: \|$\)" said || ! kill -0 "$program"; do sleep 0.05; done; }
 send() { when "$1"; xdotool "${@:2}"; sleep 1; touch "$1"; }
 click() { when "$1"; send "$1" mousemove --window "$window" $(sed -n "s/^$2\.place of $3=//p" said) sleep 0.3 click 1; }
-send chosen mousemove --window "$window" $(when chosen; cat big-place) sleep 0.3 click 3
+# Prints the pixel of the large ball's middle: the view from above has the patient's left on the left.
+ball() {
+  when chosen
+  awk -v focus="$(sed -n 's/^start\.focus=//p' said)" -v away="$(sed -n 's/^start\.distance_mm=//p' said)" -v size="$3" 'BEGIN {
+    split(focus, f, " "); split(size, s, "x"); scale = s[2] / (2 * 0.266 * (away - 7.75 + f[3]))
+    printf "%d %d", s[1] / 2 + (f[1] - 6) * scale, s[2] / 2 + (7.75 - f[2]) * scale }'
+}
+send chosen mousemove --window "$window" $(ball "$@") sleep 0.3 click 3
 click kept chosen "Keep only this piece"
 send undone key --delay 0 ctrl+z
 send all-back key --delay 0 ctrl+z
@@ -38,21 +45,12 @@ send milled-again key --delay 0 ctrl+shift+z
 wait "$program"
 END
 
-# Where the middle of the large ball is seen: the view from above has the patient's left on the left.
-find_ball() {
-  until grep -q "^start\.size=" said 2>/dev/null; do sleep 0.1; done
-  awk -v focus="$(value start focus)" -v away="$(value start distance_mm)" -v w="$1" -v h="$2" 'BEGIN {
-    split(focus, f, " "); scale = h / (2 * 0.266 * (away - 7.75 + f[3])); printf "%d %d\n", w / 2 + (f[1] - 6) * scale, h / 2 - (f[2] - 7.75) * scale
-  }' >big-place.new
-  mv big-place.new big-place
-}
-
 work() {
   local size=$1 scale=$2
-  rm -rf out said chosen kept undone all-back redone milled-again big-place
+  rm -rf out said chosen kept undone all-back redone milled-again
   touch said
   sed 's/ *;; */\n/g' >actions <<'END'
-wait 0.3 ;; settle ;; click S ;; settle ;; wait 0.3 ;; state start ;; wait 1 ;; click Record ;; settle ;; wait 0.3
+resize SIZE ;; wait 0.5 ;; settle ;; click S ;; settle ;; wait 0.3 ;; state start ;; wait 1 ;; click Record ;; settle ;; wait 0.3
 say chosen ;; await chosen ;; settle ;; wait 0.3 ;; state chosen ;; screenshot chosen.png
 say kept ;; await kept ;; settle ;; wait 0.3 ;; state kept ;; screenshot kept.png
 click S ;; click Whole ;; glide MIDDLE 0 ;; key b ;; settle ;; key t ;; wheel 26 0.6 ;; key space ;; wait 0.6 ;; key space ;; key t ;; wait 0.3 ;; state milled
@@ -62,13 +60,12 @@ say redone ;; await redone ;; settle ;; wait 0.2 ;; state redone
 say milled-again ;; await milled-again ;; settle ;; wait 0.5 ;; state milled-again ;; screenshot milled.png
 click Stop recording ;; settle ;; click Save scan ;; settle ;; wait 0.2 ;; state end ;; close
 END
-  sed -i "s/MIDDLE/$((${size%x*} / 2)) $((${size#*x} / 2))/" actions
-  find_ball "${size%x*}" "${size#*x}" &
+  sed -i "s/SIZE/${size/x/ }/; s/MIDDLE/$((${size%x*} / 2)) $((${size#*x} / 2))/" actions
   local code=0
-  xvfb-run -a -s "-screen 0 ${size}x24" timeout 200 bash hands "$driver" "$scale" || code=$?
-  wait
+  xvfb-run -a -s "-screen 0 ${size}x24" timeout 200 bash hands "$driver" "$scale" "$size" || code=$?
   keep_pictures "$size"
   [ $code -eq 0 ] || fail "exit code $code"
+  for fact in unexplained cut_off outside; do is chosen $fact ""; done
   is start size "${size%x*} x ${size#*x}"; is chosen pieces 3; between chosen piece_mm3 500 548; is chosen cuts 0
   value chosen shown | grep -qF "[Remove pieces below]" || fail "there is no menu"
   ! value kept shown | grep -qF "[Keep only this piece]" || fail "the menu stays"
