@@ -54,6 +54,8 @@ void MillingScreen::begin_view(Stage& stage) {
   view.isovalue.reset();
   drop_requests(view);
   view.chosen_piece = {};
+  // Pieces may have been removed of it before.
+  if (milling.follower().is_touched()) measure_bone(view.chosen_piece, simulation_);
   view.X_W_destination.reset();
   view.holding_tool = view.dragging_tool = view.dragging_view = view.pedal_down = false;
   view.dragged_cut = -1;
