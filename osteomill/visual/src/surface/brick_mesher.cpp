@@ -78,6 +78,9 @@ const BrickMesh& BrickMesher::mesh(std::size_t brick) {
   if (!can_hold_surface(brick)) return mesh_;
   load(brick);
   find_bone();
+  const auto rows = rows_with_surface();
+  if (!rows) return mesh_;
+  smooth(*rows);
   add_vertices();
   add_triangles();
   return mesh_;
@@ -90,9 +93,9 @@ void BrickMesher::load(std::size_t brick) {
   const VoxelBox cells = layout_.cells(brick);
   cells_ = {{cells.first.i - corner_.i, cells.first.j - corner_.j, cells.first.k - corner_.k},
             {cells.last.i - corner_.i, cells.last.j - corner_.j, cells.last.k - corner_.k}};
-  // From one voxel before the cells to one after their upper corners.
-  for (int k = cells_.first.k - 1; k <= cells_.last.k + 2; ++k) {
-    for (int j = cells_.first.j - 1; j <= cells_.last.j + 2; ++j) {
+  // From two voxels before the cells to two after their upper corners.
+  for (int k = cells_.first.k - 2; k <= cells_.last.k + 3; ++k) {
+    for (int j = cells_.first.j - 2; j <= cells_.last.j + 3; ++j) {
       load_row({corner_.i, corner_.j + j, corner_.k + k},
                &block_[static_cast<std::size_t>(j * kStride[1] + k * kStride[2])]);
     }
@@ -123,6 +126,34 @@ void BrickMesher::find_bone() {
       bone_[row] = bits_above(&block_[row * kBlock], kBlock, threshold_);
     }
   }
+}
+
+// Returns the rows of voxels between which, or in which, bone begins.
+std::optional<RowBox> BrickMesher::rows_with_surface() const {
+  RowBox rows{kBlock, -1, kBlock, -1};
+  const std::uint32_t voxels = bit_span(cells_.first.i, cells_.last.i + 1);
+  for (int k = cells_.first.k; k <= cells_.last.k; ++k) {
+    for (int j = cells_.first.j; j <= cells_.last.j; ++j) {
+      const std::uint32_t* row = &bone_[static_cast<std::size_t>(j + k * kBlock)];
+      const std::uint32_t any = (row[0] | row[1] | row[kBlock] | row[kBlock + 1]) & voxels;
+      const std::uint32_t all = row[0] & row[1] & row[kBlock] & row[kBlock + 1] & voxels;
+      if (any == 0 || all == voxels) continue;
+      rows = {std::min(rows.first_j, j), std::max(rows.last_j, j + 1), std::min(rows.first_k, k), k + 1};
+    }
+  }
+  if (rows.last_j < 0) return std::nullopt;
+  return rows;
+}
+
+// Fills the sums that vertices in these rows need.
+void BrickMesher::smooth(const RowBox& rows) {
+  const RowBox around{rows.first_j - 1, rows.last_j + 1, rows.first_k - 1, rows.last_k + 1};
+  smooth_rows<kBlock>(
+      block_.data(), around, [](const auto& row) -> const auto& { return row; }, smooth_.data());
+  const auto excess = [&](const auto& row) { return (row - threshold_).cwiseMax(0.0f); };
+  smooth_rows<kBlock>(block_.data(), around, excess, excess_.data());
+  smooth_rows<kBlock>(
+      block_.data(), around, [&](const auto& row) { return excess(row).square(); }, excess2_.data());
 }
 
 void BrickMesher::add_vertices() {
@@ -161,7 +192,8 @@ void BrickMesher::add_vertex(int i, int j, int k) {
   voxel[axis] += static_cast<double>(share);
   Vec3f in_block = Eigen::Vector3i(i, j, k).cast<float>();
   in_block[axis] += share;
-  const Vec3f slope = slope_between(at, at + kAlong, share);
+  const float* smooth = smooth_.data() + place;
+  const Vec3f slope = slope_between(smooth, smooth + kAlong, share);
   const Vec3f position_mm = position_at(voxel), normal = normal_against(slope, axis, bone_first);
   const float bone = bone_first ? at[0] : at[kAlong];
   mesh_.vertices.push_back({{position_mm[0], position_mm[1], position_mm[2]},
@@ -169,35 +201,42 @@ void BrickMesher::add_vertex(int i, int j, int k) {
                             density_below(in_block, slope, bone)});
 }
 
-// Returns the density below a point of the block, half a voxel and a voxel along the slope; `flat` if there
-// is none.
+// Returns the density of the bone around the place a voxel down the slope from a point of the block: the
+// mean, weighted by how much denser than the threshold each voxel is, so that what is air, or half air,
+// counts little; `flat` if there is no slope.
 float BrickMesher::density_below(const Vec3f& point, const Vec3f& slope, float flat) const {
   const float steepness = std::sqrt(squared(slope));
   if (!(steepness > 0 && std::isfinite(steepness))) return flat;
-  const Vec3f below = 1 / steepness * slope;
-  float greatest = threshold_;
-  // A whole voxel would lead into the layer after the last that was loaded.
-  for (const float voxels : {0.5f, 0.999f}) {
-    const Vec3f here = point + voxels * below;
-    const Eigen::Vector3i cell = here.cast<int>();
-    const Vec3f fraction = here - cell.cast<float>();
-    const float* corner = block_.data() + cell[0] + cell[1] * kStride[1] + cell[2] * kStride[2];
+  // A whole voxel would lead into the layer after the last that was smoothed.
+  const Vec3f here = point + 0.999f / steepness * slope;
+  const Eigen::Vector3i cell = here.cast<int>();
+  const Vec3f fraction = here - cell.cast<float>();
+  const int corner = cell[0] + cell[1] * kStride[1] + cell[2] * kStride[2];
+  const auto at_place = [&](const float* first) {
     const auto along = [](float a, float b, float share) { return a + share * (b - a); };
     const auto row = [&](const float* at) { return along(at[0], at[1], fraction[0]); };
     const auto layer = [&](const float* at) { return along(row(at), row(at + kStride[1]), fraction[1]); };
-    greatest = std::max(greatest, along(layer(corner), layer(corner + kStride[2]), fraction[2]));
-  }
-  return greatest;
+    return along(layer(first + corner), layer(first + corner + kStride[2]), fraction[2]);
+  };
+  const float mean = at_place(excess2_.data()) / at_place(excess_.data());
+  return std::isfinite(mean) ? threshold_ + mean : flat;
 }
 
-// Central differences at two voxels, in density per two voxels, interpolated.
+// Returns the smoothed slope between two voxels next to each other, in no unit. Differences across two
+// voxels, averaged over those beside with weights 1, 4, 1: what turns least with the grid.
 BrickMesher::Vec3f BrickMesher::slope_between(const float* from, const float* to, float share) {
-  const auto differences = [](const float* at) -> Vec3f {
-    return {at[kStride[0]] - at[-kStride[0]], at[kStride[1]] - at[-kStride[1]],
-            at[kStride[2]] - at[-kStride[2]]};
-  };
-  const Vec3f here = differences(from);
-  return here + share * (differences(to) - here);
+  const auto at = [&](int offset) { return from[offset] + share * (to[offset] - from[offset]); };
+  Vec3f slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int along = kStride[static_cast<std::size_t>(axis)];
+    const auto difference = [&](int offset) { return at(offset + along) - at(offset - along); };
+    slope[axis] = 2 * difference(0);
+    for (int other = 0; other < 3; ++other) {
+      const int across = kStride[static_cast<std::size_t>(other)];
+      if (other != axis) slope[axis] += difference(across) + difference(-across);
+    }
+  }
+  return slope;
 }
 
 BrickMesher::Vec3f BrickMesher::position_at(const Vec3& voxel) const {

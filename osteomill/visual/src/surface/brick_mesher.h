@@ -3,11 +3,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "osteomill/visual/brick_mesh.h"
 #include "osteomill/visual/surface_bricks.h"
 #include "osteomill/visual/surface_mesh.h"
+
+#include "surface/smoothed_rows.h"
 
 namespace osteomill {
 
@@ -28,9 +31,10 @@ class BrickMesher {
  private:
   using Vec3f = Eigen::Vector3f;
 
-  // Voxels along each edge of the block: those of the cells, and what is needed around for gradients.
-  static constexpr int kLow = 2;  // the block's index of the brick's first voxel
-  static constexpr int kBlock = SurfaceBricks::kBrickCells + 4;
+  // Voxels along each edge of the block: those of the cells, and what is needed around for smoothed gradients
+  // and densities; a multiple of 4.
+  static constexpr int kLow = 4;  // the block's index of the brick's first voxel
+  static constexpr int kBlock = SurfaceBricks::kBrickCells + 8;
   static constexpr std::array<int, 3> kStride{1, kBlock, kBlock* kBlock};
   static constexpr int kBlockVoxels = kBlock * kBlock * kBlock;
   static_assert(kBlock <= 32, "a row of the block is a word of bits");
@@ -39,6 +43,8 @@ class BrickMesher {
   void load(std::size_t brick);
   void load_row(const VoxelIndex& first, float* row) const;
   void find_bone();
+  std::optional<RowBox> rows_with_surface() const;
+  void smooth(const RowBox& rows);
   void add_vertices();
   template <int axis>
   void add_row_vertices(int j, int k, std::uint32_t crossed);
@@ -64,6 +70,11 @@ class BrickMesher {
   VoxelIndex corner_;  // the voxel at the block's first index
   VoxelBox cells_;     // in the block's indices
   std::array<float, kBlockVoxels> block_;
+  // Sums over what is around each voxel (smooth_rows): of the densities, of what they exceed the threshold
+  // by, and of its square.
+  std::array<float, kBlockVoxels> smooth_;
+  std::array<float, kBlockVoxels> excess_;
+  std::array<float, kBlockVoxels> excess2_;
   std::array<std::uint32_t, kBlock * kBlock> bone_;  // a bit a voxel, a word a row
   std::array<std::uint16_t, 3 * kBlockVoxels> edge_vertex_;
   BrickMesh mesh_;

@@ -21,9 +21,9 @@ VoxelBox SurfaceBricks::cells(std::size_t brick) const {
 
 VoxelBox SurfaceBricks::bricks_depending_on(const VoxelBox& voxels) const {
   if (voxels.empty()) return {};
-  // A vertex between voxels n and n + 1 depends on n - 1 to n + 2: its normal and its density do.
-  const auto first_brick = [](int v) { return std::max(v - 2, 0) / kBrickCells; };
-  const auto last_brick = [](int v, int count) { return std::min((v + 1) / kBrickCells, count - 1); };
+  // A vertex between voxels n and n + 1 depends on n - 2 to n + 3: its normal and its density do.
+  const auto first_brick = [](int v) { return std::max(v - 3, 0) / kBrickCells; };
+  const auto last_brick = [](int v, int count) { return std::min((v + 2) / kBrickCells, count - 1); };
   return {{first_brick(voxels.first.i), first_brick(voxels.first.j), first_brick(voxels.first.k)},
           {last_brick(voxels.last.i, dims_[0]), last_brick(voxels.last.j, dims_[1]),
            last_brick(voxels.last.k, dims_[2])}};

@@ -11,7 +11,6 @@
 #include "osteomill/visual/clip_face.h"
 #include "osteomill/visual/offscreen_context.h"
 #include "osteomill/visual/surface_mesh.h"
-#include "osteomill/volume/sampling.h"
 
 #include "view/bone_layer.h"
 #include "view/cavity_pass.h"
@@ -68,26 +67,6 @@ ViewScene scene_with(const Volume& bone, double reference_density, const Camera&
   return scene;
 }
 
-// A still picture has time for normals that are averaged over a voxel to all sides, so that voxels do not
-// show as terraces in glancing light, and for colours from deeper below the surface, where the scanner's blur
-// has ended.
-void refine_vertex(const Volume& bone, MeshVertex& vertex) {
-  const Vec3 point_W = vec3_of(vertex.position_mm);
-  const GridGeometry& geometry = bone.geometry();
-  Vec3 slope = density_gradient(bone.grid(), point_W);
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 voxel = geometry.spacing_mm[axis] * geometry.direction.col(axis);
-    slope += density_gradient(bone.grid(), point_W + voxel) + density_gradient(bone.grid(), point_W - voxel);
-  }
-  if (!(slope.norm() > 1e-9)) return;
-  const Vec3 normal_W = -slope.normalized();
-  put(normal_W, vertex.normal);
-  for (const double voxels : {1.25, 2.5}) {
-    const Vec3 below_W = point_W - voxels * geometry.spacing_mm.minCoeff() * normal_W;
-    vertex.density = std::max(vertex.density, static_cast<float>(density_at(bone.grid(), below_W)));
-  }
-}
-
 // Draws the bone, which is never in memory as a whole.
 class BonePainter {
  public:
@@ -106,20 +85,18 @@ class BonePainter {
     glClearColor(1, 1, 1, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     // Once for the depths, which tell what is hidden and what is sunk, and once more to be seen.
-    const std::vector<std::size_t> visible = draw(layer_.bricks_in_view(scene_, projection_), Pass::depths);
+    const std::vector<std::size_t> visible = draw(layer_.bricks_in_view(scene_, projection_));
     cavities_.blur(target_.depths(), projection_.near_mm, projection_.far_mm);
     target_.bind();
-    draw(visible, Pass::image);
+    draw(visible);
     Image image = target_.read();
     if (glGetError() != GL_NO_ERROR) throw std::runtime_error("OpenGL cannot draw the bone");
     return image;
   }
 
  private:
-  enum class Pass : unsigned char { depths, image };
-
   // Draws these bricks in their order, leaving out those that are hidden by then; returns those that it drew.
-  std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks, Pass pass) {
+  std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks) {
     const DensityView view(bone_);
     std::vector<std::size_t> drawn;
     std::size_t done = 0;
@@ -134,9 +111,6 @@ class BonePainter {
       if (depths.is_hidden(layer_.bounds(brick))) continue;
       BrickMesh mesh = mesh_brick(view, brick);
       if (mesh.empty()) continue;
-      if (pass == Pass::image) {
-        for (MeshVertex& vertex : mesh.vertices) refine_vertex(bone_, vertex);
-      }
       drawn.push_back(brick);
       triangles += mesh.triangle_count();
       layer_.set_brick(brick, full_detail(std::move(mesh)));

@@ -13,10 +13,11 @@ namespace osteomill {
 struct MeshVertex {
   /// The position in W.
   std::array<float, 3> position_mm;
-  /// The normal in W, of unit length, out of the bone.
+  /// The normal in W, of unit length, out of the bone: against the density's gradient, averaged over about a
+  /// voxel to all sides, so that voxels do not show as terraces.
   std::array<float, 3> normal;
-  /// The density of the bone just under the surface, to colour it by: the greater of those half a voxel and a
-  /// voxel below it, where fewer of a scan's voxels are half air.
+  /// The density of the bone just under the surface, to colour it by: a mean over about a voxel around the
+  /// place a voxel below it, in which denser voxels count more, because less dense ones may be half air.
   float density;
   friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
 };
