@@ -66,21 +66,6 @@ bool same_view(const ViewScene& a, const ViewScene& b) {
          a.show_labels == b.show_labels && a.cuts == b.cuts;
 }
 
-// A box, in pixels from the lower left, outside of which no part of the sphere is drawn; the whole picture
-// if the sphere reaches the eye.
-Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& projection, const Sphere& sphere) {
-  const double front_mm = depth_of(scene.camera, sphere.centre_W) - sphere.radius_mm;
-  const Eigen::Vector2d all(projection.size.width, projection.size.height);
-  if (front_mm < projection.near_mm) return {Eigen::Vector2d::Zero(), all};
-  Eigen::Vector2d middle = pixel_of(scene.camera, projection.size, sphere.centre_W);
-  middle.y() = projection.size.height - middle.y();
-  // Away from the picture's middle perspective draws a ball out in length.
-  const double aside = (middle - 0.5 * all).norm() * mm_per_pixel(scene.camera, projection.size, 1.0);
-  const double reach_px =
-      std::hypot(1.0, aside) * sphere.radius_mm / mm_per_pixel(scene.camera, projection.size, front_mm);
-  return {middle.array() - reach_px, middle.array() + reach_px};
-}
-
 void clear_depths(const FrameTarget& target) {
   target.bind();
   glDepthMask(GL_TRUE);

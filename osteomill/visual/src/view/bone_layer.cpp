@@ -75,7 +75,7 @@ void main() {
   float sunk = around.g > 0.05 ? (depth_mm - around.r / around.g) * cavity_scale / depth_mm : 0.0;
   // Towards its outline everything lies deeper than the middle of the picture's bone: that is no cavity.
   sunk *= smoothstep(0.3, 0.8, n.z);
-  float open = 1.0 - 0.62 * smoothstep(0.0, 1.0, sunk) + 0.06 * smoothstep(0.0, 1.0, -sunk);
+  float open = 1.0 - 0.5 * smoothstep(0.0, 1.0, sunk) + 0.06 * smoothstep(0.0, 1.0, -sunk);
   float key = max(dot(n, kTowardsKey), 0.0);
   float fill = max(dot(n, kTowardsFill), 0.0);
   vec3 ambient = mix(light_from_below, vec3(0.33, 0.35, 0.39), 0.5 + 0.5 * n.y);
@@ -192,6 +192,19 @@ Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells) {
   const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
   return {geometry.world_from_voxel(Vec3(0.5 * (first + last))),
           0.5 * geometry.spacing_mm.cwiseProduct(last - first).norm()};
+}
+
+Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& projection, const Sphere& sphere) {
+  const double front_mm = depth_of(scene.camera, sphere.centre_W) - sphere.radius_mm;
+  const Eigen::Vector2d all(projection.size.width, projection.size.height);
+  if (front_mm < projection.near_mm) return {Eigen::Vector2d::Zero(), all};
+  Eigen::Vector2d middle = pixel_of(scene.camera, projection.size, sphere.centre_W);
+  middle.y() = projection.size.height - middle.y();
+  // Away from the picture's middle perspective draws a ball out in length.
+  const double aside = (middle - 0.5 * all).norm() * mm_per_pixel(scene.camera, projection.size, 1.0);
+  const double reach_px =
+      std::hypot(1.0, aside) * sphere.radius_mm / mm_per_pixel(scene.camera, projection.size, front_mm);
+  return {middle.array() - reach_px, middle.array() + reach_px};
 }
 
 DepthTiles::DepthTiles(const FrameTarget& target, const Projection& projection, const Camera& camera)

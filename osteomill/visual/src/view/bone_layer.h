@@ -34,6 +34,10 @@ void set_projection(GLuint program, const Projection& projection);
 /// A sphere around a box of cells, each named by its least voxel.
 Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells);
 
+/// Returns a box, in pixels from the lower left, outside of which no part of the sphere is drawn; the whole
+/// picture if the sphere reaches the eye.
+Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& projection, const Sphere& sphere);
+
 /// The greatest depth that was drawn so far in each small square of the picture: what lies behind it is
 /// hidden and need not be drawn.
 class DepthTiles {

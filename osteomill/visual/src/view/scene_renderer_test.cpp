@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +16,7 @@
 #include "tests/shapes.h"
 #include "tests/support/mesh_checks.h"
 #include "view/bone_ground.h"
+#include "view/tool_passes.h"
 
 namespace osteomill {
 namespace {
@@ -133,6 +136,117 @@ TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
   const int beside = static_cast<int>(burr.x() + 1.3 * radius_px);
   EXPECT_EQ(std::vector<int>(with.pixel(beside, y), with.pixel(beside, y) + 3),
             std::vector<int>(without.pixel(beside, y), without.pixel(beside, y) + 3));
+}
+
+// A shadow of the tool, as far as it differs from none: with the tool over a level plane of bone, each pixel
+// beside the tool is darkened as the plane's point that geometry finds behind it asks for.
+TEST(ContactShadow, DarkensALevelPlaneAsTheToolHidesTheSky) {
+  const OffscreenContext context;
+  const Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.5),
+                                                    testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+  const SurfaceMesh mesh = mesh_surface(DensityView(bone));
+  SceneRenderer renderer(mesh.layout, bone.geometry());
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) renderer.set_brick(n, full_detail(mesh.bricks[n]));
+  ViewScene scene;
+  scene.bounds = {Vec3::Zero(), 14};
+  scene.camera = camera_on({Vec3::Zero(), 6}, {0.2, 1, -1.3}, Vec3::UnitZ());
+  scene.isovalue = bone.isovalue();
+  scene.reference_density = 900;
+  const auto picture = [&](const std::optional<Pose>& X_WT) {
+    scene.X_WT = X_WT;
+    do renderer.draw(scene, kSize);
+    while (!renderer.is_settled());
+    return renderer.picture();
+  };
+  const Image without = picture(std::nullopt);
+  const double r = scene.tool.burr_radius_mm;
+  const Pose touching{{0.3, -0.2, r + 0.1}, Quat::Identity()};
+  const Image with = picture(touching);
+  const auto brightness = [](const Image& image, int x, int y) {
+    return double(image.pixel(x, y)[0] + image.pixel(x, y)[1] + image.pixel(x, y)[2]);
+  };
+  // The light that the upright tool leaves a point of the plane, as ContactShadow documents it.
+  const auto light = [&](const Vec3& p) {
+    const auto part = [](double distance, double height, double radius, double power) {
+      const double radii = distance / radius;
+      const double fade = std::clamp((2.5 - radii) / 1.5, 0.0, 1.0);
+      const double hidden = height / distance * std::min(std::pow(radii, -power), 1.0) * fade * fade;
+      return 1 - ContactShadow::kDarkest * hidden;
+    };
+    // Nearest to the plane the shaft's axis has its lower end, the burr's centre.
+    const double height = touching.position_mm.z(), distance = (touching.position_mm - p).norm();
+    return part(distance, height, r, 2) * part(distance, height, scene.tool.shaft_radius_mm, 1);
+  };
+  int dark = 0, unchanged = 0;
+  double worst = 0;
+  for (int y = 0; y < kSize.height; y += 3) {
+    for (int x = 0; x < kSize.width; x += 3) {
+      const Vec3 ray = ray_through(scene.camera, kSize, x + 0.5, y + 0.5);
+      const Vec3 eye = scene.camera.eye_W();
+      const Vec3 p = eye - eye.z() / ray.z() * ray;
+      if (p.head<2>().cwiseAbs().maxCoeff() > 12) continue;
+      // Not behind the tool, with a margin for its outline.
+      bool free = true;
+      for (double t = 0; t < 1; t += 0.002) {
+        const Vec3 on_sight = eye + t * (p - eye);
+        free = free && tool_distance(scene.tool, touching.inverse() * on_sight).distance_mm > 0.1;
+      }
+      if (!free) continue;
+      const double expected = light(p);
+      worst = std::max(worst, std::abs(brightness(with, x, y) / brightness(without, x, y) - expected));
+      dark += expected < 0.75 ? 1 : 0;
+      unchanged += expected == 1.0 ? 1 : 0;
+    }
+  }
+  EXPECT_LT(worst, 0.03);
+  EXPECT_GT(dark, 10);
+  EXPECT_GT(unchanged, 1000);
+}
+
+TEST_F(SceneRendererTest, AToolFarAwayDarkensNoBone) {
+  const Image without = picture();
+  scene_.X_WT = Pose{{0, -9, 12}, Quat::Identity()};
+  const Image with = picture();
+  // Light bone below the tool's picture, which stands in the upper half.
+  std::size_t others = 0, bone = 0;
+  for (std::size_t n = with.rgb.size() / 2; n < with.rgb.size(); ++n) {
+    bone += without.rgb[n] > 75 ? 1 : 0;
+    others += with.rgb[n] != without.rgb[n] ? 1 : 0;
+  }
+  EXPECT_GT(bone, 10'000u);
+  EXPECT_EQ(others, 0u);
+}
+
+TEST_F(SceneRendererTest, ABurrBehindBoneIsSeenThroughItOnlyIfAsked) {
+  const Vec3 sight = (scene_.bounds.centre_W - scene_.camera.eye_W()).normalized();
+  const Image without = picture();
+  // Behind the ball, the shaft away from the eye.
+  scene_.X_WT = Pose{7.7 * sight, smallest_rotation(Vec3::UnitZ(), sight)};
+  const Image hidden = picture();
+  EXPECT_EQ(hidden.rgb, without.rgb);
+  scene_.see_through = true;
+  const Image through = picture();
+  const Eigen::Vector2d burr = pixel_of(scene_.camera, kSize, scene_.X_WT->position_mm);
+  const double radius_px =
+      scene_.tool.burr_radius_mm /
+      mm_per_pixel(scene_.camera, kSize, depth_of(scene_.camera, scene_.X_WT->position_mm));
+  int inside = 0, outside = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const double away_px = (Eigen::Vector2d(x + 0.5, y + 0.5) - burr).norm();
+      int change = 0;
+      for (int c = 0; c < 3; ++c)
+        change = std::max(change, std::abs(int(through.pixel(x, y)[c]) - int(without.pixel(x, y)[c])));
+      if (away_px < 0.9 * radius_px) inside += change > 4 ? 1 : 0;
+      if (away_px > 1.1 * radius_px) outside += change > 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(inside, 0.9 * std::numbers::pi * 0.81 * radius_px * radius_px);
+  EXPECT_EQ(outside, 0);
+  // The burr is golden: its blue is less than bone's, in proportion to its red.
+  const unsigned char* at_burr = through.pixel(static_cast<int>(burr.x()), static_cast<int>(burr.y()));
+  const unsigned char* bone = without.pixel(static_cast<int>(burr.x()), static_cast<int>(burr.y()));
+  EXPECT_LT(double(at_burr[2]) / at_burr[0], double(bone[2]) / bone[0]);
 }
 
 // The bone is not drawn again in every picture, but milled bone is seen two pictures later at the latest.

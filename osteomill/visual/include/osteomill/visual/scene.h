@@ -32,6 +32,8 @@ struct ViewScene {
   /// given.
   std::optional<Pose> X_WT;
   std::optional<Pose> X_WD;
+  /// Bone between the eye and the simulated tool is translucent.
+  bool see_through = false;
   /// The wrench as it acts on the hand, drawn as arrows from the simulated burr.
   Wrench wrench;
   /// The intersection point (HapticStep::intersection_W), if the algorithm has one.
