@@ -370,6 +370,7 @@ void draw_view(ViewState& view, const FilesPanel& files, const Vec3& tool_W, con
   ui::checkbox("ghost", kGhostHint, &view.ghost);
   ImGui::SameLine();
   ui::checkbox("arrows", kArrowsHint, &view.arrows);
+  ui::checkbox("see through", kSeeThroughHint, &view.see_through);
   draw_seeing(view, files);
 }
 

@@ -23,6 +23,7 @@ constexpr const char* kControls[][2] = {
     {"Turn it", "Shift and mouse, or Shift and arrow keys"},
     {"Mill", "left button while the tool is in hand; Space switches the spindle on and off"},
     {"Move a cut, change its greys", "Ctrl and left drag on it, Ctrl and right drag on it"},
+    {"See the burr through bone in front of it", "X"},
     {"Follow the burr, loupe, measure", "V, L, R and click two points of bone"},
     {"Choose a piece of bone to keep or remove", "right click on it"},
     {"Pause; undo the last cut, redo it", "P; Ctrl+Z, Ctrl+Y"},

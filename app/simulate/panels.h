@@ -20,6 +20,8 @@ inline constexpr const char* kWholeHint = "Shows all of the bone from the same s
 inline constexpr const char* kStartPageHint =
     "Closes this bone and shows the exercises and scans to begin with";
 inline constexpr const char* kGhostHint = "Shows in blue where your hand is if bone holds the tool back";
+inline constexpr const char* kSeeThroughHint =
+    "Shows the tool through bone that lies between you and the burr (key X)";
 inline constexpr const char* kArrowsHint =
     "Shows the force on your hand as a green arrow and the torque as an amber one";
 

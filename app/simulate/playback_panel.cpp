@@ -206,6 +206,8 @@ void draw_playback(ViewState& view, Playback& playback, const PixelSize& size) {
   ui::checkbox("ghost", kGhostHint, &view.ghost);
   ImGui::SameLine();
   ui::checkbox("arrows", kArrowsHint, &view.arrows);
+  ImGui::SameLine();
+  ui::checkbox("see through", kSeeThroughHint, &view.see_through);
   draw_facts(playback);
   ImGui::End();
   const float width_px = static_cast<float>(size.width) - ui::px(16);

@@ -152,6 +152,10 @@ ToolInput keys_for_tool() {
   return input;
 }
 
+void take_view_keys(ViewState& view) {
+  if (!ImGui::GetIO().WantTextInput && ui::is_key_pressed(GLFW_KEY_X)) view.see_through = !view.see_through;
+}
+
 void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput) return;
@@ -274,6 +278,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     const bool clutched = !io.WantTextInput && is_key_down(GLFW_KEY_C);
     hardware->set_clutched(clutched || view.calibration.step != ViewState::Calibration::Step::none);
   }
+  take_view_keys(view);
   take_keys(view, milling, simulation.tool_source.is_pointer());
   const bool by_key = !io.WantTextInput && ui::is_key_pressed(GLFW_KEY_B);
   if ((std::exchange(view.bring_requested, false) || by_key) && !milling.is_placing()) {
@@ -285,6 +290,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
 }
 
 void take_view_input(ViewState& view, const PixelSize& size) {
+  take_view_keys(view);
   const bool on_picture = !ImGui::GetIO().WantCaptureMouse;
   view.holding_tool = view.dragging_tool = false;
   if (ImGui::IsMouseClicked(0)) view.dragging_view = on_picture;

@@ -83,6 +83,7 @@ const std::vector<Field<P>>& kept_numbers() {
                  &P::theme),
         on_or_off("ghost", "Show where the hand is", &P::ghost),
         on_or_off("arrows", "Show force and torque as arrows", &P::arrows),
+        on_or_off("see-through", "Show the burr through bone in front of it", &P::see_through),
         on_or_off("label-colours", "Colour the bone by its labels", &P::labels),
         on_or_off("help-seen", "The page that explains the controls was shown", &P::help_seen),
         on_or_off("sound", "Let the spindle be heard", &P::sound),

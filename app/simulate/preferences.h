@@ -28,6 +28,7 @@ struct Preferences {
   Theme theme = Theme::dark;
   bool ghost = true;
   bool arrows = true;
+  bool see_through = false;
   bool labels = true;
   bool sound = true;
   bool follow_burr = false;

@@ -69,6 +69,7 @@ static ViewScene scene_of(const ViewState& view, const TickRecord& record, const
   const double apart_rad = record.X_WD.orientation.angularDistance(record.X_WT.orientation);
   if (view.ghost && (apart_mm > kMinMove_mm || apart_rad > kMinTurn_rad)) scene.X_WD = record.X_WD;
   if (view.arrows) scene.wrench = record.wrench;
+  scene.see_through = view.see_through;
   scene.reference_density = settings.densities.reference;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     if (view.cuts[n].on) scene.cuts[n] = plane_of(view.cuts[n]);

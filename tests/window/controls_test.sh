@@ -156,6 +156,16 @@ is space spindle true; is space-again spindle false
 is p paused true; is p-again paused false
 same start not-full size; is full size "1400 x 900"
 
+# --- A burr behind the ball is seen through it, by the key and by the box --------------------------------------------
+window ball.nrrd --no-help <<'END'
+wait 0.2 ;; click S ;; glide 700 450 0 ;; key b ;; settle ;; click I ;; wait 1 ;; state behind ;; colour behind
+key x ;; wait 0.3 ;; state through ;; colour through ;; screenshot controls-8-through.png
+key x ;; wait 0.3 ;; state behind-again ;; colour behind-again
+click see through ;; wait 0.3 ;; state through-again ;; colour through-again ;; click see through ;; wait 0.1 ;; close
+END
+is behind see_through false; is through see_through true; is behind-again see_through false; is through-again see_through true
+changed behind through colour; same behind behind-again colour; same through through-again colour
+
 # --- Milling, what is drawn and heard, algorithm, tool, scan's isovalue ----------------------------------------------
 window ball.nrrd --no-help <<'END'
 wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 36 0.6 ;; wait 0.5 ;; click Laboratory ;; wait 0.4 ;; state touching

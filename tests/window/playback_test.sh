@@ -29,7 +29,7 @@ say jumped ;; await jumped ;; settle ;; wait 0.3 ;; state jumped ;; screenshot j
 say stepped ;; await stepped ;; state stepped ;; click < tick ;; state back
 say turned ;; await turned ;; state turned ;; screenshot turned.png
 click recorded camera ;; wait 0.2 ;; state followed
-click 16x ;; click Play ;; wait 3 ;; state fast ;; click Whole ;; click ghost ;; click ghost ;; click arrows ;; click arrows
+click 16x ;; click Play ;; wait 3 ;; state fast ;; click Whole ;; click ghost ;; click ghost ;; click arrows ;; click arrows ;; click see through ;; click see through
 click 0.1x ;; click 4x ;; click 1x
 say chosen ;; await chosen ;; settle ;; state chosen
 say again ;; await again ;; settle ;; wait 1 ;; state again ;; screenshot again.png ;; click Finish ;; settle ;; wait 0.3 ;; state finished ;; close

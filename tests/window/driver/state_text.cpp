@@ -157,6 +157,7 @@ void add_scene(Lines& lines, const ViewState& view, const ViewScene& scene, cons
   lines.add("corners_seen", seen_whole);
   lines.add("up_seen", text_of(seen(scene.camera, Vec3::UnitZ())));
   lines.add("tool_px", fmt::format("{:.0f} {:.0f}", tool.x(), tool.y()));
+  lines.add("see_through", scene.see_through);
   lines.add("tool_W", text_of(scene.X_WT->position_mm));
   lines.add("tool_seen", text_of(seen(scene.camera, scene.X_WT->position_mm)));
   lines.add("ghost", scene.X_WD.has_value());
@@ -267,6 +268,16 @@ std::string state_text(const std::string& name, const WindowContents& window) {
   lines.add("ui_scale", fmt::format("{:.2f}", static_cast<double>(ui::px(1))));
   lines.add("size", fmt::format("{} x {}", size.width, size.height));
   return lines.text();
+}
+
+std::string colour_text(const std::string& name, const WindowContents& window) {
+  const Image picture = window.window.picture();
+  const Vec3& burr_W = window.simulation->milling.state().record.X_WT.position_mm;
+  const Eigen::Vector2d burr = pixel_of(window.view.camera, window.window.size(), burr_W);
+  const int x = static_cast<int>(burr.x()), y = static_cast<int>(burr.y());
+  if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return name + ".colour=none\n";
+  const unsigned char* colour = picture.pixel(x, y);
+  return fmt::format("{}.colour={} {} {}\n", name, colour[0], colour[1], colour[2]);
 }
 
 }  // namespace osteomill::app

@@ -28,10 +28,10 @@ constexpr int kClickPictures = 6;
 constexpr int kDragPictures = 12;
 
 const std::map<std::string, std::size_t> kWords{
-    {"at-once", 0},    {"resize", 2},   {"wait", 1},  {"settle", 0}, {"glide", 3}, {"press", 1},
-    {"release", 1},    {"wheel", 2},    {"key", 1},   {"hold", 2},   {"click", 1}, {"drag", 2},
-    {"screenshot", 1}, {"say", 1},      {"type", 1},  {"open", 1},   {"quit", 0},  {"close", 0},
-    {"state", 1},      {"controls", 1}, {"await", 1}, {"display", 0}};
+    {"at-once", 0},    {"resize", 2},   {"wait", 1},  {"settle", 0},  {"glide", 3}, {"press", 1},
+    {"release", 1},    {"wheel", 2},    {"key", 1},   {"hold", 2},    {"click", 1}, {"drag", 2},
+    {"screenshot", 1}, {"say", 1},      {"type", 1},  {"open", 1},    {"quit", 0},  {"close", 0},
+    {"state", 1},      {"controls", 1}, {"await", 1}, {"display", 0}, {"colour", 1}};
 
 const std::map<std::string, int> kKeys{
     {"space", GLFW_KEY_SPACE},      {"enter", GLFW_KEY_ENTER},          {"escape", GLFW_KEY_ESCAPE},
@@ -41,7 +41,7 @@ const std::map<std::string, int> kKeys{
     {"f11", GLFW_KEY_F11},          {"backspace", GLFW_KEY_BACKSPACE}};
 
 // Actions that are done after the picture was drawn.
-const std::set<std::string> kDrawnFirst{"screenshot", "say", "state"};
+const std::set<std::string> kDrawnFirst{"screenshot", "say", "state", "colour"};
 
 int key_named(const std::string& name) {
   if (const auto found = kKeys.find(name); found != kKeys.end()) return found->second;
@@ -220,6 +220,8 @@ void UiScript::read(const WindowContents& contents) {
     fmt::print("{}\n", action.text);
   } else if (action.name == "state") {
     fmt::print("{}", state_text(action.text, contents));
+  } else if (action.name == "colour") {
+    fmt::print("{}", colour_text(action.text, contents));
   } else {
     say(action.text, contents);
   }

@@ -28,6 +28,7 @@ namespace osteomill::app {
 ///     screenshot FILE                 a PNG of the window
 ///     say TEXT                        on standard output, with the readings
 ///     state NAME                      on standard output, all that the controls bring about (state_text.h)
+///     colour NAME                     on standard output, the colour that is seen at the burr (state_text.h)
 ///     controls FILE                   once the window has closed, adds to it the labels of all controls that
 ///                                     were drawn ("drawn LABEL") and of those that acted ("worked LABEL")
 ///     await FILE                      until it is there; meanwhile pointer and keys are the display's own
