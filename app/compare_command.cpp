@@ -213,7 +213,10 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   std::vector<Recording> recordings;
   for (const fs::path& path : paths) recordings.push_back(read_recording(path));
   std::vector<Table> came_out;
-  const fs::path page = write_comparison_report(recordings, options.out, extras, &came_out);
+  const fs::path page =
+      write_comparison_report(recordings, options.out, extras, &came_out, [&](const Recording&) {
+        return std::shared_ptr<const Volume>(std::shared_ptr<const Volume>(), &bone.volume);
+      });
   print_tables(came_out);
   fmt::print("{}\n", page.string());
 }

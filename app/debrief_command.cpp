@@ -91,12 +91,19 @@ void write_attempt(const DebriefOptions& options, const LoadedExercise& loaded, 
                    std::vector<DebriefedAttempt> before) {
   const Attempt attempt = make_attempt(loaded.placed, loaded.bone.volume, recording);
   DebriefedAttempt own = debriefed(attempt, recording);
-  if (options.anonymous) leave_names_out(own, "");
-  const DebriefPeers peers{std::move(before), expert_attempts(loaded.placed, loaded.bone.volume)};
+  DebriefPeers peers = peers_of(attempt, recording);
+  peers.before = std::move(before);
+  if (options.anonymous) {
+    leave_names_out(own, "");
+    if (peers.first) leave_names_out(peers.first->measured, "");
+    if (!peers.no_first.empty()) peers.no_first = "it cannot be read or measured.";
+  }
   write_debriefing(options.out, attempt, recording, own, peers);
   fmt::print("{}\n", loaded.placed.exercise.title);
   if (const auto from = branch_point(recording.description))
-    fmt::print("goes on from {} at {:.3f} s, after {} ticks\n", from->recording, from->time_s, from->ticks);
+    fmt::print("goes on from {} at {:.3f} s, after {} ticks\n",
+               options.anonymous ? "another recording" : from->recording, from->time_s, from->ticks);
+  if (!peers.no_first.empty()) warn("without the recording that it goes on from: " + peers.no_first);
   for (const MeasuredValue& row : own.rows)
     if (!row.limit.empty()) fmt::print("{}\n", row_text(row));
 }

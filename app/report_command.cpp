@@ -16,6 +16,7 @@
 
 #include "app/commands.h"
 #include "app/progress.h"
+#include "app/scan_options.h"
 
 namespace osteomill::app {
 
@@ -42,10 +43,10 @@ void write_into(const std::filesystem::path& folder, const ReportOptions& option
   end_progress();
   if (are_of_comparison(recordings)) {
     std::vector<Table> came_out;
-    write_comparison_report(recordings, folder, std::nullopt, &came_out);
+    write_comparison_report(recordings, folder, std::nullopt, &came_out, recorded_scan);
     print_tables(came_out);
   } else {
-    write_report(recordings, folder);
+    write_report(recordings, folder, recorded_scan);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/parse_number.h"
 #include "osteomill/base/work_progress.h"
+#include "osteomill/recording/replay_recording.h"
 #include "osteomill/volume/builtin_phantoms.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/label_scan.h"
@@ -302,6 +303,12 @@ LoadedBone read_bone(const ScanOptions& options) {
   bone.set_labels(std::move(labels.map));
   return {std::move(bone), std::move(name), std::move(isovalue.how), std::move(warnings),
           in_hounsfield_units};
+}
+
+std::shared_ptr<const Volume> recorded_scan(const Recording& recording) {
+  LoadedBone bone = read_bone(scan_of(recording.description));
+  require_made_with(recording, bone.volume);
+  return std::make_shared<const Volume>(std::move(bone.volume));
 }
 
 LoadedBone load_bone(const ScanOptions& options) {

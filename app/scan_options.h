@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +10,7 @@
 #include "osteomill/base/field.h"
 #include "osteomill/ct/read_labels.h"
 #include "osteomill/ct/read_scan.h"
-#include "osteomill/recording/run_description.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/volume/bone_pieces.h"
 #include "osteomill/volume/isovalue.h"
 #include "osteomill/volume/volume.h"
@@ -119,6 +120,10 @@ ScanOptions scan_of(const RunDescription& run, ScanOptions given = {});
 
 /// Reads the bone with its labels. Throws InputError if the scan or the isovalue is at fault.
 LoadedBone read_bone(const ScanOptions& options);
+
+/// Reads the scan of a recording again, for reports. Throws InputError as `read_bone` and
+/// `require_made_with`.
+std::shared_ptr<const Volume> recorded_scan(const Recording& recording);
 
 /// Reads the bone as `read_bone` does and prints its warnings to standard error, one line each.
 LoadedBone load_bone(const ScanOptions& options);

@@ -100,7 +100,7 @@ void ExerciseWork::measure(const std::filesystem::path& recording, const std::fi
     const Recording recorded = read_recording(recording);
     const Attempt attempt = make_attempt(*placed, *scan, recorded);
     const DebriefedAttempt own = debriefed(attempt, recorded);
-    write_debriefing(folder, attempt, recorded, own, {.experts = expert_attempts(*placed, *scan)});
+    write_debriefing(folder, attempt, recorded, own, peers_of(attempt, recorded));
     return own.rows;
   });
 }

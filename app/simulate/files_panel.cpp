@@ -18,6 +18,7 @@
 #include "osteomill/visual/mesh_file.h"
 #include "osteomill/visual/surface_mesh.h"
 
+#include "app/scan_options.h"
 #include "app/simulate/theme.h"
 #include "app/simulate/widgets.h"
 
@@ -101,7 +102,7 @@ void FilesPanel::begin(const fs::path& path, Write write) {
 void FilesPanel::make_report() {
   is_written_ = false;
   work_ = std::async(std::launch::async, [recording = last_recording_, folder = name("report")] {
-    const fs::path page = write_report(split_by_setup(read_recording(recording)), folder);
+    const fs::path page = write_report(split_by_setup(read_recording(recording)), folder, recorded_scan);
     return WriteResult{"Report in " + page.string(), page, recording};
   });
 }

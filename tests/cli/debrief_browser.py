@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Turns, zooms, presses a mark and plays in a debriefing's page, by real events of mouse or finger in Chromium.
-    debrief_browser.py FOLDER WIDTH HEIGHT     as a phone with a finger if WIDTH is under 600
-    debrief_browser.py FOLDER none             in a browser without WebGL
+"""Turns, zooms, picks a bone, presses a mark and plays in a page with bone in 3D, as far as it has these, by real events of
+mouse or finger in Chromium.
+    debrief_browser.py PAGE WIDTH HEIGHT     as a phone with a finger if WIDTH is under 600
+    debrief_browser.py PAGE none             in a browser without WebGL
 Pictures go to $OSTEOMILL_PICTURES if it is set.
 """
 import math
@@ -19,7 +20,8 @@ from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select
 
-folder, size = os.path.abspath(sys.argv[1]), sys.argv[2:]
+page, size = os.path.abspath(sys.argv[1]), sys.argv[2:]
+name_of_page = os.path.basename(os.path.dirname(page))
 has_webgl = size[0] != "none"
 wide, high = map(int, size) if has_webgl else (1280, 800)
 is_phone = wide < 600
@@ -39,10 +41,10 @@ try:
     # Nothing may be loaded from anywhere.
     browser.execute_cdp_cmd("Network.enable", {})
     browser.execute_cdp_cmd("Network.emulateNetworkConditions", {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0})
-    browser.get("file://" + folder + "/debrief.html")
+    browser.get("file://" + page)
 
     def run(script, *arguments):
-        return browser.execute_script("const page = window.osteomillDebriefing; " + script, *arguments)
+        return browser.execute_script("const page = window.osteomillPage; " + script, *arguments)
 
     def show(selector):
         run("document.querySelector(arguments[0]).scrollIntoView({block: 'start'})", selector)
@@ -50,7 +52,7 @@ try:
 
     def picture(name):
         if os.environ.get("OSTEOMILL_PICTURES"):
-            browser.save_screenshot(f"{os.environ['OSTEOMILL_PICTURES']}/debrief-{'x'.join(size)}-{name}.png")
+            browser.save_screenshot(f"{os.environ['OSTEOMILL_PICTURES']}/{name_of_page}-{'x'.join(size)}-{name}.png")
 
     def eventually(is_true, what, seconds=40):
         """Waits, since a busy machine draws slowly."""
@@ -67,8 +69,9 @@ try:
         still = browser.find_element(By.CSS_SELECTOR, "#bone figure img")
         assert still.is_displayed() and run("return arguments[0].naturalWidth", still) > 300
         assert not browser.find_elements(By.CSS_SELECTOR, ".view canvas")
-        browser.find_elements(By.CSS_SELECTOR, ".marks button")[0].click()
-        assert browser.find_element(By.ID, "card").is_displayed()
+        for button in browser.find_elements(By.CSS_SELECTOR, ".marks button")[:1]:
+            button.click()
+            assert browser.find_element(By.ID, "card").is_displayed()
         picture("still")
         sys.exit(0)
 
@@ -96,7 +99,7 @@ try:
         return run("const c = page.camera; return c.position.toArray().concat(c.quaternion.toArray())")
 
     def away(place):
-        return math.dist(place[:3], run("return JSON.parse(document.getElementById('debrief-data').textContent).focus"))
+        return math.dist(place[:3], run("return JSON.parse(document.getElementById('page-data').textContent).focus"))
 
     # Turned: the same distance, another direction.
     before, pixels = camera(), canvas.screenshot_as_base64
@@ -116,8 +119,29 @@ try:
         time.sleep(0.3)
     eventually(lambda: away(camera()) < 0.9 * away(turned), "it does not zoom")
     picture("zoomed")
-    # Pressing a mark says what happened there, and goes to its time.
+    # Another bone is another picture.
+    for choice in browser.find_elements(By.ID, "choice"):
+        run("arguments[0].scrollIntoView({block: 'center'})", choice)
+        picked = Select(choice)
+        names = [option.text for option in picked.options]
+        assert len(set(names)) == len(names) > 1 and picked.first_selected_option.text == names[-1], names
+        seen = set()
+        for name in names:
+            before = canvas.screenshot_as_base64
+            picked.select_by_visible_text(name)
+            eventually(lambda: canvas.screenshot_as_base64 not in seen and (name == names[-1] or canvas.screenshot_as_base64 != before), f"{name} looks like another")
+            time.sleep(0.3)
+            seen.add(canvas.screenshot_as_base64)
+            show(".view")
+            picture("choice-" + str(names.index(name)))
+        show("#bone")
+    faults = [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
+    assert not faults, faults
     marks = run("return page.marks")
+    if marks is None:
+        print("turned, zoomed and picked at", "x".join(size))
+        sys.exit(0)
+    # Pressing a mark says what happened there, and goes to its time.
     assert marks
     chosen = len(marks) - 1
     for _ in range(8):

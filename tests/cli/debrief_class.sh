@@ -54,7 +54,7 @@ assert seen[0][3] < seen[1][3] < seen[2][3] and [s[4] for s in seen] == ["yes" i
 page = open("all/debrief.html").read()
 assert "Ann &lt;b&gt;" in page and "<b>" not in page and "alert(1)</script>" not in page and "<i>" not in page
 assert "Not among them: class/cut.h5" in page
-data = json.loads(re.search(r'id="debrief-data">(.*?)</script>', page, re.S).group(1))
+data = json.loads(re.search(r'id="page-data">(.*?)</script>', page, re.S).group(1))
 assert [len(curves) for curves in data["curves"]] == [2, 1]
 CHECK
 [ "$(debrief class --out none --anonymous)" = 1 ] || fault "exit code"

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds a debriefing's page against its table, and its marks against what the script did.
     debrief_page.py FOLDER [STRUCTURE TIME_S X Y Z]     the burr first reached the structure then, from there
+    debrief_page.py FOLDER "removed outside" TIME_S X Y Z     it first took bone outside the target then
 """
 import base64
 import csv
@@ -38,7 +39,7 @@ class Page(HTMLParser):
 
     def handle_data(self, text):
         if "script" in self.at:
-            self.data += text if self.where == "debrief-data" else ""
+            self.data += text if self.where == "page-data" else ""
             self.where = None
         elif self.where == "items" and ("td" in self.at or "th" in self.at):
             self.rows[-1][-1] += text
@@ -119,7 +120,8 @@ assert all(mark["command"].endswith(f" --at {mark['time']:.6f}") for mark in mar
 if len(sys.argv) > 2:
     structure, *numbers = sys.argv[2:]
     time_s, *place = map(float, numbers)
-    mark = next(mark for mark in marks if mark["title"].endswith(": contact with " + structure))
+    kind = "outside" if structure == "removed outside" else "contact"
+    mark = next(mark for mark in marks if mark["kind"] == kind and (kind == "outside" or mark["title"].endswith(": contact with " + structure)))
     away_mm = math.dist(mark["place"], place)
     print(f"  its mark lies {away_mm:.3f} mm and {1000 * (mark['time'] - time_s):.1f} ms beside the script's")
     assert away_mm <= 0.1 and abs(mark["time"] - time_s) <= 0.00101, (mark, time_s, place)

@@ -29,7 +29,7 @@ much() { work "$@"; holds "$outside >= 15" || fault "$1"; }
 # through CENTRE_Z TIME SPEED ...: the burr's centre comes down to CENTRE_Z, where its surface reaches the structure: the
 # hand's at TIME, and the simulated tool's later by what its coupling of 2 N/mm is stretched by the force of cutting.
 # The tool's own path is read from the log, without the exercise's distance.
-through() {
+down_to() {
   work "${@:4}"
   "$osteomill" replay "$4.h5" --out "$4.log" --quiet >/dev/null
   read -r tool_s aside stretched_s x y < <(awk -F, -v z="$1" -v speed="$3" 'NR == 1 { for (n = 1; n <= NF; ++n) c[$n] = n; next }
@@ -37,11 +37,21 @@ through() {
     $c["tool_z_mm"] <= z { dx = $c["tool_x_mm"] - x; dy = $c["tool_y_mm"] - y; dz = $c["tool_z_mm"] - z
       print $c["time_s"], sqrt(dx * dx + dy * dy + dz * dz), $c["force_z_N"] / 2 / speed, x, y; exit }' "$4.log")
   echo "  the tool at $tool_s s, $aside mm from the place; the hand at $2 s, and ${stretched_s} s for the coupling"
+}
+through() {
+  down_to "$@"
   holds "$contacts >= 1 && ($first - $tool_s) ^ 2 <= 0.00101 ^ 2 && $aside <= 0.1" || fault "$4"
   holds "$first - $2 - $stretched_s >= -0.001 && $first - $2 - $stretched_s <= 0.002" || fault "$4"
   [ -n "$(value "$4" no_go_force_max_N)" ] || fault "$4"
   structure=$(awk -F'[.,]' '$1 == "no_go_contacts" && $3 > 0 { print $2 }' "$4/debrief.csv" | tail -1)
   /usr/bin/python3 "$page" "$4" "$structure" "$tool_s" "$x" "$y" "$1" || fault "$4"
+}
+
+# The same where the burr takes its first bone outside the target: its surface reaches the middle of a voxel.
+outside() {
+  down_to "$@"
+  holds "$tool_s - $2 - $stretched_s >= -0.001 && $tool_s - $2 - $stretched_s <= 0.002 && $aside <= 0.1" || fault "$4"
+  /usr/bin/python3 "$page" "$4" "removed outside" "$tool_s" "$x" "$y" "$1" || fault "$4"
 }
 
 for exercise in "$exercises"/*.toml; do "$osteomill" exercise "$exercise" --check --quiet >/dev/null || fault "$exercise"; done
@@ -66,6 +76,8 @@ good trench layers "$plane" box -4 -2 -3 4 2 0 0.75 20
 little trench_little layers "$plane" box -4 -2 -1.6 4 2 0 0.75 20
 much trench_much layers "$plane" box -4.8 -2.6 -3.6 4.8 2.6 0 0.75 20
 through -4.25 2.41667 3 trench_through layers "$plane" plunge 0 0 3 -6 3
+# Beside the trench: the nearest voxels of bone have their middles at (0.125, 6.125, -0.125) and about the axis.
+outside 0.60386 0.0599 40 trench_beside layers "$plane" plunge 0 6 3 -1 40
 
 mastoid="--burr-radius 1.5 --shaft-radius 1 --removal-rate 400"
 good mastoid mastoid "$mastoid" box -5 -5 -11.25 5 8 0 1.5 40

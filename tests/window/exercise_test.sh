@@ -86,7 +86,7 @@ work() {
   [ "$(value stopped results)" -gt 40 ] && is stopped recording false
   is back results 0; is again recording true; is anew step_percent 0.0; is tooth scan "built-in tooth"
   [ "$(cat opened)" = "$(value results debrief)/debrief.html" ] && [ -s "$(cat opened)" ] || fail "the page was not opened"
-  grep -q 'id="debrief-data"' "$(cat opened)" || fail "the page is empty"
+  grep -q 'id="page-data"' "$(cat opened)" || fail "the page is empty"
   local debrief recording
   debrief=$(value results debrief)/debrief.csv
   recording=$(ls out/*-exercise.h5 | head -1)

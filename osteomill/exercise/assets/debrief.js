@@ -1,25 +1,8 @@
 // Shows what a debriefing's page holds as data: the bone in 3D, the course on one axis of time, and small curves.
 (function () {
   "use strict";
-  const D = JSON.parse(document.getElementById("debrief-data").textContent);
+  const { data: D, floats, el, showBone } = window.Osteomill;
 
-  function bytes(text) {
-    const raw = atob(text), all = new Uint8Array(raw.length);
-    for (let n = 0; n < raw.length; ++n) all[n] = raw.charCodeAt(n);
-    return all.buffer;
-  }
-  const floats = text => new Float32Array(bytes(text));
-
-  function el(tag, attributes, ...children) {
-    const element = document.createElement(tag);
-    for (const [key, value] of Object.entries(attributes || {})) {
-      if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
-      else if (value === true) element.setAttribute(key, "");
-      else if (value !== false && value !== null && value !== undefined) element.setAttribute(key, value);
-    }
-    element.append(...children);
-    return element;
-  }
   function svg(tag, attributes, text) {
     const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
     for (const [key, value] of Object.entries(attributes || {})) element.setAttribute(key, value);
@@ -78,9 +61,9 @@
   }
 
   if (!D.samples) return;
-  const S = {};
-  for (const [key, value] of Object.entries(D.samples)) S[key] = floats(value);
-  const V = D.views ? Object.fromEntries(Object.entries(D.views).map(([key, value]) => [key, floats(value)])) : null;
+  const unpacked = columns => columns ? Object.fromEntries(Object.entries(columns).map(([key, value]) => [key, floats(value)])) : null;
+  // The samples, the views, and the samples of the first way from where this one leaves it.
+  const S = unpacked(D.samples), V = unpacked(D.views), F = D.first ? unpacked(D.first.samples) : null;
   const count = S.time.length, begin = S.time[0], end = S.time[count - 1];
 
   // State: the time that is shown, the mark that is chosen, and who wants to know.
@@ -106,33 +89,45 @@
   function drawCourse() {
     courseHere.textContent = "";
     const wide = Math.max(300, courseHere.clientWidth), left = 48, right = 12, gap = 22;
-    const x = t => left + (wide - left - right) * (t - begin) / Math.max(end - begin, 1e-6);
+    const last = F ? Math.max(end, F.time[F.time.length - 1]) : end, span = Math.max(last - begin, 1e-6);
+    const x = t => left + (wide - left - right) * (t - begin) / span;
     // The rate over a second.
-    const rate = new Float32Array(count);
-    for (let n = 0, first = 0, sum = 0; n < count; ++n) {
-      sum += S.removed[n];
-      while (S.time[n] - S.time[first] > 1) sum -= S.removed[first++];
-      rate[n] = Math.max(0, sum) / Math.max(Math.min(1, S.time[n] - begin), 0.1);
+    function rateOf(samples) {
+      const rate = new Float32Array(samples.time.length);
+      for (let n = 0, first = 0, sum = 0; n < rate.length; ++n) {
+        sum += samples.removed[n];
+        while (samples.time[n] - samples.time[first] > 1) sum -= samples.removed[first++];
+        rate[n] = Math.max(0, sum) / Math.max(Math.min(1, samples.time[n] - samples.time[0]), 0.1);
+      }
+      return rate;
     }
-    const most = values => { let m = 0; for (const v of values) if (isFinite(v) && v > m) m = v; return m; };
-    const least = values => { let m = 0; for (const v of values) if (isFinite(v) && v < m) m = v; return m; };
-    const P = D.progress;
+    const farthest = beyond => values => values.reduce((m, v) => isFinite(v) && beyond(v, m) ? v : m, 0);
+    const most = farthest((v, m) => v > m), least = farthest((v, m) => v < m);
+    const P = D.progress, G = D.first ? D.first.progress : null;
+    // This way's line, and below it the first way's.
+    const lines = (own, first, colour, thick) => [
+      ...(F ? [{ ...first, colour: "#9aa3ad", wide: 1.2 }] : []), { ...own, colour, wide: thick }];
+    const sampled = (key, colour) => lines({ time: S.time, values: S[key] }, F && { time: F.time, values: F[key] }, colour, 1);
+    const topOf = (lines, atLeast) => Math.max(atLeast, ...lines.map(line => most(line.values)));
+    const target = lines({ time: P.time, values: P.target }, G && { time: G.time, values: G.target }, "#146c2e", 2);
+    const outside = lines({ time: P.time, values: P.outside }, G && { time: G.time, values: G.outside }, "#c2410c", 2);
+    const rates = lines({ time: S.time, values: rateOf(S) }, F && { time: F.time, values: rateOf(F) }, "#6b3fa0", 1);
+    const force = sampled("force", "#333"), distance = sampled("distance", "#1f5fa8");
     const rows = [
       { name: "target removed, %", high: 110, low: 0, top: 100, lines: [
-        ...D.experts.map(e => ({ time: e.time.map(t => t - e.time[0] + begin), values: e.target, colour: "#b9a26a", wide: 1 })),
-        { time: P.time, values: P.target, colour: "#146c2e", wide: 2 }] },
-      { name: "removed outside, mm³", high: 70, low: 0, top: Math.max(0.5, most(P.outside)), kind: "outside", lines: [{ time: P.time, values: P.outside, colour: "#c2410c", wide: 2 }] },
-      { name: "force, N", high: 80, low: 0, top: Math.max(0.5, most(S.force)), lines: [{ time: S.time, values: S.force, colour: "#333", wide: 1 }] },
-      { name: "distance to the nearest structure, mm", high: 80, low: least(S.distance), top: Math.min(20, Math.max(1, most(S.distance))), kind: "contact", skip: !D.structures, warn: true,
-        lines: [{ time: S.time, values: S.distance, colour: "#1f5fa8", wide: 1 }] },
-      { name: "removal rate over a second, mm³/s", high: 70, low: 0, top: Math.max(0.5, most(rate)), lines: [{ time: S.time, values: rate, colour: "#6b3fa0", wide: 1 }] },
+        ...D.experts.map(e => ({ time: e.time.map(t => t - e.time[0] + begin), values: e.target, colour: "#b9a26a", wide: 1 })), ...target] },
+      { name: "removed outside, mm³", high: 70, low: 0, top: topOf(outside, 0.5), kind: "outside", lines: outside },
+      { name: "force, N", high: 80, low: 0, top: topOf(force, 0.5), lines: force },
+      { name: "distance to the nearest structure, mm", high: 80, low: Math.min(...distance.map(line => least(line.values))), top: Math.min(20, topOf(distance, 1)), kind: "contact", skip: !D.structures, warn: true,
+        lines: distance },
+      { name: "removal rate over a second, mm³/s", high: 70, low: 0, top: topOf(rates, 0.5), lines: rates },
     ].filter(row => !row.skip);
     const high = rows.reduce((sum, row) => sum + row.high + gap, 0) + 40;
     const box = svg("svg", { class: "course", width: wide, height: high, viewBox: "0 0 " + wide + " " + high, role: "img", "aria-label": "The course of the attempt over time" });
     let y0 = 18;
     for (const row of rows) {
       const y = v => y0 + row.high - row.high * (Math.min(Math.max(v, row.low), row.top) - row.low) / (row.top - row.low);
-      box.append(svg("text", { x: left, y: y0 - 5, fill: "#222" }, row.name + (row === rows[0] && D.experts.length ? "; experts' in brown" : "")));
+      box.append(svg("text", { x: left, y: y0 - 5, fill: "#222" }, row.name + (row === rows[0] ? (F ? "; the first way in grey" : "") + (D.experts.length ? "; experts' in brown" : "") : "")));
       for (const v of ticks(row.low, row.top, row.high / 28)) {
         box.append(svg("line", { x1: left, x2: wide - right, y1: y(v), y2: y(v), stroke: "#e2e2e2" }));
         box.append(svg("text", { x: left - 5, y: y(v) + 4, "text-anchor": "end", fill: "#555" }, v));
@@ -154,15 +149,16 @@
     const bottom = y0 - gap;
     const upright = (t, text, dash, level) => {
       const at = x(t);
-      if (!(t >= begin && t <= end)) return;
+      if (!(t >= begin && t <= last)) return;
       box.append(svg("line", { x1: at, x2: at, y1: 18, y2: bottom, stroke: "#777", "stroke-dasharray": dash }));
       const turn = at > wide - 110;
       box.append(svg("text", { x: at + (turn ? -4 : 4), y: 30 + 13 * level, "text-anchor": turn ? "end" : "start", fill: "#444" }, text));
     };
     D.steps.forEach((step, n) => { if (step.done_s !== null) upright(step.done_s, "step " + (n + 1) + " done", "6 3", n % 3); });
     D.burrs.slice(1).forEach((burr, n) => upright(burr.time, burr.text, "2 3", 3 + n % 3));
-    const inMinutes = end - begin > 180;
-    for (const t of ticks(begin / (inMinutes ? 60 : 1), end / (inMinutes ? 60 : 1), wide / 90)) {
+    D.marks.forEach(mark => { if (mark.kind === "parting") upright(mark.time, "the ways part", "1 0", 0); });
+    const inMinutes = span > 180;
+    for (const t of ticks(begin / (inMinutes ? 60 : 1), last / (inMinutes ? 60 : 1), wide / 90)) {
       const at = x(t * (inMinutes ? 60 : 1));
       box.append(svg("line", { x1: at, x2: at, y1: bottom, y2: bottom + 4, stroke: "#555" }));
       box.append(svg("text", { x: at, y: bottom + 16, "text-anchor": "middle", fill: "#333" }, t));
@@ -175,7 +171,7 @@
     move();
     const seek = event => {
       const frame = box.getBoundingClientRect();
-      setTime(begin + (end - begin) * ((event.clientX - frame.left) * wide / frame.width - left) / (wide - left - right));
+      setTime(begin + span * ((event.clientX - frame.left) * wide / frame.width - left) / (wide - left - right));
     };
     box.addEventListener("pointerdown", event => { seek(event); box.setPointerCapture(event.pointerId); });
     box.addEventListener("pointermove", event => { if (event.buttons & 1) seek(event); });
@@ -194,9 +190,10 @@
 
   const boneHere = document.getElementById("bone");
   const card = el("div", { id: "card", class: "card", hidden: true, "aria-live": "polite" });
+  const symbols = { contact: "◆", outside: "▲", parting: "●" };
   const list = el("ul", { class: "marks", "aria-label": "Contacts and removals outside the target" });
   D.marks.forEach((mark, n) => list.append(el("li", {}, el("button", { type: "button", "aria-pressed": "false", onclick: () => choose(n) },
-    (mark.kind === "contact" ? "◆ " : "▲ ") + mark.title))));
+    symbols[mark.kind] + " " + mark.title))));
   function choose(n) {
     chosen = n;
     const mark = D.marks[n];
@@ -246,118 +243,19 @@
 
   // The bone.
 
-  const view = el("div", { class: "view" });
-  const layersBar = el("div", { class: "bar", id: "layers" });
   const playBar = el("div", { class: "bar" }, playButton, speeds, cameras, slider, reading);
   const still = boneHere.querySelector("figure");
-  for (const part of [view, layersBar, playBar, card]) boneHere.insertBefore(part, still);
-  boneHere.append(D.marks.length ? list : el("p", {}, "No contact with a structure, and nothing removed outside the target."));
-
-  let renderer;
-  try {
-    renderer = new THREE.WebGLRenderer({ antialias: true });
-  } catch (refused) {
-    view.remove();
-    layersBar.remove();
+  for (const part of [playBar, card]) boneHere.insertBefore(part, still);
+  if (!D.marks.some(mark => mark.kind !== "parting")) boneHere.append(el("p", {}, "No contact with a structure, and nothing removed outside the target."));
+  if (D.marks.length) boneHere.append(list);
+  if (D.unlisted) boneHere.append(el("p", {}, D.unlisted));
+  const view = showBone(boneHere, playBar);
+  if (!view) {
     setTime(begin);
     return;
   }
   if (still) still.hidden = true;
-  renderer.setClearColor(0xeef1f4);
-  renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
-  view.append(renderer.domElement);
-  const scene = new THREE.Scene();
-  const camera = new THREE.PerspectiveCamera(30, 1, 0.1, 1000);
-  const focus = new THREE.Vector3(...D.focus), up = new THREE.Vector3(...D.up);
-  camera.up.copy(up);
-  scene.add(new THREE.HemisphereLight(0xffffff, 0x8890a0, 0.75));
-  const lamp = new THREE.DirectionalLight(0xffffff, 0.55);
-  lamp.position.set(-0.4, 0.6, 1);
-  camera.add(lamp);
-  scene.add(camera);
-  const controls = new THREE.OrbitControls(camera, renderer.domElement);
-  controls.enableKeys = false;
-  controls.target.copy(focus);
-  controls.screenSpacePanning = true;
-  controls.minDistance = 0.5 * D.radius;
-  controls.maxDistance = 30 * D.radius;
-  {
-    const aside = new THREE.Vector3(Math.abs(up.x) < 0.6 ? 1 : 0, Math.abs(up.x) < 0.6 ? 0 : 1, 0).cross(up).normalize();
-    camera.position.copy(focus).addScaledVector(up.clone().addScaledVector(aside, 0.6).normalize(), 5.4 * D.radius);
-  }
-
-  const palette = [[0, 0xa50026], [0.5, 0xf46d43], [1, 0xfee090], [2, 0xabd9e9], [4, 0x4575b4], [8, 0x313695]];
-  function thicknessColour(mm) {
-    let n = 1;
-    while (n < palette.length - 1 && mm > palette[n][0]) ++n;
-    const [low, from] = palette[n - 1], [high, to] = palette[n];
-    return new THREE.Color(from).lerp(new THREE.Color(to), Math.min(1, (mm - low) / (high - low)));
-  }
-  const layers = [];
-  for (const body of D.bodies) {
-    const places = new Uint16Array(bytes(body.places)), corners = new Float32Array(places.length);
-    for (let n = 0; n < places.length; ++n) corners[n] = body.origin[n % 3] + body.step * places[n];
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
-    geometry.setIndex(new THREE.BufferAttribute(new Uint16Array(bytes(body.triangles)), 1));
-    geometry.computeVertexNormals();
-    if (body.kind === "left") {
-      // A little towards the viewer, or the surface of the bone hides it in patches.
-      const normals = geometry.getAttribute("normal").array;
-      for (let n = 0; n < corners.length; ++n) corners[n] += 0.02 * D.radius * normals[n];
-    }
-    const clear = body.opacity < 1;
-    // Nearly at the same places: what was left and what was taken show before the target.
-    const offset = { left: -2, outside: -2, target: 6 }[body.kind] || 0;
-    const material = new THREE.MeshLambertMaterial({ color: body.colour, transparent: clear, opacity: body.opacity, depthWrite: !clear, side: THREE.DoubleSide,
-      polygonOffset: body.kind !== "bone", polygonOffsetFactor: offset, polygonOffsetUnits: offset });
-    if (body.thickness) {
-      const left = new Uint8Array(bytes(body.thickness)), colours = new Float32Array(3 * left.length), own = new THREE.Color(body.colour);
-      left.forEach((value, n) => (value === 255 ? own : thicknessColour(value / 31)).toArray(colours, 3 * n));
-      geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
-    }
-    const mesh = new THREE.Mesh(geometry, material);
-    mesh.renderOrder = { structure: 0, left: 1, outside: 2, target: 3, keep: 3, bone: 4 }[body.kind];
-    mesh.visible = body.shown;
-    scene.add(mesh);
-    layers.push({ body, mesh });
-    const box = el("input", { type: "checkbox", checked: body.shown, onchange: event => { mesh.visible = event.target.checked; draw(); } });
-    const swatch = el("span", { class: "swatch" });
-    swatch.style.background = body.colour;
-    layersBar.append(el("label", {}, box, swatch, body.name));
-  }
-  const bone = layers.find(layer => layer.body.kind === "bone");
-  if (bone) {
-    // Only the bone's foremost surface shows, not the hollows behind it.
-    const front = new THREE.Mesh(bone.mesh.geometry, new THREE.MeshBasicMaterial({ colorWrite: false, side: THREE.DoubleSide, transparent: true }));
-    front.renderOrder = 3.5;
-    bone.mesh.add(front);
-    const opacity = el("input", { type: "range", id: "opacity", min: 0.05, max: 1, step: 0.05, value: bone.body.opacity, style: "max-width:140px", oninput: () => setOpacity(Number(opacity.value)) });
-    const setOpacity = value => {
-      bone.mesh.material.transparent = value < 1;
-      bone.mesh.material.depthWrite = value === 1;
-      bone.mesh.material.opacity = value;
-      bone.mesh.material.needsUpdate = true;
-      draw();
-    };
-    layersBar.append(el("label", {}, "bone's opacity", opacity));
-  }
-  const coloured = layers.filter(layer => layer.body.thickness);
-  if (coloured.length) {
-    const set = on => {
-      for (const { body, mesh } of coloured) {
-        mesh.material.vertexColors = on ? THREE.VertexColors : THREE.NoColors;
-        mesh.material.color.set(on ? 0xffffff : body.colour);
-        mesh.material.needsUpdate = true;
-      }
-      draw();
-    };
-    const bar = el("i");
-    bar.style.background = "linear-gradient(90deg," + palette.slice(0, 5).map(([mm, c]) => "#" + ("00000" + c.toString(16)).slice(-6) + " " + 25 * mm + "%").join(",") + ")";
-    layersBar.append(el("label", {}, el("input", { type: "checkbox", id: "thickness", checked: true, onchange: event => set(event.target.checked) }), "bone left over structures"),
-      el("span", { class: "scale" }, "0", bar, "4 mm"));
-    for (const { mesh } of coloured) { mesh.material.vertexColors = THREE.VertexColors; mesh.material.color.set(0xffffff); }
-  }
+  const { scene, camera, draw } = view;
 
   // The path, the tool and the marks.
   const path = new THREE.BufferGeometry();
@@ -375,22 +273,23 @@
   for (const line of [whole, done]) line.frustumCulled = false;
   scene.add(whole, done, tool);
 
-  function disc(fill, diamond) {
+  const shapes = { contact: [[32, 4], [60, 32], [32, 60], [4, 32]], outside: [[32, 6], [60, 56], [4, 56]], parting: [[20, 8], [44, 8], [58, 32], [44, 56], [20, 56], [6, 32]] };
+  function disc(fill, kind) {
     const canvas = el("canvas", { width: 64, height: 64 }), pen = canvas.getContext("2d");
     pen.fillStyle = fill;
     pen.strokeStyle = "#fff";
     pen.lineWidth = 6;
     pen.beginPath();
-    for (const [a, b] of diamond ? [[32, 4], [60, 32], [32, 60], [4, 32]] : [[32, 6], [60, 56], [4, 56]]) pen.lineTo(a, b);
+    for (const [a, b] of shapes[kind]) pen.lineTo(a, b);
     pen.closePath();
     pen.fill();
     pen.stroke();
     return new THREE.CanvasTexture(canvas);
   }
-  const signs = [["contact", "#c0107c"], ["outside", "#e8590c"]].map(([kind, colour]) => {
+  const signs = [["contact", "#c0107c"], ["outside", "#e8590c"], ["parting", "#222"]].map(([kind, colour]) => {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(D.marks.filter(m => m.kind === kind).flatMap(m => m.place), 3));
-    const points = new THREE.Points(geometry, new THREE.PointsMaterial({ size: 16, sizeAttenuation: false, map: disc(colour, kind === "contact"), transparent: true, alphaTest: 0.2, depthTest: false }));
+    const points = new THREE.Points(geometry, new THREE.PointsMaterial({ size: 16, sizeAttenuation: false, map: disc(colour, kind), transparent: true, alphaTest: 0.2, depthTest: false }));
     points.renderOrder = 9;
     points.frustumCulled = false;
     scene.add(points);
@@ -403,35 +302,11 @@
   ring.renderOrder = 10;
   ring.visible = false;
   scene.add(ring);
-  layersBar.append(el("label", {}, el("input", { type: "checkbox", checked: true, onchange: event => { for (const s of signs) s.visible = event.target.checked; draw(); } }), "marks: ◆ contact, ▲ removed outside"),
+  view.bar.append(el("label", {}, el("input", { type: "checkbox", checked: true, onchange: event => { for (const s of signs) s.visible = event.target.checked; draw(); } }), "marks: ◆ contact, ▲ removed outside" + (F ? ", ● the ways part" : "")),
     el("label", {}, el("input", { type: "checkbox", id: "path", onchange: event => { done.visible = whole.visible = event.target.checked; draw(); } }), "the burr's path"));
 
-  let pending = false;
-  function draw() {
-    if (pending) return;
-    pending = true;
-    requestAnimationFrame(() => { pending = false; render(); });
-  }
-  function render() {
-    const wide = view.clientWidth, high = view.clientHeight;
-    const size = renderer.getSize(new THREE.Vector2());
-    if (size.x !== wide || size.y !== high) renderer.setSize(wide, high, false);
+  view.place = () => {
     const n = sampleAt(time);
-    const hasView = recorded && V && isFinite(V.eye[3 * n]);
-    controls.enabled = !hasView;
-    if (hasView) {
-      camera.position.fromArray(V.eye, 3 * n);
-      camera.quaternion.fromArray(V.turn, 4 * n);
-      camera.fov = V.fov[n];
-    } else {
-      camera.fov = 30;
-      controls.update();
-    }
-    camera.aspect = wide / high;
-    const away = camera.position.distanceTo(focus);
-    camera.near = Math.max(0.05, (away - 6 * D.radius) / 2);
-    camera.far = away + 12 * D.radius;
-    camera.updateProjectionMatrix();
     tool.visible = moved && isFinite(S.place[3 * n]);
     if (tool.visible) {
       const next = Math.min(n + 1, count - 1), share = next > n ? Math.min(1, (time - S.time[n]) / (S.time[next] - S.time[n])) : 0;
@@ -449,22 +324,24 @@
       ring.geometry.getAttribute("position").setXYZ(0, ...D.marks[chosen].place);
       ring.geometry.getAttribute("position").needsUpdate = true;
     }
-    renderer.render(scene, camera);
-  }
-  controls.addEventListener("change", draw);
+    if (!recorded || !V || !isFinite(V.eye[3 * n])) return false;
+    camera.position.fromArray(V.eye, 3 * n);
+    camera.quaternion.fromArray(V.turn, 4 * n);
+    camera.fov = V.fov[n];
+    return true;
+  };
   listeners.push(draw);
-  addEventListener("resize", draw);
 
   // A press without a drag picks the nearest mark.
   function pixelOf(mark) {
     const p = new THREE.Vector3(...mark.place).project(camera);
-    return [(p.x + 1) / 2 * view.clientWidth, (1 - p.y) / 2 * view.clientHeight, p.z];
+    return [(p.x + 1) / 2 * view.frame.clientWidth, (1 - p.y) / 2 * view.frame.clientHeight, p.z];
   }
   let pressed = null;
-  renderer.domElement.addEventListener("pointerdown", event => { pressed = [event.clientX, event.clientY]; });
-  renderer.domElement.addEventListener("pointerup", event => {
+  view.canvas.addEventListener("pointerdown", event => { pressed = [event.clientX, event.clientY]; });
+  view.canvas.addEventListener("pointerup", event => {
     if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 6 || !signs[0].visible) return;
-    const frame = renderer.domElement.getBoundingClientRect(), reach = event.pointerType === "touch" ? 26 : 14;
+    const frame = view.canvas.getBoundingClientRect(), reach = event.pointerType === "touch" ? 26 : 14;
     let best = -1, nearest = reach;
     D.marks.forEach((mark, n) => {
       const [px, py, depth] = pixelOf(mark);
@@ -473,7 +350,6 @@
     });
     if (best >= 0) choose(best);
   });
-  // For tests: where things are drawn.
-  window.osteomillDebriefing = { camera, pixelOf: n => pixelOf(D.marks[n]), time: () => time, played: () => [time, before], marks: D.marks };
+  Object.assign(window.osteomillPage, { pixelOf: n => pixelOf(D.marks[n]), time: () => time, played: () => [time, before], marks: D.marks });
   setTime(begin);
 })();

@@ -14,9 +14,10 @@
 
 #include "osteomill/base/atomic_file.h"
 #include "osteomill/base/csv_field.h"
+#include "osteomill/base/input_error.h"
 #include "osteomill/base/temporary_folder.h"
 #include "osteomill/exercise/recorded_exercise.h"
-#include "osteomill/study/page.h"
+#include "osteomill/study/bone_page.h"
 #include "osteomill/visual/bone_picture.h"
 #include "osteomill/visual/image.h"
 #include "osteomill/volume/bone_densities.h"
@@ -34,16 +35,24 @@ using nlohmann::json;
 
 constexpr const char* kUnnamed = "without a name";
 
-Page page_with(std::string title, std::vector<Section> sections, const json& data, bool has_bodies) {
-  Page page{.title = std::move(title), .sections = std::move(sections), .style = debrief_css()};
-  if (has_bodies) page.scripts = {three_js(), orbit_controls_js()};
+// Of all bodies of a page: 2.6 MB.
+constexpr std::size_t kPageVertices = 110000;
+constexpr const char *kThisWay = "this way", *kFirstWay = "the first way";
+
+Page page_with(std::string title, std::vector<Section> sections, const json& data) {
+  Page page{.title = std::move(title), .sections = std::move(sections)};
+  put_data(page, data);
+  page.style += debrief_css();
   page.scripts.push_back(debrief_js());
-  page.data = data.dump(-1, ' ', false, json::error_handler_t::replace);
   return page;
 }
 
 void write_html(const fs::path& path, const Page& page) {
   write_text_atomically(path, [text = html(page)](std::ostream& out) { out << text; });
+}
+
+bool is_item(const MeasuredValue& row) {
+  return !row.limit.empty();
 }
 
 Cell mark_cell(const MeasuredValue& row) {
@@ -54,6 +63,20 @@ Cell mark_cell(const MeasuredValue& row) {
 
 std::string value_text(const MeasuredValue& row) {
   return row.value ? fmt::format("{}{}{}", shown(*row.value), row.unit.empty() ? "" : " ", row.unit) : "–";
+}
+
+// A value with its mark below.
+Cell marked_cell(const MeasuredValue& row) {
+  Cell cell{{{value_text(row), Look::strong}}};
+  if (is_item(row)) cell.pieces.push_back({"\n"});
+  for (Cell::Piece& piece : mark_cell(row).pieces) cell.pieces.push_back(std::move(piece));
+  return cell;
+}
+
+// Returns the row of the same place; they are of one exercise.
+const MeasuredValue& row_of(const DebriefedAttempt& attempt, const DebriefedAttempt& own,
+                            const MeasuredValue& row) {
+  return attempt.rows[static_cast<std::size_t>(&row - own.rows.data())];
 }
 
 // Returns the values of a measure in attempts, of those that have one.
@@ -72,20 +95,25 @@ std::string range_text(const std::vector<double>& values) {
   return least == most ? shown(least) : fmt::format("{} to {}", shown(least), shown(most));
 }
 
-bool is_item(const MeasuredValue& row) {
-  return !row.limit.empty();
-}
-
 Section items_section(const DebriefedAttempt& own, const DebriefPeers& peers) {
   Section section{.title = "Items", .id = "items"};
-  Table table{{"item", "mark", "value", "threshold", "source"}};
+  const bool has_first = peers.first != nullptr;
+  Table table{has_first ? std::vector<std::string>{"item", kThisWay, kFirstWay, "threshold", "source"}
+                        : std::vector<std::string>{"item", "mark", "value", "threshold", "source"}};
   if (!peers.experts.empty()) table.header.push_back(fmt::format("experts ({})", peers.experts.size()));
   for (const MeasuredValue& row : own.rows) {
     if (!is_item(row)) continue;
-    table.rows.push_back(
-        {row.measure, mark_cell(row), Cell(value_text(row), Look::strong), row.limit, row.source});
-    if (!peers.experts.empty())
-      table.rows.back().emplace_back(range_text(values_of(peers.experts, row.measure)));
+    std::vector<Cell>& cells = table.rows.emplace_back(std::vector<Cell>{row.measure});
+    if (has_first) {
+      cells.push_back(marked_cell(row));
+      cells.push_back(marked_cell(row_of(peers.first->measured, own, row)));
+    } else {
+      cells.push_back(mark_cell(row));
+      cells.emplace_back(value_text(row), Look::strong);
+    }
+    cells.emplace_back(row.limit);
+    cells.emplace_back(row.source);
+    if (!peers.experts.empty()) cells.emplace_back(range_text(values_of(peers.experts, row.measure)));
   }
   if (table.rows.empty()) {
     section.paragraphs = {"The exercise has no items."};
@@ -152,15 +180,17 @@ std::vector<Section> zone_sections(const DebriefedAttempt& own, const DebriefPee
 
 Section measures_section(const DebriefedAttempt& own, const DebriefPeers& peers) {
   Section section{.title = "All measures", .id = "measures"};
-  Table table{{"measure", "value", "definition", "source"}};
-  if (!peers.experts.empty()) table.header.insert(table.header.begin() + 2, "experts");
+  Table table{{"measure", "value"}};
+  if (peers.first) table.header.emplace_back(kFirstWay);
+  if (!peers.experts.empty()) table.header.emplace_back("experts");
+  table.header.insert(table.header.end(), {"definition", "source"});
   for (const MeasuredValue& row : own.rows) {
     const Measure* measure = find_measure(row.measure.substr(0, row.measure.find('.')));
-    table.rows.push_back(
-        {row.measure, value_text(row), measure == nullptr ? "" : measure->formula, row.source});
-    if (!peers.experts.empty())
-      table.rows.back().insert(table.rows.back().begin() + 2,
-                               range_text(values_of(peers.experts, row.measure)));
+    std::vector<Cell>& cells = table.rows.emplace_back(std::vector<Cell>{row.measure, value_text(row)});
+    if (peers.first) cells.emplace_back(value_text(row_of(peers.first->measured, own, row)));
+    if (!peers.experts.empty()) cells.emplace_back(range_text(values_of(peers.experts, row.measure)));
+    cells.emplace_back(measure == nullptr ? "" : measure->formula);
+    cells.emplace_back(row.source);
   }
   section.tables = {std::move(table)};
   return section;
@@ -173,12 +203,20 @@ std::string who_and_when(const DebriefedAttempt& own) {
   return text + ".";
 }
 
-Section about_section(const Exercise& exercise, const DebriefedAttempt& own) {
+Section about_section(const Exercise& exercise, const DebriefedAttempt& own, const DebriefPeers& peers) {
   Section section;
   if (!own.is_complete)
     section.notices.push_back("The recording is unfinished: the program ended before it closed it.");
   if (!exercise.task.empty()) section.paragraphs.push_back(exercise.task);
   section.paragraphs.push_back(who_and_when(own));
+  if (!peers.no_first.empty())
+    section.notices.push_back("The recording from which this one goes on is not shown: " + peers.no_first);
+  if (peers.first)
+    section.paragraphs.push_back(fmt::format(
+        "It goes on from {} at {:.3f} s: the first way is that one to its "
+        "end, this way what was done from there.",
+        peers.first->measured.recording.empty() ? "another recording" : peers.first->measured.recording,
+        peers.first->from.time_s));
   return section;
 }
 
@@ -207,17 +245,23 @@ Page attempt_page(const Attempt& attempt, const Recording& recording, const Debr
                   const DebriefPeers& peers, const TemporaryFolder& work) {
   const PlacedExercise& exercise = *attempt.exercise;
   const auto colours = colours_of(exercise);
+  const auto name_of = [](const DebriefedAttempt& one) {
+    return one.recording.empty() ? "RECORDING" : one.recording;
+  };
   json data;
-  const Sphere ball = target_ball(exercise);
-  data["focus"] = {ball.centre_W.x(), ball.centre_W.y(), ball.centre_W.z()};
-  data["up"] = {exercise.outward_W.x(), exercise.outward_W.y(), exercise.outward_W.z()};
-  data["radius"] = ball.radius_mm;
-  data["bodies"] = bodies_of(attempt, *colours);
-  put_course(data, attempt, recording, own.recording.empty() ? "RECORDING" : own.recording);
+  put_view(data, target_ball(exercise), exercise.outward_W);
+  put_course(data, attempt, recording, name_of(own));
+  if (peers.first) {
+    put_first_way(data, *peers.first, name_of(peers.first->measured));
+    add_bodies(data, peers.first->attempt, *colours, kPageVertices / 2, kFirstWay);
+    add_bodies(data, attempt, *colours, kPageVertices / 2, kThisWay);
+  } else {
+    add_bodies(data, attempt, *colours, kPageVertices);
+  }
   data["experts"] = json::array();
   for (const DebriefedAttempt& expert : peers.experts) data["experts"].push_back(curve_of(expert.progress));
 
-  std::vector<Section> sections{about_section(exercise.exercise, own), items_section(own, peers)};
+  std::vector<Section> sections{about_section(exercise.exercise, own, peers), items_section(own, peers)};
   for (Section& section : spread_sections(own, peers)) sections.push_back(std::move(section));
   sections.push_back(
       {.title = "The bone",
@@ -232,7 +276,7 @@ Page attempt_page(const Attempt& attempt, const Recording& recording, const Debr
   sections.push_back(measures_section(own, peers));
   std::string title = exercise.exercise.title;
   if (!own.trainee.empty()) title += ": " + own.trainee;
-  return page_with(std::move(title), std::move(sections), data, true);
+  return page_with(std::move(title), std::move(sections), data);
 }
 
 std::string name_of(const DebriefedAttempt& attempt) {
@@ -246,12 +290,6 @@ std::map<std::string, std::vector<DebriefedAttempt>> by_person(
   for (const DebriefedAttempt& attempt : attempts) people[name_of(attempt)].push_back(attempt);
   for (auto& [name, theirs] : people) std::ranges::stable_sort(theirs, {}, &DebriefedAttempt::date_utc);
   return people;
-}
-
-Cell item_cell(const MeasuredValue& row) {
-  Cell cell(value_text(row) + "\n");
-  for (Cell::Piece& piece : mark_cell(row).pieces) cell.pieces.push_back(std::move(piece));
-  return cell;
 }
 
 }  // namespace
@@ -269,6 +307,8 @@ DebriefedAttempt debriefed(const Attempt& attempt, const Recording& recording) {
   done.progress = progress_of(attempt);
   return done;
 }
+
+namespace {
 
 std::vector<DebriefedAttempt> expert_attempts(const PlacedExercise& placed, const Volume& scan) {
   const Exercise& exercise = placed.exercise;
@@ -292,6 +332,35 @@ std::vector<DebriefedAttempt> expert_attempts(const PlacedExercise& placed, cons
     experts.push_back(debriefed(make_attempt(placed, scan, recording), recording));
   }
   return experts;
+}
+
+// Returns null if the recording goes on from none.
+std::shared_ptr<FirstWay> first_way_of(const Attempt& attempt, const Recording& recording) {
+  const auto from = branch_point(recording.description);
+  if (!from) return nullptr;
+  const fs::path folder = recording.path.parent_path();
+  fs::path path = folder / from->recording;
+  if (!fs::exists(path)) path = folder / path.filename();
+  const Recording first = read_recording_chain(path);
+  const auto& records = first.records;
+  if (from->ticks > records.size() || records[from->ticks - 1].time_s != from->time_s)
+    throw InputError(path.string(), "is not what came before " + recording.path.string());
+  Attempt whole = make_attempt(*attempt.exercise, *attempt.scan, first);
+  DebriefedAttempt measured = debriefed(whole, first);
+  return std::make_shared<FirstWay>(FirstWay{std::move(whole), std::move(measured), *from});
+}
+
+}  // namespace
+
+DebriefPeers peers_of(const Attempt& attempt, const Recording& recording) {
+  DebriefPeers peers;
+  try {
+    peers.first = first_way_of(attempt, recording);
+  } catch (const InputError& error) {
+    peers.no_first = error.what();
+  }
+  peers.experts = expert_attempts(*attempt.exercise, *attempt.scan);
+  return peers;
 }
 
 Spread spread_of(const std::vector<double>& before) {
@@ -340,7 +409,7 @@ void write_class_debriefing(const fs::path& folder, const Exercise& exercise,
       data["curves"].back().push_back(curve_of(theirs[n].progress));
       values.rows.push_back({name, std::to_string(n + 1), theirs[n].date_utc});
       for (const MeasuredValue& row : theirs[n].rows)
-        if (is_item(row)) values.rows.back().push_back(item_cell(row));
+        if (is_item(row)) values.rows.back().push_back(marked_cell(row));
     }
   }
   summary.tables = {std::move(names)};
@@ -348,7 +417,7 @@ void write_class_debriefing(const fs::path& folder, const Exercise& exercise,
   Section about;
   for (const std::string& line : unread) about.notices.push_back("Not among them: " + line);
   if (!exercise.task.empty()) about.paragraphs = {exercise.task};
-  const Page page = page_with(exercise.title, {about, summary, items}, data, false);
+  const Page page = page_with(exercise.title, {about, summary, items}, data);
   write_folder_atomically(folder, [&](const fs::path& beside) {
     write_text_atomically(beside / "debrief.csv", [&](std::ostream& out) {
       out << "name,attempt,date_utc,recording,measure,value,unit,limit,met,source\n";

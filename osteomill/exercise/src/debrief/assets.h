@@ -4,10 +4,7 @@
 
 namespace osteomill {
 
-/// The files that a debriefing's page holds, as they were when the program was built: three.js with its
-/// control of the camera by mouse and touch, and our own script and style.
-std::string_view three_js();
-std::string_view orbit_controls_js();
+/// The script and the style of a debriefing's page, as they were when the program was built.
 std::string_view debrief_js();
 std::string_view debrief_css();
 

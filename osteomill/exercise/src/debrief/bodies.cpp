@@ -1,15 +1,12 @@
 #include "debrief/bodies.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <unordered_map>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "osteomill/visual/surface_mesh.h"
 
@@ -18,52 +15,6 @@ namespace osteomill {
 namespace {
 
 using nlohmann::json;
-
-// Vertices of the bone, and of each other body. With 16-bit indices all of them take 3 MB of a page at most.
-constexpr std::size_t kBoneVertices = 60000, kBodyVertices = 12000;
-
-// Returns the mesh with one vertex for all in a cell (Rossignac and Borrel 1993). Cells double with the
-// distance from a ball: full detail is in it.
-BrickMesh clustered(const BrickMesh& mesh, double cell_mm, const Sphere& near) {
-  BrickMesh coarse;
-  std::unordered_map<std::uint64_t, std::uint32_t> places;
-  std::vector<std::uint32_t> moved(mesh.vertices.size());
-  std::vector<float> counts;
-  for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
-    const Vec3 place_W = vec3_of(mesh.vertices[n].position_mm);
-    const double away = std::max((place_W - near.centre_W).norm() / near.radius_mm, 1.0);
-    const int level = static_cast<int>(std::log2(away));
-    const Vec3 cell = (place_W / std::ldexp(cell_mm, level)).array().floor();
-    auto key = static_cast<std::uint64_t>(level);
-    for (const double number : {cell.x(), cell.y(), cell.z()})
-      key = key << 20 | (static_cast<std::uint64_t>(static_cast<std::int64_t>(number)) & 0xFFFFF);
-    const auto [found, is_new] = places.emplace(key, static_cast<std::uint32_t>(counts.size()));
-    if (is_new) {
-      coarse.vertices.push_back({});
-      counts.push_back(0);
-    }
-    MeshVertex& vertex = coarse.vertices[found->second];
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      vertex.position_mm[axis] += mesh.vertices[n].position_mm[axis];
-    ++counts[found->second];
-    moved[n] = found->second;
-  }
-  for (std::size_t n = 0; n < counts.size(); ++n)
-    for (float& coordinate : coarse.vertices[n].position_mm) coordinate /= counts[n];
-  for (std::size_t n = 0; n + 2 < mesh.indices.size(); n += 3) {
-    const std::uint32_t a = moved[mesh.indices[n]], b = moved[mesh.indices[n + 1]],
-                        c = moved[mesh.indices[n + 2]];
-    if (a != b && b != c && c != a) coarse.indices.insert(coarse.indices.end(), {a, b, c});
-  }
-  return coarse;
-}
-
-BrickMesh simplified(const BrickMesh& mesh, std::size_t most, double voxel_mm, const Sphere& near) {
-  BrickMesh simple = mesh;
-  for (double cell_mm = voxel_mm; simple.vertices.size() > most; cell_mm *= 1.25)
-    simple = clustered(mesh, cell_mm, near);
-  return simple;
-}
 
 // Moves every vertex half of the way to the middle of its neighbours, so that a surface of voxels has no
 // steps.
@@ -106,26 +57,6 @@ BrickMesh surface_of(const VoxelSet& voxels, const GridGeometry& scan, const Wan
   return mesh;
 }
 
-// Puts the mesh into a body: places in 16 bits of the mesh's box, and triangles.
-void pack(json& body, const BrickMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const MeshVertex& vertex : mesh.vertices) box.extend(vec3_of(vertex.position_mm));
-  constexpr double kSteps = 65535;
-  const Vec3 low = box.min();
-  const double step_mm = std::max(box.sizes().maxCoeff(), 1e-6) / kSteps;
-  std::vector<std::uint16_t> places;
-  for (const MeshVertex& vertex : mesh.vertices) {
-    const Vec3 steps = (vec3_of(vertex.position_mm) - low) / step_mm;
-    for (const double coordinate : {steps.x(), steps.y(), steps.z()})
-      places.push_back(static_cast<std::uint16_t>(std::min(std::round(coordinate), kSteps)));
-  }
-  body["origin"] = {low.x(), low.y(), low.z()};
-  body["step"] = step_mm;
-  body["places"] = packed(places);
-  // Simplified meshes have fewer vertices than that.
-  body["triangles"] = packed(std::vector<std::uint16_t>(mesh.indices.begin(), mesh.indices.end()));
-}
-
 // Returns for each vertex of a structure the bone left over it in 1/31 mm, 255 if none was taken there.
 std::vector<std::uint8_t> thickness_at(const BrickMesh& mesh, const std::vector<ThicknessLeft>& left,
                                        const GridGeometry& scan) {
@@ -155,46 +86,39 @@ Sphere target_ball(const PlacedExercise& exercise) {
   return {box.center(), 0.5 * box.diagonal().norm() + exercise.scan.spacing_mm.maxCoeff()};
 }
 
-json bodies_of(const Attempt& attempt, const LabelMap& colours) {
+void add_bodies(json& data, const Attempt& attempt, const LabelMap& colours, std::size_t max_vertices,
+                const std::string& choice) {
   const PlacedExercise& exercise = *attempt.exercise;
   const Sphere near = target_ball(exercise);
-  json bodies = json::array();
-  const auto add = [&](json body, std::size_t most, BrickMesh mesh,
+  const std::size_t others = 4 + exercise.structures.size();
+  const auto add = [&](BodyLook look, const BrickMesh& mesh,
                        const std::vector<ThicknessLeft>* left = nullptr) {
     if (mesh.empty()) return;
-    mesh = simplified(mesh, most, exercise.scan.spacing_mm.minCoeff(), near);
-    pack(body, mesh);
-    if (left != nullptr) body["thickness"] = packed(thickness_at(mesh, *left, exercise.scan));
-    bodies.push_back(std::move(body));
-  };
-  const auto look = [](const std::string& name, const char* kind, const std::string& colour, double opacity,
-                       bool is_shown = true) {
-    return json{
-        {"name", name}, {"kind", kind}, {"colour", colour}, {"opacity", opacity}, {"shown", is_shown}};
+    look.choice = choice;
+    const std::size_t most = look.kind == "bone" ? std::min(max_vertices / 2, kMaxVertices)
+                                                 : std::min(max_vertices / 2 / others, max_vertices / 10);
+    const BrickMesh simple = simplified(mesh, most, exercise.scan.spacing_mm.minCoeff(), near);
+    json& body = data["bodies"].emplace_back(body_of(look, simple));
+    if (left != nullptr) body["thickness"] = packed(thickness_at(simple, *left, exercise.scan));
   };
   const auto colour_of = [&](std::size_t n) {
-    const std::array<std::uint8_t, 3>& rgb =
-        colours.labels()[std::min(n, colours.labels().size() - 1)].colour;
-    return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+    return hex_colour(colours.labels()[std::min(n, colours.labels().size() - 1)]);
+  };
+  const auto surface = [&](const VoxelSet& voxels, const auto& is_wanted) {
+    return surface_of(voxels, exercise.scan, is_wanted);
   };
   const auto all = [](const VoxelIndex&) { return true; };
-  add(look("bone", "bone", "#e8dcc0", exercise.structures.empty() ? 1 : 0.5), kBoneVertices,
+  add({.name = "bone", .opacity = exercise.structures.empty() ? 1 : 0.5},
       mesh_in_one_piece(DensityView(attempt.after)));
-  add(look("target", "target", colour_of(0), 0.2), kBodyVertices,
-      surface_of(exercise.target, exercise.scan, all));
-  add(look("left of the target", "left", "#0f7a3d", 1), kBodyVertices,
-      surface_of(exercise.target, exercise.scan,
-                 [&](const VoxelIndex& v) { return !attempt.removed.contains(v); }));
-  add(look("removed outside", "outside", "#e8590c", 0.8), kBodyVertices,
-      surface_of(attempt.removed, exercise.scan,
-                 [&](const VoxelIndex& v) { return exercise.is_outside(v); }));
-  add(look("bone to be kept", "keep", colour_of(1), 0.25, false), kBodyVertices,
-      surface_of(exercise.keep, exercise.scan, all));
-  for (std::size_t n = 0; n < exercise.structures.size(); ++n) {
-    add(look(exercise.structures[n].name, "structure", colour_of(n + 2), 1), kBodyVertices,
-        surface_of(exercise.structures[n].voxels, exercise.scan, all), &attempt.thickness_left[n]);
-  }
-  return bodies;
+  add({"target", "target", colour_of(0), 0.2}, surface(exercise.target, all));
+  add({"left of the target", "left", "#0f7a3d"},
+      surface(exercise.target, [&](const VoxelIndex& v) { return !attempt.removed.contains(v); }));
+  add({"removed outside", "outside", "#e8590c", 0.8},
+      surface(attempt.removed, [&](const VoxelIndex& v) { return exercise.is_outside(v); }));
+  add({"bone to be kept", "keep", colour_of(1), 0.25, false}, surface(exercise.keep, all));
+  for (std::size_t n = 0; n < exercise.structures.size(); ++n)
+    add({exercise.structures[n].name, "structure", colour_of(n + 2)},
+        surface(exercise.structures[n].voxels, all), &attempt.thickness_left[n]);
 }
 
 }  // namespace osteomill

@@ -24,10 +24,6 @@ using nlohmann::json;
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-json numbers_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 // Columns of samples, each by its name.
 class Columns {
  public:
@@ -45,24 +41,23 @@ class Columns {
   std::map<std::string, std::vector<float>> columns_;
 };
 
-// Returns for each sample its last tick: 30 a second, fewer in long sessions.
-std::vector<std::size_t> sampled_ticks(const std::vector<AttemptTick>& ticks) {
+// Returns for each sample its last tick, from one on: 30 a second, fewer in long sessions.
+std::vector<std::size_t> sampled_ticks(const std::vector<AttemptTick>& ticks, std::size_t from = 0) {
   constexpr double kMost = 6000, kEvery_s = 1.0 / 30;
   std::vector<std::size_t> sampled;
-  if (ticks.empty()) return sampled;
-  const double every_s = std::max(kEvery_s, (ticks.back().time_s - ticks.front().time_s) / kMost);
-  for (std::size_t n = 0; n < ticks.size(); ++n) {
+  if (from >= ticks.size()) return sampled;
+  const double every_s = std::max(kEvery_s, (ticks.back().time_s - ticks[from].time_s) / kMost);
+  for (std::size_t n = from; n < ticks.size(); ++n) {
     if (sampled.empty() || n + 1 == ticks.size() || ticks[n].time_s - ticks[sampled.back()].time_s >= every_s)
       sampled.push_back(n);
   }
   return sampled;
 }
 
-// The greatest force, the least distance and the bone removed in each sample's ticks, and the tool at its
-// end.
-json samples_of(const Attempt& attempt, const Recording& recording, const std::vector<std::size_t>& sampled) {
+// The greatest force, the least distance and the bone removed in each sample's ticks.
+Columns felt_samples(const Attempt& attempt, const std::vector<std::size_t>& sampled) {
   Columns samples;
-  std::size_t n = 0;
+  std::size_t n = sampled.empty() ? 0 : sampled.front();
   for (const std::size_t last : sampled) {
     double force_N = 0, distance_mm = kNoNumber, removed_mm3 = 0;
     for (; n <= last; ++n) {
@@ -70,16 +65,24 @@ json samples_of(const Attempt& attempt, const Recording& recording, const std::v
       distance_mm = std::fmin(distance_mm, attempt.distance_mm(n));
       removed_mm3 += attempt.ticks[n].removed_mm3;
     }
-    const AttemptTick& tick = attempt.ticks[last];
-    const Vec3 place_W = tick.is_placed ? tick.burr_W : Vec3::Constant(kNoNumber);
-    const Vec3 shaft_W = recording.records[last].X_WT.orientation * Vec3::UnitZ();
-    samples.add("time", {tick.time_s});
-    samples.add("place", {place_W.x(), place_W.y(), place_W.z()});
-    samples.add("shaft", {shaft_W.x(), shaft_W.y(), shaft_W.z()});
-    samples.add("radius", {tick.burr_radius_mm});
+    samples.add("time", {attempt.ticks[last].time_s});
     samples.add("force", {force_N});
     samples.add("distance", {distance_mm});
     samples.add("removed", {removed_mm3});
+  }
+  return samples;
+}
+
+// These, and the tool at each sample's end.
+json samples_of(const Attempt& attempt, const Recording& recording, const std::vector<std::size_t>& sampled) {
+  Columns samples = felt_samples(attempt, sampled);
+  for (const std::size_t n : sampled) {
+    const AttemptTick& tick = attempt.ticks[n];
+    const Vec3 place_W = tick.is_placed ? tick.burr_W : Vec3::Constant(kNoNumber);
+    const Vec3 shaft_W = recording.records[n].X_WT.orientation * Vec3::UnitZ();
+    samples.add("place", {place_W.x(), place_W.y(), place_W.z()});
+    samples.add("shaft", {shaft_W.x(), shaft_W.y(), shaft_W.z()});
+    samples.add("radius", {tick.burr_radius_mm});
   }
   return samples.packed_columns();
 }
@@ -120,10 +123,9 @@ std::string command_at(const std::string& recording_name, double time_s) {
   return fmt::format("osteomill simulate --from {} --at {:.6f}", quoted(recording_name), time_s);
 }
 
-// Returns the moments that a page has room for: all contacts, and of the removals the largest.
-std::vector<Moment> shown_moments(const Attempt& attempt) {
+// Returns the moments that a page has room for: contacts before all, and of the removals the largest.
+std::vector<Moment> shown_of(std::vector<Moment> moments) {
   constexpr std::size_t kMost = 500;
-  std::vector<Moment> moments = moments_of(attempt);
   if (moments.size() <= kMost) return moments;
   std::ranges::stable_sort(moments, std::ranges::greater(), [](const Moment& one) {
     return one.kind == Moment::Kind::contact ? std::numeric_limits<double>::infinity() : one.removed_mm3;
@@ -131,6 +133,22 @@ std::vector<Moment> shown_moments(const Attempt& attempt) {
   moments.resize(kMost);
   std::ranges::stable_sort(moments, {}, &Moment::first_tick);
   return moments;
+}
+
+// Says what is not among the marks; empty if all is.
+std::string unlisted_text(const std::vector<Moment>& all, const std::vector<Moment>& shown) {
+  const auto left_out = [&](Moment::Kind kind) {
+    return std::ranges::count(all, kind, &Moment::kind) - std::ranges::count(shown, kind, &Moment::kind);
+  };
+  if (shown.size() == all.size()) return "";
+  return fmt::format("Not marked: {} later contacts, and {} smaller removals outside the target.",
+                     left_out(Moment::Kind::contact), left_out(Moment::Kind::outside));
+}
+
+template <typename... Others>
+std::string if_known(fmt::format_string<double&, const Others&...> text, double number,
+                     const Others&... others) {
+  return std::isnan(number) ? "not known" : fmt::format(text, number, others...);
 }
 
 json mark_of(const Moment& moment, const Attempt& attempt, const std::string& burr,
@@ -149,9 +167,9 @@ json mark_of(const Moment& moment, const Attempt& attempt, const std::string& bu
   facts.push_back({"force", fmt::format("{:.2f} N, at most {:.2f} N", tick.force_N, moment.force_max_N)});
   if (!structures.empty())
     facts.push_back(
-        {"distance", fmt::format("{:.2f} mm from {}", attempt.distance_mm(moment.first_tick, nearest),
-                                 structures[nearest].name)});
-  facts.push_back({"speed", fmt::format("{:.1f} mm/s", burr_speed_mm_s(attempt, moment.first_tick))});
+        {"distance", if_known("{:.2f} mm from {}", attempt.distance_mm(moment.first_tick, nearest),
+                              structures[nearest].name)});
+  facts.push_back({"speed", if_known("{:.1f} mm/s", burr_speed_mm_s(attempt, moment.first_tick))});
   facts.push_back({"lasted", fmt::format("{:.3f} s", moment.time_s)});
   if (!is_contact) facts.push_back({"removed outside", fmt::format("{:.3g} mm³", moment.removed_mm3)});
   const std::string what = is_contact
@@ -197,11 +215,34 @@ void put_course(json& data, const Attempt& attempt, const Recording& recording,
   for (const auto& [tick, name] : burrs)
     if (tick < attempt.ticks.size())
       data["burrs"].push_back({{"time", attempt.ticks[tick].time_s}, {"text", name}});
-  for (const Moment& moment : shown_moments(attempt)) {
+  const std::vector<Moment> moments = moments_of(attempt), shown = shown_of(moments);
+  data["unlisted"] = unlisted_text(moments, shown);
+  for (const Moment& moment : shown) {
     const auto later =
         std::ranges::upper_bound(burrs, moment.first_tick, {}, &std::pair<std::size_t, std::string>::first);
     data["marks"].push_back(mark_of(moment, attempt, std::prev(later)->second, recording_name));
   }
+}
+
+void put_first_way(json& data, const FirstWay& first, const std::string& recording_name) {
+  const std::size_t parting = first.from.ticks - 1;
+  const AttemptTick& tick = first.attempt.ticks[parting];
+  std::vector<AttemptProgress> rest = first.measured.progress;
+  std::erase_if(rest, [&](const AttemptProgress& at) { return at.time_s < tick.time_s; });
+  data["first"] = {
+      {"samples", felt_samples(first.attempt, sampled_ticks(first.attempt.ticks, parting)).packed_columns()},
+      {"progress", curve_of(rest)}};
+  json mark = {{"kind", "parting"},
+               {"time", tick.time_s},
+               {"place", numbers_of(tick.burr_W)},
+               {"title", fmt::format("{:.2f} s: the ways part", tick.time_s)},
+               {"facts",
+                {{"when", fmt::format("{:.3f} s", tick.time_s)},
+                 {"ticks in common", fmt::format("{}", first.from.ticks)}}},
+               {"command", command_at(recording_name, tick.time_s)}};
+  auto& marks = data["marks"].get_ref<json::array_t&>();
+  const auto is_later = [&](const json& one) { return one["time"].get<double>() > tick.time_s; };
+  marks.insert(std::ranges::find_if(marks, is_later), std::move(mark));
 }
 
 }  // namespace osteomill

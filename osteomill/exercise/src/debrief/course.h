@@ -16,4 +16,8 @@ nlohmann::json curve_of(const std::vector<AttemptProgress>& progress);
 void put_course(nlohmann::json& data, const Attempt& attempt, const Recording& recording,
                 const std::string& recording_name);
 
+/// Adds the first way: how it went on from where the other one leaves it, and a mark there. `recording_name`
+/// is that of the first way.
+void put_first_way(nlohmann::json& data, const FirstWay& first, const std::string& recording_name);
+
 }  // namespace osteomill

@@ -83,6 +83,10 @@ std::vector<Panel> panels_of(const RunGroup& group) {
 
 }  // namespace
 
+std::string run_name(const MeasuredRun& run) {
+  return run.phase.empty() ? run.algorithm.label : run.algorithm.label + ", " + run.phase;
+}
+
 std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const std::vector<Panel> panels = panels_of(group);
   if (panels.empty()) return std::nullopt;
@@ -116,10 +120,6 @@ LabelCount count_of(const Recording& recording) {
   LabelCount count(recording.description.labels);
   for (const TickRecord& record : recording.records) count.add(record);
   return count;
-}
-
-std::string run_name(const MeasuredRun& run) {
-  return run.phase.empty() ? run.algorithm.label : run.algorithm.label + ", " + run.phase;
 }
 
 Cell name_with_colour(const Label& label) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "osteomill/study/figure.h"
@@ -10,6 +11,9 @@
 
 /// The figures, tables and sections of a report's page. Each figure throws InputError as `draw_figure` does.
 namespace osteomill {
+
+/// Returns "4 barrier-shell, milling".
+std::string run_name(const MeasuredRun& run);
 
 /// Draws the bone before, and after each algorithm, side by side, from the recordings' pictures; those of the
 /// milling phase if there are any. Returns nothing if no recording has a picture. Throws InputError, naming

@@ -9,8 +9,10 @@
 #include <fmt/format.h>
 
 #include "osteomill/base/atomic_file.h"
+#include "osteomill/study/bone_page.h"
 #include "osteomill/study/metric_table.h"
 
+#include "report/milled_bones.h"
 #include "report/report_parts.h"
 
 namespace osteomill {
@@ -18,6 +20,8 @@ namespace osteomill {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kBoneId = "bone";
 
 std::vector<const Recording*> all_recordings(const RunGroup& group) {
   std::vector<const Recording*> recordings;
@@ -204,14 +208,16 @@ bool has_setting(const RunGroup& group, std::string_view key) {
   });
 }
 
-std::vector<Section> pictures_section(const RunGroup& group, const fs::path& folder) {
-  Section section{.title = "The bone before and after"};
+std::vector<Section> pictures_section(const RunGroup& group, const fs::path& folder, bool is_in_3d) {
+  Section section{.title = "The bone before and after", .id = kBoneId};
+  if (is_in_3d)
+    section.paragraphs = {"Drag to turn, scroll or pinch to zoom. The list picks whose bone is shown."};
   if (const auto bone = draw_picture_figure(group, folder)) {
     // Smaller as PNG; curves and clouds stay sharp as SVG.
     section.figures = {{bone->png, "The bone before, and after each algorithm's run."}};
   } else if (has_setting(group, kPicturesKey)) {
     section.notices = {"No pictures of the bone: OpenGL could not be had when this was recorded."};
-  } else {
+  } else if (!is_in_3d) {
     return {};
   }
   return {section};
@@ -290,7 +296,23 @@ Section how_to_repeat(const std::vector<const Recording*>& recordings) {
       .commands = commands};
 }
 
-Page report_page(const RunGroup& group, const PageText& text, const fs::path& folder) {
+// Puts the bones into a page, as far as there is room.
+void put_bones(Page& page, const RunGroup& group, const ScanOf& scan_of) {
+  constexpr std::size_t kMostBytes = 5'000'000, kScriptBytes = 900'000;
+  const std::size_t bytes = html(page).size() + kScriptBytes;
+  const MilledBones bones = milled_bones(group, scan_of, kMostBytes - std::min(bytes, kMostBytes));
+  const auto section = std::ranges::find(page.sections, kBoneId, &Section::id);
+  section->notices.insert(section->notices.end(), bones.notices.begin(), bones.notices.end());
+  if (bones.data.is_null()) {
+    section->paragraphs.clear();
+    return;
+  }
+  put_data(page, bones.data);
+  page.scripts.push_back(
+      "Osteomill.showBone(document.getElementById(\"bone\"), document.querySelector(\"#bone figure\"))");
+}
+
+Page report_page(const RunGroup& group, const PageText& text, const ScanOf& scan_of, const fs::path& folder) {
   const std::vector<const Recording*> recordings = all_recordings(group);
   std::vector<Section> sections{notices(recordings)};
   const auto add = [&](const std::vector<Section>& more) {
@@ -298,7 +320,7 @@ Page report_page(const RunGroup& group, const PageText& text, const fs::path& fo
   };
   add(differences(recordings));
   sections.push_back(text.opening ? *text.opening : sessions_in_words(group));
-  add(pictures_section(group, folder));
+  add(pictures_section(group, folder, scan_of != nullptr));
   for (const Topic& topic : kFelt) sections.push_back(topic_section(topic, group, text, folder));
   sections.push_back(labels_section(group, folder));
   add(text.sections);
@@ -306,7 +328,9 @@ Page report_page(const RunGroup& group, const PageText& text, const fs::path& fo
   add({what_was_run(group),
        {.title = "Settings", .tables = {settings_table(recordings)}},
        how_to_repeat(recordings)});
-  return {text.title, sections};
+  Page page{.title = text.title, .sections = std::move(sections)};
+  if (scan_of) put_bones(page, group, scan_of);
+  return page;
 }
 
 void write_summary_csv(const fs::path& path, const RunGroup& group) {
@@ -318,16 +342,17 @@ void write_summary_csv(const fs::path& path, const RunGroup& group) {
 
 }  // namespace
 
-fs::path write_report(const RunGroup& group, const fs::path& out_dir,
+fs::path write_report(const RunGroup& group, const fs::path& out_dir, const ScanOf& scan_of,
                       const std::function<PageText(const fs::path&)>& text) {
   return write_page(out_dir, "report.html", [&](const fs::path& beside) {
     write_summary_csv(beside / "summary.csv", group);
-    return report_page(group, text(beside / "figures"), beside / "figures");
+    return report_page(group, text(beside / "figures"), scan_of, beside / "figures");
   });
 }
 
-fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir) {
-  return write_report(group_runs(recordings), out_dir);
+fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
+                      const ScanOf& scan_of) {
+  return write_report(group_runs(recordings), out_dir, scan_of);
 }
 
 }  // namespace osteomill

@@ -11,7 +11,6 @@
 #include "osteomill/study/paper.h"
 #include "osteomill/study/run_trials.h"
 #include "osteomill/study/trial_plan.h"
-#include "osteomill/study/write_report.h"
 
 #include "report/report_parts.h"
 #include "trials/findings_section.h"
@@ -163,11 +162,12 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 }
 
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
-                                 const std::optional<ReportExtras>& measured, std::vector<Table>* came_out) {
+                                 const std::optional<ReportExtras>& measured, std::vector<Table>* came_out,
+                                 const ScanOf& scan_of) {
   const RunGroup group = group_runs(recordings, measured_phase);
   const bool belong = belong_together(recordings);
   if (!belong || !have_the_same_phases(group)) {
-    return write_report(group, out_dir, [&](const fs::path&) {
+    return write_report(group, out_dir, scan_of, [&](const fs::path&) {
       return PageText{.title = kTitleOfAMix,
                       .opening = opening_of_a_mix(
                           group, belong ? "an algorithm lacks a phase that another was recorded with"
@@ -189,7 +189,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   Section came = opening(study, recordings);
   if (has_other_tables) came.notices.insert(came.notices.begin(), kOtherTables);
   if (came_out != nullptr) *came_out = came.tables;
-  return write_report(group, out_dir, [&](const fs::path& figures) {
+  return write_report(group, out_dir, scan_of, [&](const fs::path& figures) {
     PageText text{.title = study.algorithms().size() > 1 ? kTitle : kTitleOfOne,
                   .opening = came,
                   .sections = {findings_section(study)}};

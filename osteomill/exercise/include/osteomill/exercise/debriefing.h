@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,16 +27,28 @@ struct DebriefedAttempt {
 /// Measures an attempt. `recording` is the one that the attempt was made of.
 DebriefedAttempt debriefed(const Attempt& attempt, const Recording& recording);
 
-/// Measures the recordings of experts that the exercise's regions name. Throws as `read_recording_chain` and
-/// `make_attempt`. Long work.
-std::vector<DebriefedAttempt> expert_attempts(const PlacedExercise& placed, const Volume& scan);
+/// An attempt from a tick of which another one goes on.
+struct FirstWay {
+  Attempt attempt;
+  DebriefedAttempt measured;
+  BranchPoint from;
+};
 
-/// The attempts with which an attempt's page compares it; both may be empty.
+/// The attempts with which an attempt's page compares it; all may be empty.
 struct DebriefPeers {
+  /// The one that it goes on from, or why that is not shown.
+  std::shared_ptr<FirstWay> first;
+  std::string no_first;
+  std::vector<DebriefedAttempt> experts;
   /// The attempts of the same person before it, by time.
   std::vector<DebriefedAttempt> before;
-  std::vector<DebriefedAttempt> experts;
 };
+
+/// Reads and measures the recording that an attempt goes on from (branch_point), by its name as seen from
+/// that one or in its folder, and those of experts that the exercise's regions name. Throws as
+/// `read_recording_chain` and `make_attempt` if one of an expert is at fault. The exercise and the scan of
+/// `attempt` outlive the result. Long work.
+DebriefPeers peers_of(const Attempt& attempt, const Recording& recording);
 
 /// Writes an attempt's `debrief.csv`, `progress.csv` and `debrief.html`, a page that loads nothing from
 /// anywhere, into a folder. Throws InputError if one cannot be written. Long work.

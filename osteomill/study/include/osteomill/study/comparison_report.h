@@ -8,6 +8,7 @@
 #include "osteomill/study/measure_passivity.h"
 #include "osteomill/study/page.h"
 #include "osteomill/study/study.h"
+#include "osteomill/study/write_report.h"
 
 namespace osteomill {
 
@@ -33,6 +34,7 @@ bool are_of_comparison(const std::vector<Recording>& recordings);
 std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
                                               const std::filesystem::path& out_dir,
                                               const std::optional<ReportExtras>& measured = {},
-                                              std::vector<Table>* came_out = nullptr);
+                                              std::vector<Table>* came_out = nullptr,
+                                              const ScanOf& scan_of = {});
 
 }  // namespace osteomill

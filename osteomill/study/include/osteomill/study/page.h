@@ -66,9 +66,9 @@ struct Page {
   std::vector<Section> sections;
   /// The program's own rules and scripts, which are not escaped: further rules of the style sheet, and
   /// scripts that run when all the rest is there.
-  std::string_view style = {};
+  std::string style = {};
   std::vector<std::string_view> scripts = {};
-  /// JSON for the scripts, in the element `debrief-data`; it may hold any text.
+  /// JSON for the scripts, in the element `page-data`; it may hold any text.
   std::string data = {};
 };
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 #include "osteomill/study/run_groups.h"
 
 namespace osteomill {
+
+/// Returns the scan that a recording was made with, as it was read. Throws InputError if it cannot be had.
+using ScanOf = std::function<std::shared_ptr<const Volume>(const Recording&)>;
 
 /// A row of the table of metrics, as PageText adds them.
 struct MetricLine {
@@ -36,10 +40,11 @@ struct PageText {
 /// measured (group_runs); returns the path of report.html. `text` gets the folder for its figures. The page
 /// has what matters most first: the opening, the bone before and after, force, torque, shaft and path, each
 /// with its figures and metrics, then what `text` adds, times, settings, and how to repeat it, with the
-/// figures in itself. All appear together or none. Throws InputError if gnuplot is missing or fails, or a
-/// file cannot be written.
+/// figures in itself. If there is a `scan_of`, the bones are milled again and shown in 3D, as far as that
+/// makes the page no larger than 5 MB; if a scan is missing, the page says so. All appear together or none.
+/// Throws InputError if gnuplot is missing or fails, or a file cannot be written.
 std::filesystem::path write_report(
-    const RunGroup& runs, const std::filesystem::path& out_dir,
+    const RunGroup& runs, const std::filesystem::path& out_dir, const ScanOf& scan_of = {},
     const std::function<PageText(const std::filesystem::path& figures)>& text = [](const auto&) {
       return PageText{};
     });
@@ -47,6 +52,6 @@ std::filesystem::path write_report(
 /// Writes a report of any number of recordings, one for each algorithm and phase. Throws InputError also if
 /// there are no recordings, two are of the same algorithm and phase, or one cannot be measured.
 std::filesystem::path write_report(const std::vector<Recording>& recordings,
-                                   const std::filesystem::path& out_dir);
+                                   const std::filesystem::path& out_dir, const ScanOf& scan_of = {});
 
 }  // namespace osteomill

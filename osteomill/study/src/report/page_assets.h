@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string_view>
+
+namespace osteomill {
+
+/// three.js with its control of the camera by mouse and touch, and our own script and style for bones.
+std::string_view three_js();
+std::string_view orbit_controls_js();
+std::string_view bone_view_js();
+std::string_view bone_view_css();
+
+}  // namespace osteomill
