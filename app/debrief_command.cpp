@@ -70,6 +70,9 @@ std::vector<fs::path> recordings_in(const std::vector<std::string>& named) {
     if (paths.size() == before) throw InputError(path.string(), "holds no recordings (.h5)");
     std::sort(paths.begin() + static_cast<std::ptrdiff_t>(before), paths.end());
   }
+  // Each once, however it is named.
+  std::set<fs::path> seen;
+  std::erase_if(paths, [&](const fs::path& path) { return !seen.insert(fs::weakly_canonical(path)).second; });
   return paths;
 }
 
@@ -188,14 +191,14 @@ struct Attempts {
 Attempts attempts_of(std::vector<ReadAttempt> read, const std::vector<fs::path>& paths) {
   Attempts all{common_exercise(read), {}, {}};
   std::set<fs::path> continued;
-  for (const ReadAttempt& one : read) continued.insert(one.continues);
+  for (const ReadAttempt& one : read) continued.insert(fs::weakly_canonical(one.continues));
   for (std::size_t n = 0; n < read.size(); ++n) {
     if (!read[n].exercise) {
       all.faults.push_back(std::move(read[n].fault));
     } else if (read[n].exercise != all.exercise) {
       all.faults.push_back(fmt::format("{}: is of another exercise ({})", paths[n].string(),
                                        read[n].exercise->placed.exercise.title));
-    } else if (!continued.contains(paths[n])) {
+    } else if (!continued.contains(fs::weakly_canonical(paths[n]))) {
       all.attempts.push_back(std::move(read[n].attempt));
     }
   }

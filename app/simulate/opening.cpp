@@ -104,13 +104,15 @@ PreparedScan open_for_branch(const OpenRequest& request, const GuardSettings& gu
 }
 
 // The recording knows its scan and how that is read.
-PreparedScan open_for_playback(const ScanOptions& scan) {
+PreparedScan open_for_playback(const OpenRequest& request) {
+  const ScanOptions& scan = request.scan;
   ScanOptions recorded;
   recorded.read.max_memory_bytes = scan.read.max_memory_bytes;
   RecordedWork work = [&] {
     const WorkProgress::Part reading(0.4);
     return read_recorded_work(scan.scan, recorded, {});
   }();
+  if (request.from.at_s != 0) ticks_until(work.recording, request.from.at_s);
   const WorkProgress::Part milling(1);
   ScanInfo info{.name = scan.scan, .source = work.scan};
   return {.scan = std::move(info), .playback = std::make_unique<Playback>(std::move(work))};
@@ -127,7 +129,7 @@ std::string OpenRequest::name() const {
 PreparedScan open_requested(const OpenRequest& request, MillingSetup setup) {
   if (request.from.given()) return open_for_branch(request, setup.guard);
   if (request.exercise.given()) return open_exercise(request.exercise, request.scan, std::move(setup));
-  if (is_hdf5(request.scan.scan)) return open_for_playback(request.scan);
+  if (is_hdf5(request.scan.scan)) return open_for_playback(request);
   return open_for_milling(request, setup);
 }
 

@@ -32,6 +32,14 @@ bool touches_no_go(const Recording& recording, const TickRecord& record) {
   });
 }
 
+bool is_held_off(const WatchedStructure& structure, const Recording& recording, const TickRecord& record) {
+  // A guard is felt from there on.
+  constexpr double kFelt_mm = 0.05;
+  const double radius_mm = recording.sessions[record.session].start.run.tool.burr_radius_mm;
+  return !record.paused &&
+         structure.distance.from(record.X_WT.position_mm) - radius_mm <= *structure.guard_mm + kFelt_mm;
+}
+
 std::string change_between(const RunDescription& before, const RunDescription& now) {
   if (before.tool.burr_radius_mm != now.tool.burr_radius_mm)
     return fmt::format("burr of {:g} mm", 2 * now.tool.burr_radius_mm);
@@ -52,7 +60,8 @@ std::vector<SessionSettings> settings_of(const Recording& recording) {
 
 }  // namespace
 
-PlaybackMarks marks_of(const Recording& recording) {
+PlaybackMarks marks_of(const RecordedWork& work) {
+  const Recording& recording = work.recording;
   const std::vector<TickRecord>& records = recording.records;
   PlaybackMarks marks;
   marks.cuts = spans_of(recording, [&](std::size_t n) {
@@ -65,6 +74,13 @@ PlaybackMarks marks_of(const Recording& recording) {
   marks.faults = spans_of(recording, [&](std::size_t n) {
     return records[n].fault != WrenchFault::none && records[n].fault != WrenchFault::rate_limited;
   });
+  for (std::size_t n = 0; work.placed && n < work.placed->distances->size(); ++n) {
+    const WatchedStructure& structure = (*work.placed->distances)[n];
+    if (!structure.guard_mm) continue;
+    marks.guards.emplace_back(work.placed->structures[n].name, spans_of(recording, [&](std::size_t tick) {
+                                return is_held_off(structure, recording, records[tick]);
+                              }));
+  }
   int step = 0;
   for (const ViewSample& view : recording.views)
     if (std::exchange(step, view.step) != view.step)
@@ -80,7 +96,7 @@ PlaybackMarks marks_of(const Recording& recording) {
 
 Playback::Playback(RecordedWork work)
     : work_(with_ticks(std::move(work))),
-      marks_(marks_of(work_.recording)),
+      marks_(marks_of(work_)),
       settings_(settings_of(work_.recording)),
       box_(box_of_bone(work_.bone.volume)),
       grey_window_(window_level_of(work_.bone.volume.grid(), settings_.front().densities.surroundings)),

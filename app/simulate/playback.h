@@ -26,13 +26,15 @@ namespace osteomill::app {
 struct PlaybackMarks {
   /// From and to.
   using Spans = std::vector<std::pair<double, double>>;
-  /// The burr cuts; the tool touches bone; it touches what it must not; not the wrench that was asked for was
-  /// sent (slow changes do not count).
+  /// The burr cuts; the tool touches bone or a guard; it touches what it must not; not the wrench that was
+  /// asked for was sent (slow changes do not count).
   Spans cuts, contacts, no_go, faults;
+  /// Where the burr was held off a structure, by the structure's name.
+  std::vector<std::pair<std::string, Spans>> guards;
   /// The beginnings of steps of the exercise, and of sessions with another burr, algorithm or bone.
   std::vector<std::pair<double, std::string>> steps;
 };
-PlaybackMarks marks_of(const Recording& recording);
+PlaybackMarks marks_of(const RecordedWork& work);
 
 /// A recording that is played: no haptic thread runs, all that is shown was recorded, and the bone is milled
 /// again. Meanwhile another thread replays the recording, as `replay --verify` does. For the window's thread.

@@ -38,7 +38,8 @@ void draw_cursor(const TimeAxis& axis, double time_s, float top_px, float bottom
   ImGui::GetWindowDrawList()->AddLine({x, top_px}, {x, bottom_px}, kCursor, ui::px(1.5f));
 }
 
-void draw_spans(const TimeAxis& axis, const char* name, const PlaybackMarks::Spans& spans, ImU32 colour) {
+void draw_spans(const TimeAxis& axis, const char* name, const PlaybackMarks::Spans& spans, ImU32 colour,
+                const std::string& tip = {}) {
   const float height_px = ImGui::GetTextLineHeight();
   const ImVec2 place = ImGui::GetCursorScreenPos();
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -48,6 +49,8 @@ void draw_spans(const TimeAxis& axis, const char* name, const PlaybackMarks::Spa
     list.AddRectFilled({axis.at(from_s), place.y + 2},
                        {std::max(axis.at(to_s), axis.at(from_s) + 2), place.y + height_px - 2}, colour);
   ImGui::TextUnformatted(name);
+  if (!tip.empty() && ImGui::IsMouseHoveringRect({place.x, place.y}, {axis.right_px, place.y + height_px}))
+    ImGui::SetTooltip("%s", tip.c_str());
 }
 
 void draw_steps(const TimeAxis& axis, const PlaybackMarks& marks) {
@@ -88,6 +91,8 @@ void draw_time_line(Playback& playback) {
   draw_spans(axis, "cut", marks.cuts, kCut);
   draw_spans(axis, "contact", marks.contacts, kContact);
   draw_spans(axis, "no-go", marks.no_go, kNoGo);
+  for (const auto& [structure, spans] : marks.guards)
+    draw_spans(axis, "guard", spans, kContact, "Held off " + structure);
   draw_spans(axis, "fault", marks.faults, kFault);
   draw_steps(axis, marks);
   ImGui::PopStyleVar();

@@ -324,18 +324,20 @@ void keep_first_ticks(Recording& recording, std::size_t ticks) {
   recording.complete = true;
 }
 
-// Reads a recording with all before it, at most `max_before`.
-Recording read_chain(const fs::path& path, int max_before) {
+// Reads a recording with all before it. `later` are those that go on from it, as they are on the disk.
+Recording read_chain(const fs::path& path, std::vector<fs::path> later) {
+  constexpr std::size_t kMost = 64;
   Recording recording = read_recording(path);
   if (recording.sessions.empty() || recording.sessions.front().start.continues_from.empty()) return recording;
   const fs::path name = recording.sessions.front().start.continues_from;
   if (name != name.filename()) throw InputError(path.string(), "goes on from a recording elsewhere");
-  if (max_before == 0) throw InputError(path.string(), "goes on from too many recordings, or from itself");
-  if (std::error_code error; !fs::exists(path.parent_path() / name, error))
+  const fs::path before_it = path.parent_path() / name;
+  if (std::error_code error; !fs::exists(before_it, error))
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not beside it");
-  if (std::error_code error; fs::equivalent(path.parent_path() / name, path, error))
-    throw InputError(path.string(), "goes on from itself");
-  Recording whole = read_chain(path.parent_path() / name, max_before - 1);
+  later.push_back(fs::canonical(path));
+  if (later.size() > kMost || std::ranges::find(later, fs::canonical(before_it)) != later.end())
+    throw InputError(path.string(), "goes on from too many recordings, or from itself");
+  Recording whole = read_chain(before_it, std::move(later));
   if (whole.sessions.empty() || whole.description.scan_hash != recording.description.scan_hash ||
       whole.description.labels.size() != recording.description.labels.size())
     throw InputError(path.string(), "goes on from " + name.string() + ", which is not what came before it");
@@ -370,8 +372,7 @@ Recording read_chain(const fs::path& path, int max_before) {
 }  // namespace
 
 Recording read_recording_chain(const fs::path& path) {
-  constexpr int kMaxBefore = 64;
-  return read_chain(path, kMaxBefore);
+  return read_chain(path, {});
 }
 
 bool is_hdf5(const fs::path& path) {
