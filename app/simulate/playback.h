@@ -29,7 +29,7 @@ struct PlaybackMarks {
   /// The burr cuts; the tool touches bone or a guard; it touches what it must not; not the wrench that was
   /// asked for was sent (slow changes do not count).
   Spans cuts, contacts, no_go, faults;
-  /// Where the burr was held off a structure, by the structure's name.
+  /// The stretches in which the burr was held off a structure, by the structure's name.
   std::vector<std::pair<std::string, Spans>> guards;
   /// The beginnings of steps of the exercise, and of sessions with another burr, algorithm or bone.
   std::vector<std::pair<double, std::string>> steps;

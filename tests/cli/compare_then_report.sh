@@ -52,5 +52,45 @@ grep -q "Left out of this comparison: surface-points cannot be felt as" f/report
 [ "$(cut -d, -f1 f/summary.csv | sort -u | wc -l)" -eq 4 ] || fault "three algorithms should be compared"
 grep -q "matched.felt_stiffness" f/report.html || fault "the settings should say as what stiffness is felt"
 grep -q "Stiffness is not matched" a/report.html || fault "the report should say that stiffness is not matched"
+# The bones in 3D: the one before, and one after each algorithm, each by about the bone that went smaller.
+/usr/bin/python3 - <<'CHECK' || fault "the bones in 3D"
+import base64, csv, json, re, struct
+text = open("a/report.html", encoding="utf-8").read()
+assert len(text.encode()) <= 5e6, len(text.encode())
+data = json.loads(re.search(r'id="page-data">(.*?)</script>', text, re.S).group(1))
+assert "Osteomill.showBone(" in text
+def volume_mm3(body):
+    raw, triangles = base64.b64decode(body["places"]), base64.b64decode(body["triangles"])
+    steps = struct.unpack(f"<{len(raw) // 2}H", raw)
+    # About the hole, or the rest would lose the digits.
+    corners = [[body["origin"][n] + body["step"] * steps[3 * v + n] - data["focus"][n] for n in range(3)] for v in range(len(steps) // 3)]
+    indices = struct.unpack(f"<{len(triangles) // 2}H", triangles)
+    total = 0
+    for n in range(0, len(indices), 3):
+        a, b, c = (corners[indices[n + k]] for k in range(3))
+        total += (a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+    return total
+volumes = {body["choice"]: volume_mm3(body) for body in data["bodies"]}
+removed = {row["algorithm"]: float(row["removed_mm3"]) for row in csv.DictReader(open("a/summary.csv")) if row["phase"] == "milling"}
+assert len(volumes) == 5 and volumes["before"] > 100, volumes
+for choice, volume in volumes.items():
+    if choice == "before":
+        continue
+    said = re.fullmatch(r"after \d (\S+) \(([0-9.]+) mm³ removed\)", choice)
+    assert abs(float(said[2]) - removed[said[1]]) <= 0.051, (choice, removed)
+    # Bone of the reference density by cuts, bone by its surface here.
+    gone = volumes["before"] - volume
+    assert abs(gone - removed[said[1]]) < 0.5 * removed[said[1]] + 0.02 * volumes["before"], (choice, gone)
+CHECK
+# Without the scan the report says what is missing.
+"$osteomill" save builtin:layers --out l.nrrd --quiet >/dev/null
+awk 'BEGIN { print "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling"
+  for (n = 0; n < 400; ++n) printf "%.3f,0,0,%.4f,1,0,0,0,1\n", n / 1000, 1.7 - 0.003 * n }' >down.csv
+"$osteomill" replay down.csv l.nrrd --record r.h5 --removal-rate 400 --quiet >/dev/null
+"$osteomill" report r.h5 --out r --quiet >/dev/null
+grep -q "Osteomill.showBone" r/report.html || fault "no bone in 3D"
+rm l.nrrd
+"$osteomill" report r.h5 --out r --quiet >/dev/null
+grep -q "No bone in 3D: l.nrrd: " r/report.html && ! grep -q "showBone" r/report.html || fault "the report does not say that the scan is missing"
 find . -name '*.writing-*' -o -name '*.part.*' | grep -q . && fault "left a half-written file"
 exit 0

@@ -63,6 +63,40 @@ grep -q "^person 1,2,.*,,target_removed_percent," none/debrief.csv || fault "$(c
 [ "$(debrief class/1.h5 --out one --anonymous)" = 0 ] || fault "exit code"
 ! grep -oE 'Ann <|Ann &|class/' one/* || fault "a name is left"
 
+# Two ways: the first goes on down, the other one up.
+mkdir ways
+awk 'BEGIN { print "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling"
+  for (n = 0; n < 400; ++n) printf "%.3f,0,0,%.5f,1,0,0,0,1\n", n / 1000, 0.8 + n / 1000 }' >up.csv
+work ways/first.h5 hole Ann 0.8
+"$osteomill" replay up.csv --from ways/first.h5 --at 0.25 --record ways/again.h5 --quiet >/dev/null
+[ "$(debrief ways/again.h5 --out both)" = 0 ] && [ ! -s error ] || fault "$(cat error)"
+grep -q "^goes on from ways/first.h5 at 0.250 s, after 251 ticks" said || fault "$(cat said)"
+[ "$(debrief ways/first.h5 --out alone)" = 0 ] && [ "$(debrief ways/again.h5 --out nameless --anonymous)" = 0 ] || fault "exit code"
+! grep -oE 'first\.h5|again\.h5|ways/|Ann' nameless/* said || fault "a name is left"
+cp ways/again.h5 ways/far.h5
+mv ways/first.h5 .
+/usr/bin/python3 - <<'CHECK' || fault "the two ways"
+import base64, csv, json, re, struct
+page = open("both/debrief.html").read()
+data = json.loads(re.search(r'id="page-data">(.*?)</script>', page, re.S).group(1))
+floats = lambda text: struct.unpack(f"<{len(base64.b64decode(text)) // 4}f", base64.b64decode(text))
+first, own = data["first"]["samples"], data["samples"]
+assert abs(floats(first["time"])[0] - 0.25) < 1e-6 and abs(floats(first["time"])[-1] - 0.599) < 1e-6
+assert abs(floats(own["time"])[-1] - 0.65) < 2e-3, floats(own["time"])[-1]
+parting = [mark for mark in data["marks"] if mark["kind"] == "parting"]
+assert len(parting) == 1 and abs(parting[0]["time"] - 0.25) < 1e-9 and "first.h5 --at 0.25" in parting[0]["command"], parting
+assert parting[0]["facts"] == [["when", "0.250 s"], ["ticks in common", "251"]], parting
+assert {body["choice"] for body in data["bodies"]} == {"this way", "the first way"}
+assert data["marks"] == sorted(data["marks"], key=lambda mark: mark["time"])
+def value(folder):
+    return next(float(row["value"]) for row in csv.DictReader(open(folder + "/debrief.csv")) if row["measure"] == "target_removed_percent")
+cells = re.search(r"<tr><th>target_removed_percent</th><td>(.*?)</td><td>(.*?)</td>", page).groups()
+shown = [float(re.search(r"[0-9.]+", cell)[0]) for cell in cells]
+assert abs(shown[0] - value("both")) < 1e-3 * shown[0] and abs(shown[1] - value("alone")) < 1e-3 * shown[1] and shown[0] < shown[1], (shown, value("both"), value("alone"))
+CHECK
+[ "$(debrief ways/again.h5 --out lost)" = 1 ] && grep -q "^osteomill: ways/again.h5: goes on from first.h5, which is not beside it" error ||
+  fault "$(cat error)"
+
 # Against four attempts before.
 mkdir ann
 for n in 1 2 3 4 5; do work ann/$n.h5 hole Ann "$(awk "BEGIN { print $n < 5 ? 0.3 + 0.01 * $n : 1.2 }")"; [ $n -eq 5 ] || sleep 1.1; done

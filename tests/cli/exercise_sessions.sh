@@ -47,7 +47,7 @@ through() {
   /usr/bin/python3 "$page" "$4" "$structure" "$tool_s" "$x" "$y" "$1" || fault "$4"
 }
 
-# The same where the burr takes its first bone outside the target: its surface reaches the middle of a voxel.
+# Down to where the burr takes its first bone outside the target: its surface reaches the middle of a voxel.
 outside() {
   down_to "$@"
   holds "$tool_s - $2 - $stretched_s >= -0.001 && $tool_s - $2 - $stretched_s <= 0.002 && $aside <= 0.1" || fault "$4"

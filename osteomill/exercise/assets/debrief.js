@@ -273,7 +273,7 @@
   for (const line of [whole, done]) line.frustumCulled = false;
   scene.add(whole, done, tool);
 
-  const shapes = { contact: [[32, 4], [60, 32], [32, 60], [4, 32]], outside: [[32, 6], [60, 56], [4, 56]], parting: [[20, 8], [44, 8], [58, 32], [44, 56], [20, 56], [6, 32]] };
+  const shapes = { contact: [[32, 4], [60, 32], [32, 60], [4, 32]], outside: [[32, 6], [60, 56], [4, 56]], parting: Array.from({ length: 24 }, (_, n) => [32 + 24 * Math.cos(n * Math.PI / 12), 32 + 24 * Math.sin(n * Math.PI / 12)]) };
   function disc(fill, kind) {
     const canvas = el("canvas", { width: 64, height: 64 }), pen = canvas.getContext("2d");
     pen.fillStyle = fill;

@@ -35,7 +35,7 @@ using nlohmann::json;
 
 constexpr const char* kUnnamed = "without a name";
 
-// Of all bodies of a page: 2.6 MB.
+// The vertices of all bodies of a page together take 2.6 MB.
 constexpr std::size_t kPageVertices = 110000;
 constexpr const char *kThisWay = "this way", *kFirstWay = "the first way";
 

@@ -236,9 +236,8 @@ void put_first_way(json& data, const FirstWay& first, const std::string& recordi
                {"time", tick.time_s},
                {"place", numbers_of(tick.burr_W)},
                {"title", fmt::format("{:.2f} s: the ways part", tick.time_s)},
-               {"facts",
-                {{"when", fmt::format("{:.3f} s", tick.time_s)},
-                 {"ticks in common", fmt::format("{}", first.from.ticks)}}},
+               {"facts", json::array({json::array({"when", fmt::format("{:.3f} s", tick.time_s)}),
+                                      json::array({"ticks in common", std::to_string(first.from.ticks)})})},
                {"command", command_at(recording_name, tick.time_s)}};
   auto& marks = data["marks"].get_ref<json::array_t&>();
   const auto is_later = [&](const json& one) { return one["time"].get<double>() > tick.time_s; };

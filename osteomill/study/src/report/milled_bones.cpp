@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kMostRuns = 8, kFewestVertices = 1000;
 
-// Where runs cut, and from where they were held.
+// The place at which runs cut, and the side from which they were held.
 struct CutPlace {
   Eigen::AlignedBox3d box_W;
   Vec3 towards_hand_W = Vec3::Zero();

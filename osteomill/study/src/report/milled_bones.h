@@ -11,7 +11,7 @@
 
 namespace osteomill {
 
-/// What a page shows in 3D of the bones that runs left.
+/// The bones that runs left, as a page shows them in 3D.
 struct MilledBones {
   /// The page's data (bone_page.h); null if it shows none.
   nlohmann::json data;

@@ -28,13 +28,13 @@ nlohmann::json numbers_of(const Vec3& v);
 /// How a page shows a body. Bodies of one name are shown and hidden together.
 struct BodyLook {
   std::string name;
-  /// What it is, for the script: "bone", or one of an exercise's.
+  /// The kind of body, for the script: "bone", or one of an exercise's.
   std::string kind = "bone";
   /// "#rrggbb".
   std::string colour = "#e8dcc0";
   double opacity = 1;
   bool is_shown = true;
-  /// Of bodies with a choice those of one are shown at a time; a list picks it, the last at first. Without,
+  /// Bodies with a choice are shown one choice at a time; a list picks it, the last at first. Without,
   /// the body is shown with any.
   std::string choice = {};
 };
