@@ -14,16 +14,12 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(std::string("milling script: ") + what);
 }
 
-// Share of its push, or of its torque limit, that the hand aims for in each stage.
-constexpr double kFeedPush = 0.9;
-constexpr double kLeanPush = 0.6;
-constexpr double kHoldPush = 0.5;
-// Sideways, towards the rim that is leant against. Leaning by torque alone would press the burr into the wall
-// on the other side as hard as the shaft into the rim, and so mill that wall away instead of loading the
-// edge.
+// Share of its push sideways, towards the rim that is leant against. Leaning by torque alone would press the
+// burr into the wall on the other side as hard as the shaft into the rim, and so mill that wall away instead
+// of loading the edge.
 constexpr double kSide = 0.6;
-// With `until_leant` only until the shaft meets the wall, and from there by what its spring takes for the
-// torque: no further, if the wall gives way.
+// Share of its torque limit. With `until_leant` only until the shaft meets the wall, and from there by what
+// its spring takes for the torque: no further, if the wall gives way.
 constexpr double kTorque = 0.8;
 constexpr double kApproach_s = 1.0;
 constexpr double kFeed_mm_s = 2.0;
@@ -126,7 +122,7 @@ bool MillingScript::is_settled(double now_s, const Pose& X_WD) const {
 }
 
 bool MillingScript::is_push_felt(const Pose& X_WD) const {
-  return felt_push_share(X_WD) >= kFelt * kHoldPush && wall_rad_;
+  return felt_push_share(X_WD) >= kFelt * ScriptSettings::hold_push && wall_rad_;
 }
 
 void MillingScript::begin(ScriptStage stage, double now_s) {
@@ -199,14 +195,15 @@ Pose MillingScript::target() const {
 void MillingScript::move(double dt_s, const Pose& X_WD) {
   switch (intent_.stage) {
     case ScriptStage::approach:
-      push(kFeedPush, 0.0, kStartAbove_mm / kApproach_s, dt_s, X_WD);
+      push(ScriptSettings::feed_push, 0.0, kStartAbove_mm / kApproach_s, dt_s, X_WD);
       break;
     case ScriptStage::feed:
-      push(kFeedPush, 0.0, kFeed_mm_s, dt_s, X_WD);
+      push(ScriptSettings::feed_push, 0.0, kFeed_mm_s, dt_s, X_WD);
       break;
     case ScriptStage::lean:
     case ScriptStage::settle:
-      push(intent_.stage == ScriptStage::lean ? kLeanPush : kHoldPush, -kFeed_mm_s, kFeed_mm_s, dt_s, X_WD);
+      push(intent_.stage == ScriptStage::lean ? ScriptSettings::lean_push : ScriptSettings::hold_push,
+           -kFeed_mm_s, kFeed_mm_s, dt_s, X_WD);
       push_sideways(dt_s, X_WD);
       lean(dt_s, X_WD);
       break;

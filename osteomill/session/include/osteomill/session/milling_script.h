@@ -22,6 +22,10 @@ struct ScriptSettings {
   double holding_s = 20.0;
   /// The hole is deep enough to lean in when the shown burr's tip is this far below the entry.
   static constexpr double depth_mm = 3.0;
+  /// The shares of its push that the hand aims for while it feeds the burr in, leans the shaft, and holds.
+  static constexpr double feed_push = 0.9;
+  static constexpr double lean_push = 0.6;
+  static constexpr double hold_push = 0.5;
   /// The least time that the hand takes, at the start of the holding, to come to the push that it then holds.
   /// With `until_leant` it takes until it feels that push and the wall, but no longer than half the holding;
   /// the time beyond `settle_s` makes the holding so much longer.
