@@ -21,7 +21,10 @@
 #include "osteomill/study/measure_passivity.h"
 #include "osteomill/study/paper.h"
 #include "osteomill/study/probe_bones.h"
+#include "osteomill/study/run_groups.h"
 #include "osteomill/study/run_trials.h"
+#include "osteomill/study/study.h"
+#include "osteomill/study/trial_plan.h"
 #include "osteomill/volume/density_grid.h"
 
 #include "app/commands.h"
@@ -212,6 +215,9 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
       is_of_a_comparison);
   std::vector<Recording> recordings;
   for (const fs::path& path : paths) recordings.push_back(read_recording(path));
+  std::vector<MeasuredRun> rows = group_runs(recordings, measured_phase).runs;
+  rows.insert(rows.end(), extras.others.begin(), extras.others.end());
+  for (const std::string& line : unreached_lines(Study(std::move(rows)))) warn(line);
   std::vector<Table> came_out;
   const fs::path page =
       write_comparison_report(recordings, options.out, extras, &came_out, [&](const Recording&) {

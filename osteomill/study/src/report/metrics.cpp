@@ -1,6 +1,7 @@
 #include "osteomill/study/metrics.h"
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -153,20 +154,52 @@ ContactShares contact_shares(std::span<const TickRecord> records) {
 
 }  // namespace
 
-std::string contact_words(const ContactShares& contact) {
-  const auto share_of_time = [](double share) {
-    return share < 0.005 ? "for less than 1 % of the time"
-                         : fmt::format("for {:.0f} % of the time", 100 * share);
-  };
-  if (contact.any == 0) return contact.lost_while_milling ? "lost while milling" : "never touched";
+namespace {
+
+// A reason for which nothing was measured; `words` has a place for the number.
+struct Reason {
+  const char* words;
+  double number = 0;
+};
+
+Reason reason_of(const ContactShares& contact) {
+  if (contact.any == 0) return {contact.lost_while_milling ? "lost while milling" : "never touched"};
   if (contact.is_lost() && contact.lost_while_milling)
-    return fmt::format("lost while milling, after {:.1f} s", contact.lost_after_s);
-  if (contact.is_lost()) return fmt::format("lost contact after {:.1f} s", contact.lost_after_s);
-  if (!is_enough_contact(contact.any)) return "touched " + share_of_time(contact.any);
-  if (!is_enough_contact(contact.shaft)) return "the shaft touched " + share_of_time(contact.shaft);
-  if (!is_enough_contact(contact.torque)) return "felt a torque " + share_of_time(contact.torque);
-  if (!is_enough_contact(contact.force)) return "felt a force " + share_of_time(contact.force);
-  return "too little contact in half of the hands";
+    return {"lost while milling, after {seconds}", contact.lost_after_s};
+  if (contact.is_lost()) return {"lost contact after {seconds}", contact.lost_after_s};
+  if (!is_enough_contact(contact.any)) return {"touched {share}", contact.any};
+  if (!is_enough_contact(contact.shaft)) return {"the shaft touched {share}", contact.shaft};
+  if (!is_enough_contact(contact.torque)) return {"felt a torque {share}", contact.torque};
+  if (!is_enough_contact(contact.force)) return {"felt a force {share}", contact.force};
+  return {"felt too little of it"};
+}
+
+std::string words_of(const Reason& reason) {
+  const std::string share = reason.number < 0.005
+                                ? "for less than 1 % of the time"
+                                : fmt::format("for {:.0f} % of the time", 100 * reason.number);
+  return fmt::format(fmt::runtime(reason.words), fmt::arg("share", share),
+                     fmt::arg("seconds", fmt::format("{:.1f} s", reason.number)));
+}
+
+}  // namespace
+
+std::string contact_words(const ContactShares& contact) {
+  return words_of(reason_of(contact));
+}
+
+std::string contact_words(std::span<const ContactShares> unmeasured, std::size_t hands) {
+  std::map<std::string_view, std::vector<double>> reasons;
+  for (const ContactShares& contact : unmeasured) {
+    const Reason reason = reason_of(contact);
+    reasons[reason.words].push_back(reason.number);
+  }
+  std::string text;
+  for (const auto& [words, numbers] : reasons) {
+    text += fmt::format("{}{} in {} of {} hands", text.empty() ? "" : "; ",
+                        words_of({words.data(), distribution_of(numbers).median}), numbers.size(), hands);
+  }
+  return text;
 }
 
 VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,

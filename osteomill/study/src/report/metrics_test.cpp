@@ -209,6 +209,15 @@ TEST(RunMetrics, ATorqueIsMeasuredWhereThereIsOne) {
   EXPECT_FALSE(std::isnan(of_torque.torque_Nmm.mean) || std::isnan(of_torque.shaft.spread_deg));
 }
 
+TEST(ContactWords, OfSeveralHandsCountEachReason) {
+  ContactShares shaft_free{1, 1, 0.04, 1, 1}, lost{0.3, 0.3, 0.3, 0.3, 0.3, 2};
+  const ContactShares more_free{1, 1, 0.08, 1, 1};
+  EXPECT_EQ(
+      contact_words(std::vector<ContactShares>{shaft_free, lost, more_free}, 8),
+      "lost contact after 2.0 s in 1 of 8 hands; the shaft touched for 6 % of the time in 2 of 8 hands");
+  EXPECT_EQ(contact_words(std::vector<ContactShares>{}, 8), "");
+}
+
 TEST(RunMetrics, WhatCuttingAddsIsNoContactOfTheShaft) {
   Recording cutting = simple_recording(4000);
   for (TickRecord& record : cutting.records) record.cutting_torque_W_Nmm = record.wrench.torque_Nmm;

@@ -54,7 +54,11 @@ body { font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1b1b1b; back
        max-width: 1200px; margin: 2em auto; padding: 0 1.2em; }
 h1 { font-size: 1.7em; line-height: 1.2; } h2 { font-size: 1.3em; margin-top: 2em; border-bottom: 1px solid #ccc; }
 h3 { font-size: 1.08em; margin-top: 1.6em; }
-.wide { overflow-x: auto; }
+.wide { overflow-x: auto; max-width: 100%; background:
+        linear-gradient(90deg, #fff 50%, transparent) left / 3em 100% local no-repeat,
+        linear-gradient(270deg, #fff 50%, transparent) right / 3em 100% local no-repeat,
+        linear-gradient(90deg, #bbb, transparent) left / 0.8em 100% no-repeat,
+        linear-gradient(270deg, #bbb, transparent) right / 0.8em 100% no-repeat; }
 table { border-collapse: collapse; margin: 0.8em 0; font-size: 14px; }
 th, td { padding: 0.3em 0.7em; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
 thead th { border-bottom: 2px solid #888; } tbody th { font-weight: normal; }
@@ -65,6 +69,8 @@ thead th { border-bottom: 2px solid #888; } tbody th { font-weight: normal; }
 .agrees { color: #146c2e; font-weight: 600; white-space: nowrap; }
 .differs { color: #a4101f; font-weight: 600; white-space: nowrap; }
 .faint { color: #666; white-space: nowrap; }
+@media (max-width: 700px) { table { font-size: 12px; } th, td { padding: 0.3em 0.5em; }
+  .numbers tbody th { min-width: 6em; } }
 .notice { background: #fff4d6; border-left: 4px solid #d9a400; padding: 0.5em 1em; }
 figure { margin: 1.2em 0 2em; } figure img { max-width: 100%; height: auto; border: 1px solid #e3e3e3; }
 figcaption { font-size: 14px; color: #444; margin-top: 0.3em; max-width: 60em; }

@@ -251,8 +251,7 @@ std::string degrees_text(double degrees) {
 
 std::string words(const MeasuredRun& run) {
   const DirectionMetrics& shaft = run.metrics.shaft;
-  // The tables say for how long it did, at more length than there is room for here.
-  return std::isnan(shaft.spread_deg) ? "too little contact"
+  return std::isnan(shaft.spread_deg) ? contact_words(run.metrics.contact)
                                       : fmt::format("spread {}°, at most {}°", degrees_text(shaft.spread_deg),
                                                     degrees_text(shaft.excursion_deg));
 }

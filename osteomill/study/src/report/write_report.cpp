@@ -123,9 +123,7 @@ const Topic kFelt[] = {
      {{"force", draw_force_figure,
        "Magnitude of the force sent to the hand. The panels of a row have one scale, which need not begin at "
        "0. Each "
-       "pixel's least and greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not "
-       "counted in the tables, "
-       "nor is what is felt without contact."}},
+       "pixel's least and greatest are drawn, so no spike is lost."}},
      {"force_mean_N", "force_max_N", "force_hp_rms_N", "force_hp_share", "force_step_max_N"}},
     {"Torque",
      {{"torque", draw_torque_figure,
@@ -150,9 +148,22 @@ const Topic kTimes{
       "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line."}},
     {"steps", "tick_us_median", "tick_us_p99", "tick_us_max", "rate_hz"}};
 
+// Returns a sentence on the parts of the curves that the tables leave out.
+std::string not_counted(const RunGroup& group) {
+  const auto longest = std::ranges::max_element(
+      group.runs, {}, [](const MeasuredRun& run) { return run.metrics.counted_from_s; });
+  const double before_s = longest->metrics.counted_from_s;
+  if (before_s == 0) return " What is felt without contact is not counted in the tables.";
+  return fmt::format(
+      " The tables do not count what is felt without contact, nor what is shaded, before 0 s, as the hand "
+      "comes to its hold: at most {}, with {}.",
+      shown_time(before_s), longest->algorithm.label);
+}
+
 CaptionedFigure drawn(const RunFigure& figure, const RunGroup& group, const PageText& text,
                       const fs::path& folder) {
   std::string caption = figure.caption;
+  if (figure.name == kFelt[0].figures[0].name) caption += not_counted(group);
   if (const auto note = text.caption_notes.find(figure.name); note != text.caption_notes.end())
     caption += " " + note->second;
   return {figure.draw(group, folder).svg, std::move(caption)};
@@ -325,9 +336,9 @@ Page report_page(const RunGroup& group, const PageText& text, const ScanOf& scan
   sections.push_back(labels_section(group, folder));
   add(text.sections);
   sections.push_back(topic_section(kTimes, group, text, folder, text.further_times));
-  add({what_was_run(group),
-       {.title = "Settings", .tables = {settings_table(recordings)}},
-       how_to_repeat(recordings)});
+  Section run = what_was_run(group);
+  run.paragraphs.insert(run.paragraphs.end(), text.about_the_run.begin(), text.about_the_run.end());
+  add({run, {.title = "Settings", .tables = {settings_table(recordings)}}, how_to_repeat(recordings)});
   Page page{.title = text.title, .sections = std::move(sections)};
   if (scan_of) put_bones(page, group, scan_of);
   return page;

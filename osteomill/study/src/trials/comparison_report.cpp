@@ -1,6 +1,7 @@
 #include "osteomill/study/comparison_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -8,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "osteomill/base/atomic_file.h"
+#include "osteomill/base/csv_field.h"
+#include "osteomill/base/parse_number.h"
 #include "osteomill/study/paper.h"
 #include "osteomill/study/run_trials.h"
 #include "osteomill/study/trial_plan.h"
@@ -103,12 +106,89 @@ std::string about_line_proxy(const Study& study, const MillingTool& tool) {
   return "";
 }
 
+// Returns a setting of three numbers; not numbers if the recording does not have it.
+Vec3 vector_in(const RunDescription& run, std::string_view key) {
+  Vec3 vector = Vec3::Constant(kNotMeasured);
+  const std::string* text = find_setting<std::string>(run, key);
+  if (text == nullptr) return vector;
+  const std::vector<std::string_view> numbers = csv_fields(*text);
+  for (std::size_t n = 0; n < std::min<std::size_t>(3, numbers.size()); ++n)
+    vector[static_cast<Eigen::Index>(n)] = parsed_number<double>(numbers[n]).value_or(kNotMeasured);
+  return vector;
+}
+
+// Returns how far below the entry the burr's tip pressed on bone at most, mm; not a number if it did not, or
+// the recording does not name its entry.
+double depth_mm(const Recording& recording) {
+  const Vec3 entry_W_mm = vector_in(recording.description, kScriptEntryKey);
+  const Vec3 direction_W = vector_in(recording.description, kScriptDirectionKey);
+  double deepest_mm = kNotMeasured;
+  for (const TickRecord& record : recording.records)
+    if (contact_of(record).burr)
+      deepest_mm = std::fmax(deepest_mm, direction_W.dot(record.X_WT.position_mm - entry_W_mm));
+  return deepest_mm + recording.description.tool.burr_radius_mm;
+}
+
+// Returns the depth of each algorithm's milling, by its label.
+std::map<AlgorithmId, double> depths_mm(const RunGroup& group) {
+  std::map<AlgorithmId, double> depths;
+  for (const MeasuredRun* run : group.runs_of(std::string(kMilling)))
+    if (const double depth = depth_mm(*run->recording); !std::isnan(depth)) depths[run->algorithm] = depth;
+  return depths;
+}
+
+// "3.4 mm with 1 line-proxy and 7.6 mm with 4 barrier-shell"
+std::string by_algorithm(const std::map<AlgorithmId, double>& values, const char* unit) {
+  std::vector<std::string> all;
+  for (const auto& [algorithm, value] : values)
+    all.push_back(fmt::format("{:.2g} {} with {}", value, unit, algorithm.label));
+  return in_words(all);
+}
+
+// Says how hard the hand pushed, what was felt at most, and how deep the burr really went.
+std::string push_and_depth(const RunGroup& group) {
+  const RunDescription& run = group.runs.front().recording->description;
+  const double* push_N = find_setting<double>(run, "hand.push");
+  if (push_N == nullptr) return "";
+  using S = ScriptSettings;
+  std::string text = fmt::format(
+      "The hand pushes with at most {:g} N; it aims for {:g} % of that while it feeds the burr in, {:g} % "
+      "while it leans the shaft and {:g} % while it holds.",
+      *push_N, 100 * S::feed_push, 100 * S::lean_push, 100 * S::hold_push);
+  std::map<AlgorithmId, double> greatest_N;
+  for (const MeasuredRun& one : group.runs)
+    if (const double force_N = one.metrics.force_N.max; !std::isnan(force_N))
+      greatest_N[one.algorithm] = std::max(greatest_N[one.algorithm], force_N);
+  if (!greatest_N.empty())
+    text +=
+        fmt::format(" The greatest force that the recorded hand felt was {}.", by_algorithm(greatest_N, "N"));
+  if (const auto depths = depths_mm(group); !depths.empty())
+    text += fmt::format(" The burr's tip went below the entry by {}, at most; {:g} mm were planned.",
+                        by_algorithm(depths, "mm"), S::depth_mm);
+  return text;
+}
+
+// A warning if a burr went on far beyond the hole that was planned, as one does that breaks through; empty if
+// none did.
+std::string too_deep(const RunGroup& group) {
+  std::map<AlgorithmId, double> depths = depths_mm(group);
+  const double planned_mm = ScriptSettings::depth_mm,
+               diameter_mm = 2 * group.runs.front().recording->description.tool.burr_radius_mm;
+  std::erase_if(depths, [&](const auto& one) { return one.second < planned_mm + diameter_mm; });
+  if (depths.empty()) return "";
+  return fmt::format(
+      "In the recorded hand the burr went deeper than the {:g} mm that were planned: {}. A burr that breaks "
+      "through into a hollow, or a push too heavy for it, does that; what follows is of this hole.",
+      planned_mm, by_algorithm(depths, "mm"));
+}
+
 // Says what was compared, whether that can show anything, and what it shows.
-Section opening(const Study& study, const std::vector<Recording>& recordings) {
+Section opening(const Study& study, const RunGroup& group, const std::vector<Recording>& recordings) {
   const std::map<std::string, Probe> probes = probes_in(recordings);
   Section section{.tables = conclusions(study, probes)};
   if (const std::string few = too_few_hands(study); !few.empty())
     section.notices = {few + fmt::format(" For as many: --seeds {}.", study.seeds_needed())};
+  if (const std::string deep = too_deep(group); !deep.empty()) section.notices.push_back(deep);
   for (const std::string& text :
        {which_to_take(study), what_was_compared(study, recordings.front().description.scan_name),
         study.algorithms().size() > 1 ? about_stiffness(recordings) : "", about_cutting(recordings.front()),
@@ -186,7 +266,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   if (!extras.others.empty()) write_study_csv(out_dir / kStudyCsv, study);
   if (!extras.passivity.empty()) write_passivity_csv(out_dir / kStabilityCsv, extras.passivity);
   if (!extras.in_one_hole.empty()) write_study_csv(out_dir / kOneHoleCsv, Study(extras.in_one_hole));
-  Section came = opening(study, recordings);
+  Section came = opening(study, group, recordings);
   if (has_other_tables) came.notices.insert(came.notices.begin(), kOtherTables);
   if (came_out != nullptr) *came_out = came.tables;
   return write_report(group, out_dir, scan_of, [&](const fs::path& figures) {
@@ -200,6 +280,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
           passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, figures)));
     }
     text.further_times = {{"haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
+    if (const std::string push = push_and_depth(group); !push.empty()) text.about_the_run = {push};
     text.caption_notes = {{"rate", "The paper's figure 6 shows the rate that follows from it."},
                           {"force", "The paper's figure 7."},
                           {"torque", "The paper's figure 8."},

@@ -203,6 +203,33 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
   EXPECT_EQ(html.find("<script"), std::string::npos);
 }
 
+// The samples' burr goes down from z = 20 mm by 0.2 mm/s.
+TEST_F(ReportTest, ThePushAndTheDepthAreSaidAndABurrThatWentTooDeep) {
+  for (const double entry_z_mm : {20.0, 21.0}) {
+    std::vector<Recording> runs = sample_runs();
+    for (Recording& run : runs) {
+      std::vector<RunSetting>& settings = run.description.settings;
+      settings.push_back({"hand.push", 4.0, "N"});
+      settings.push_back({std::string(kScriptEntryKey), fmt::format("12,12,{}", entry_z_mm), "mm"});
+      settings.push_back({std::string(kScriptDirectionKey), std::string("0,0,-1"), ""});
+    }
+    const std::string html = bytes_of(write_comparison_report(runs, out_));
+    EXPECT_NE(
+        html.find("The hand pushes with at most 4 N; it aims for 90 % of that while it feeds the burr in, "
+                  "60 % while it leans the shaft and 50 % while it holds. The greatest force that the "
+                  "recorded hand felt was 1.8 N with 1 line-proxy"),
+        std::string::npos);
+    const bool is_deep = entry_z_mm > 20;
+    EXPECT_NE(
+        html.find(is_deep ? "below the entry by 6.5 mm with 1 line-proxy" : "by 5.5 mm with 1 line-proxy"),
+        std::string::npos);
+    EXPECT_EQ(html.find("the burr went deeper than the 3 mm that were planned: 6.5 mm with 1 line-proxy, ") !=
+                  std::string::npos,
+              is_deep);
+    EXPECT_NE(html.find("What is felt without contact is not counted in the tables."), std::string::npos);
+  }
+}
+
 // Two comparisons of which each has another burr, push and seed, and what is left of a third.
 TEST_F(ReportTest, NothingIsConcludedFromRecordingsThatDoNotBelongTogether) {
   std::vector<Recording> runs = sample_runs(200);

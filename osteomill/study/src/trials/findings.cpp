@@ -46,10 +46,6 @@ struct Needed {
   double (*value)(const RunMetrics&);
 };
 
-std::string value_text(const MeasuredRun& run, double value) {
-  return std::isnan(value) ? contact_words(run.metrics.contact) : fmt::format("{:.3g}", value);
-}
-
 // A finding on what algorithms did in phases: its rule is applied to the values that it needs, in their
 // order; `words` has a {} for each.
 struct Rule {
@@ -60,7 +56,7 @@ struct Rule {
   bool (*holds)(const std::vector<double>&);
 };
 
-Finding finding_by(const Rule& rule, const RunGroup& group) {
+Finding finding_by(const Rule& rule, const RunGroup& group, const WhyNotMeasured& why) {
   Finding finding{rule.paper_says, rule.rule, "needs other recordings", Verdict::not_recorded};
   std::vector<double> values;
   fmt::dynamic_format_arg_store<fmt::format_context> texts;
@@ -69,7 +65,7 @@ Finding finding_by(const Rule& rule, const RunGroup& group) {
     const MeasuredRun* run = group.find(kPapersAlgorithms[one.algorithm - 1], one.phase);
     if (run == nullptr) return finding;
     values.push_back(one.value(run->metrics));
-    texts.push_back(value_text(*run, values.back()));
+    texts.push_back(std::isnan(values.back()) ? why(*run, one.value) : fmt::format("{:.3g}", values.back()));
     const std::string missed = fmt::format("{}, {}", run->algorithm.label, run->phase);
     if (!run->not_reached.empty() &&
         std::find(not_reached.begin(), not_reached.end(), missed) == not_reached.end())
@@ -97,7 +93,16 @@ Finding rate_finding(const RunGroup& group) {
               kMinRate_hz),
           fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(slowest.algorithm),
                       slowest.phase),
-          slowest.metrics.rate_hz >= kMinRate_hz ? Verdict::agrees : Verdict::does_not_agree, true};
+          slowest.metrics.rate_hz >= kMinRate_hz ? Verdict::agrees : Verdict::does_not_agree};
+}
+
+std::string felt_in_grips(const GripForces& grips) {
+  if (std::ranges::all_of(grips, [](const GripForce& grip) { return grip.felt == 0; }))
+    return "2 felt a force in no hand while holding, whatever the grip";
+  std::vector<std::size_t> felt;
+  for (const GripForce& grip : grips) felt.push_back(grip.felt);
+  return fmt::format("2 while holding, by grip {:g}: a force felt for long enough in {} of {} hands",
+                     fmt::join(kGrips, ", "), fmt::join(felt, ", "), grips.front().hands);
 }
 
 Finding grip_finding(const GripForces& grips) {
@@ -109,82 +114,84 @@ Finding grip_finding(const GripForces& grips) {
                   fmt::join(kGrips, ", "), kBuzzAbove_hz, kGripRatio),
       "needs three grips", Verdict::not_recorded};
   if (grips.empty()) return finding;
-  finding.measured =
-      fmt::format("2 while holding, by grip {:g}: {:.3g} N", fmt::join(kGrips, ", "), fmt::join(grips, ", "));
-  if (std::any_of(grips.begin(), grips.end(), [](double v) { return std::isnan(v); })) {
+  std::vector<double> forces_N;
+  for (const GripForce& grip : grips) forces_N.push_back(grip.hp_rms_N);
+  if (std::ranges::any_of(forces_N, [](double v) { return std::isnan(v); })) {
+    finding.measured = felt_in_grips(grips);
     finding.verdict = Verdict::too_little_contact;
     return finding;
   }
-  const bool one_way =
-      std::is_sorted(grips.begin(), grips.end()) || std::is_sorted(grips.rbegin(), grips.rend());
-  const auto [min, max] = std::minmax_element(grips.begin(), grips.end());
-  finding.verdict = one_way && *max >= kGripRatio * *min ? Verdict::agrees : Verdict::does_not_agree;
+  finding.measured = fmt::format("2 while holding, by grip {:g}: {:.3g} N", fmt::join(kGrips, ", "),
+                                 fmt::join(forces_N, ", "));
+  const bool one_way = std::ranges::is_sorted(forces_N) || std::is_sorted(forces_N.rbegin(), forces_N.rend());
+  const auto [min, max] = std::ranges::minmax(forces_N);
+  finding.verdict = one_way && max >= kGripRatio * min ? Verdict::agrees : Verdict::does_not_agree;
   return finding;
 }
 
-// In the order of the paper's text.
-const Rule kRules[] = {
-    {"force: 1 and 3 “more stable than Algorithm #2 independent of case scenario”",
-     fmt::format("in both parts 2's force above {:.0f} Hz (rms) is at least {:g} times that of 1 and of 3",
-                 kBuzzAbove_hz, kCalmerBy),
-     {{1, kMilling, force_hp},
-      {2, kMilling, force_hp},
-      {3, kMilling, force_hp},
-      {1, kHolding, force_hp},
-      {2, kHolding, force_hp},
-      {3, kHolding, force_hp}},
-     "milling 1: {}, 2: {}, 3: {} N; holding 1: {}, 2: {}, 3: {} N",
-     [](const auto& v) {
-       return v[1] >= kCalmerBy * std::max(v[0], v[2]) && v[4] >= kCalmerBy * std::max(v[3], v[5]);
-     }},
-    {"1 “kicks away the shaft at a moment”, with “a peak in the torque signal when milling”; the shaft's "
-     "jump “occurs at the same time”",
-     "while milling the greatest step of the torque is 1's, and in the 50 ms about it 1's shaft turns "
-     "further than those of 2 and 3 ever do in such a time",
-     {{1, kMilling, torque_step},
-      {2, kMilling, torque_step},
-      {3, kMilling, torque_step},
-      {1, kMilling, shaft_turn_at_torque_step},
-      {2, kMilling, shaft_turn},
-      {3, kMilling, shaft_turn}},
-     "step 1: {}, 2: {}, 3: {} N mm; turn 1 then: {}, 2 at most: {}, 3 at most: {} degrees",
-     [](const auto& v) { return v[0] > std::max(v[1], v[2]) && v[3] > std::max(v[4], v[5]); }},
-    {"2's torque seems “to follow the same pattern as for the force feedback, but Algorithm #2 is more "
-     "stable than Algorithm #1”",
-     fmt::format("in both parts the multiple correlation of 2's torque with its force of the 10 ms about "
-                 "it, both above {0:.0f} Hz, is {1:g} or more; and its torque above {0:.0f} Hz (rms) is "
-                 "less than that of 1 while milling",
-                 kBuzzAbove_hz, kFollows),
-     {{2, kMilling, torque_follows},
-      {2, kHolding, torque_follows},
-      {1, kMilling, torque_hp},
-      {2, kMilling, torque_hp}},
-     "correlation milling {}, holding {}; torque milling 1: {}, 2: {} N mm",
-     [](const auto& v) { return std::min(v[0], v[1]) >= kFollows && v[3] < v[2]; }},
-    {"3's torque “is a bit more unstable than the force feedback, especially for the milling case”",
-     fmt::format("what its torque has above {:.0f} Hz (rms), against its mean, is more than the same of its "
-                 "force while milling, and in proportion more than while holding",
-                 kBuzzAbove_hz),
-     {{3, kMilling, torque_unrest}, {3, kHolding, torque_unrest}},
-     "torque's share / force's share: milling {}, holding {}",
-     [](const auto& v) { return v[0] > 1 && v[0] > v[1]; }},
-    {"torque: “For the non-milling case both Algorithm #2 and Algorithm #3 give stable torque feedback”",
-     fmt::format("while holding, the torque above {:.0f} Hz (rms) of 2 and of 3 is at most {:g} of its mean",
-                 kBuzzAbove_hz, kStableShare),
-     {{2, kHolding, torque_share}, {3, kHolding, torque_share}},
-     "2: {}, 3: {}",
-     [](const auto& v) { return std::max(v[0], v[1]) <= kStableShare; }},
-    {"shaft: “For the milling case … Algorithm #1 generates a very unstable behavior of the shaft”",
-     "while milling the spread of the shaft's direction (rms angle about the mean) is the greatest in 1",
-     {{1, kMilling, shaft_spread}, {2, kMilling, shaft_spread}, {3, kMilling, shaft_spread}},
-     "1: {}, 2: {}, 3: {} degrees",
-     [](const auto& v) { return v[0] > std::max(v[1], v[2]); }},
-    {"“an average number of approximately [1]5 points … are really colliding in each haptic loop” with 3",
-     fmt::format("while milling {:g} to {:g} points touch, on the average of the ticks in contact",
-                 kMinContacts, kMaxContacts),
-     {{3, kMilling, contacts}},
-     "{}",
-     [](const auto& v) { return v[0] >= kMinContacts && v[0] <= kMaxContacts; }}};
+// In the order of the paper's text; with those on the rate and the grip they are all.
+const std::array<Rule, kFindings - 2> kRules{
+    {{"force: 1 and 3 “more stable than Algorithm #2 independent of case scenario”",
+      fmt::format("in both parts 2's force above {:.0f} Hz (rms) is at least {:g} times that of 1 and of 3",
+                  kBuzzAbove_hz, kCalmerBy),
+      {{1, kMilling, force_hp},
+       {2, kMilling, force_hp},
+       {3, kMilling, force_hp},
+       {1, kHolding, force_hp},
+       {2, kHolding, force_hp},
+       {3, kHolding, force_hp}},
+      "milling 1: {}, 2: {}, 3: {} N; holding 1: {}, 2: {}, 3: {} N",
+      [](const auto& v) {
+        return v[1] >= kCalmerBy * std::max(v[0], v[2]) && v[4] >= kCalmerBy * std::max(v[3], v[5]);
+      }},
+     {"1 “kicks away the shaft at a moment”, with “a peak in the torque signal when milling”; the shaft's "
+      "jump “occurs at the same time”",
+      "while milling the greatest step of the torque is 1's, and in the 50 ms about it 1's shaft turns "
+      "further than those of 2 and 3 ever do in such a time",
+      {{1, kMilling, torque_step},
+       {2, kMilling, torque_step},
+       {3, kMilling, torque_step},
+       {1, kMilling, shaft_turn_at_torque_step},
+       {2, kMilling, shaft_turn},
+       {3, kMilling, shaft_turn}},
+      "step 1: {}, 2: {}, 3: {} N mm; turn 1 then: {}, 2 at most: {}, 3 at most: {} degrees",
+      [](const auto& v) { return v[0] > std::max(v[1], v[2]) && v[3] > std::max(v[4], v[5]); }},
+     {"2's torque seems “to follow the same pattern as for the force feedback, but Algorithm #2 is more "
+      "stable than Algorithm #1”",
+      fmt::format("in both parts the multiple correlation of 2's torque with its force of the 10 ms about "
+                  "it, both above {0:.0f} Hz, is {1:g} or more; and its torque above {0:.0f} Hz (rms) is "
+                  "less than that of 1 while milling",
+                  kBuzzAbove_hz, kFollows),
+      {{2, kMilling, torque_follows},
+       {2, kHolding, torque_follows},
+       {1, kMilling, torque_hp},
+       {2, kMilling, torque_hp}},
+      "correlation milling {}, holding {}; torque milling 1: {}, 2: {} N mm",
+      [](const auto& v) { return std::min(v[0], v[1]) >= kFollows && v[3] < v[2]; }},
+     {"3's torque “is a bit more unstable than the force feedback, especially for the milling case”",
+      fmt::format("what its torque has above {:.0f} Hz (rms), against its mean, is more than the same of its "
+                  "force while milling, and in proportion more than while holding",
+                  kBuzzAbove_hz),
+      {{3, kMilling, torque_unrest}, {3, kHolding, torque_unrest}},
+      "torque's share / force's share: milling {}, holding {}",
+      [](const auto& v) { return v[0] > 1 && v[0] > v[1]; }},
+     {"torque: “For the non-milling case both Algorithm #2 and Algorithm #3 give stable torque feedback”",
+      fmt::format("while holding, the torque above {:.0f} Hz (rms) of 2 and of 3 is at most {:g} of its mean",
+                  kBuzzAbove_hz, kStableShare),
+      {{2, kHolding, torque_share}, {3, kHolding, torque_share}},
+      "2: {}, 3: {}",
+      [](const auto& v) { return std::max(v[0], v[1]) <= kStableShare; }},
+     {"shaft: “For the milling case … Algorithm #1 generates a very unstable behavior of the shaft”",
+      "while milling the spread of the shaft's direction (rms angle about the mean) is the greatest in 1",
+      {{1, kMilling, shaft_spread}, {2, kMilling, shaft_spread}, {3, kMilling, shaft_spread}},
+      "1: {}, 2: {}, 3: {} degrees",
+      [](const auto& v) { return v[0] > std::max(v[1], v[2]); }},
+     {"“an average number of approximately [1]5 points … are really colliding in each haptic loop” with 3",
+      fmt::format("while milling {:g} to {:g} points touch, on the average of the ticks in contact",
+                  kMinContacts, kMaxContacts),
+      {{3, kMilling, contacts}},
+      "{}",
+      [](const auto& v) { return v[0] >= kMinContacts && v[0] <= kMaxContacts; }}}};
 
 }  // namespace
 
@@ -204,10 +211,11 @@ std::string_view name_of(Verdict verdict) {
   return "";
 }
 
-std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips) {
+std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips,
+                                    const WhyNotMeasured& why) {
   std::vector<Finding> findings{rate_finding(group)};
   for (const Rule& rule : kRules) {
-    findings.push_back(finding_by(rule, group));
+    findings.push_back(finding_by(rule, group, why));
     if (findings.size() == 2) findings.push_back(grip_finding(grips));
   }
   return findings;

@@ -32,6 +32,12 @@ std::vector<StudyFinding> recorded_findings(const Study& study) {
   return findings;
 }
 
+// "6 of 8", the hands in which the rule holds and those in which it could be tested.
+std::string hands_of(const StudyFinding& finding) {
+  if (finding.tested == 0) return "not tested";
+  return fmt::format("{} of {}", finding.agreeing, finding.tested);
+}
+
 Table findings_table(const Study& study, const std::vector<StudyFinding>& findings) {
   const bool one = study.seeds().size() == 1;
   Table table{{"The paper found", one ? "Measured here" : "Medians over the hands",
@@ -40,7 +46,7 @@ Table findings_table(const Study& study, const std::vector<StudyFinding>& findin
   if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
   for (const StudyFinding& f : findings) {
     std::vector<Cell> row{f.of_medians.paper_says, f.of_medians.measured, verdict_cell(f, one)};
-    if (!one) row.insert(row.end(), {fmt::format("{} of {}", f.agreeing, f.tested), p_text(f.p)});
+    if (!one) row.insert(row.end(), {hands_of(f), f.tested == 0 ? "–" : p_text(f.p)});
     row.emplace_back((one ? "holds if " : "agrees if ") + f.of_medians.rule);
     table.rows.push_back(std::move(row));
   }
@@ -49,7 +55,6 @@ Table findings_table(const Study& study, const std::vector<StudyFinding>& findin
 
 }  // namespace
 
-// Returns a table of the number of findings with each verdict, and of those that do not agree.
 Table verdicts_table(const Study& study) {
   const bool one = study.seeds().size() == 1;
   struct Findings {
@@ -57,23 +62,20 @@ Table verdicts_table(const Study& study) {
     std::vector<std::string> which;
   };
   std::map<Verdict, Findings> findings;
-  std::size_t all = 0;
-  for (const StudyFinding& f : recorded_findings(study)) {
-    if (f.of_medians.of_the_machine) continue;
-    ++all;
+  const std::vector<StudyFinding> recorded = recorded_findings(study);
+  for (const StudyFinding& f : recorded) {
     Findings& alike = findings[one ? f.of_medians.verdict : f.verdict];
     alike.verdict = verdict_cell(f, one);
     alike.which.push_back(f.of_medians.paper_says);
-    if (!one && is_tested(f.verdict))
-      alike.which.back() += fmt::format(", in {} of {} hands", f.agreeing, f.tested);
+    if (!one && is_tested(f.verdict)) alike.which.back() += fmt::format(", in {} hands", hands_of(f));
   }
-  Table table{
-      {fmt::format("{} of the paper's findings on force, torque and shaft", all), "How many", "Which"}, {}};
-  for (const auto& [verdict, alike] : findings) {
-    table.rows.push_back(
-        {alike.verdict, fmt::format("{}", alike.which.size()),
-         verdict == Verdict::agrees ? "" : fmt::format("{}", fmt::join(alike.which, ";\n"))});
-  }
+  const std::string of_all = recorded.size() == kFindings
+                                 ? "The paper's nine findings"
+                                 : fmt::format("{} of the paper's nine findings", recorded.size());
+  Table table{{of_all, "How many", "Which"}, {}};
+  for (const auto& [verdict, alike] : findings)
+    table.rows.push_back({alike.verdict, fmt::format("{}", alike.which.size()),
+                          fmt::format("{}", fmt::join(alike.which, ";\n"))});
   return table;
 }
 

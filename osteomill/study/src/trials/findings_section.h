@@ -5,8 +5,8 @@
 
 namespace osteomill {
 
-/// Returns a table of the number of the paper's findings with each verdict, and of those that do not agree;
-/// without rows if the study has nothing that a finding needs.
+/// Returns a table of the paper's findings by verdict: how many, and which; without rows if the study has
+/// nothing that a finding needs.
 Table verdicts_table(const Study& study);
 
 /// Returns the report's section on what the paper says it found, each held against the study; empty if the

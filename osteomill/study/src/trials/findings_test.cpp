@@ -71,7 +71,7 @@ class FindingsTest : public ::testing::Test {
 
   std::vector<Recording> recordings_;
   RunGroup group_;
-  GripForces grips_{0.2, 0.13, 0.1};
+  GripForces grips_{{0.2}, {0.13}, {0.1}};
 };
 
 using Numbers = std::vector<std::size_t>;
@@ -86,16 +86,21 @@ TEST_F(FindingsTest, WhoLostContactIsNeitherBestNorWorst) {
   m.contact.lost_after_s = 3.2;
   m.force_N.hp_rms = m.torque_Nmm.hp_rms = m.shaft.spread_deg = m.torque_follows_force =
       std::numeric_limits<double>::quiet_NaN();
-  grips_[1] = std::numeric_limits<double>::quiet_NaN();
+  grips_[1] = {std::numeric_limits<double>::quiet_NaN(), 0};
   EXPECT_EQ(disagreeing(), Numbers{});
   EXPECT_EQ(findings_that(Verdict::too_little_contact), (Numbers{2, 3, 5, 7}));
   for (const Finding& f : check_findings(group_, grips_)) {
-    if (f.paper_says.find("gripping") != std::string::npos) continue;
     EXPECT_EQ(f.measured.find("nan"), std::string::npos) << f.measured;
+    if (f.paper_says.find("gripping") != std::string::npos) continue;
     EXPECT_EQ(f.measured.find("lost contact after 3.2 s") != std::string::npos,
               f.verdict == Verdict::too_little_contact)
         << f.measured;
   }
+  EXPECT_EQ(check_findings(group_, grips_)[2].measured,
+            "2 while holding, by grip 0.5, 1, 2: a force felt for long enough in 1, 0, 1 of 1 hands");
+  for (GripForce& grip : grips_) grip = grips_[1];
+  EXPECT_EQ(check_findings(group_, grips_)[2].measured,
+            "2 felt a force in no hand while holding, whatever the grip");
   m.contact.lost_while_milling = true;
   EXPECT_NE(check_findings(group_, grips_)[1].measured.find("lost while milling, after 3.2 s"),
             std::string::npos);
@@ -117,8 +122,8 @@ TEST_F(FindingsTest, EachRuleCanFail) {
   EXPECT_EQ(fails_with(three_held.rate_hz, 950), Numbers{});
   EXPECT_EQ(fails_with(two.force_N.hp_rms, 0.039), Numbers{2});
   EXPECT_EQ(fails_with(two_held.force_N.hp_rms, 0.039), Numbers{2});
-  EXPECT_EQ(fails_with(grips_[0], 0.12), Numbers{3}) << "most in the middle";
-  EXPECT_EQ(fails_with(grips_[2], 0.19), Numbers{3});
+  EXPECT_EQ(fails_with(grips_[0].hp_rms_N, 0.12), Numbers{3}) << "most in the middle";
+  EXPECT_EQ(fails_with(grips_[2].hp_rms_N, 0.19), Numbers{3});
   EXPECT_EQ(fails_with(three.torque_Nmm.step_max, 15), Numbers{4});
   EXPECT_EQ(fails_with(one.turns.at_torque_step_deg, 0.4), Numbers{4}) << "a peak without a jump";
   EXPECT_EQ(fails_with(two_held.torque_follows_force, 0.4), Numbers{5});

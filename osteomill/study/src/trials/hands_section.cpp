@@ -58,7 +58,7 @@ Cell values_cell(const Study& study, const AlgorithmId& algorithm, std::string_v
                  const Field<RunMetrics>& metric) {
   const std::vector<double> values = study.values(algorithm, phase, metric.get);
   const std::size_t hands = study.seeds().size();
-  if (values.empty()) return {contact_words(study.contact(algorithm, phase)), Look::words};
+  if (values.empty()) return {study.why_not_measured(algorithm, phase, metric.get), Look::words};
   std::string text =
       hands == 1 ? fmt::format("{:.3g}", values.front()) : interval_text(median_interval(values));
   if (values.size() != hands) text += fmt::format(" in {} of {} hands", values.size(), hands);

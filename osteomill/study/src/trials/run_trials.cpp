@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <random>
 #include <utility>
 
@@ -122,9 +123,6 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
     }
     recorder.close();
   }
-  const MeasuredRun whole = measured_phase(milled.phases.back());
-  if (!whole.not_reached.empty())
-    events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, whole.not_reached));
   if (milled.faults) events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, *milled.faults));
   return paths;
 }
@@ -214,22 +212,40 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
   return other;
 }
 
+namespace {
+
+// A line for each algorithm, with its first trial in which ticks were not as they should be.
+void warn_of_faults(const std::vector<TriedTrial>& tried, const RunEvents& events) {
+  struct Faults {
+    std::string first;
+    std::size_t trials = 0;
+  };
+  std::map<AlgorithmId, Faults> faults;
+  for (const TriedTrial& trial : tried) {
+    if (!trial.faults) continue;
+    const MeasuredRun& run = trial.rows.back().run;
+    Faults& of_algorithm = faults[run.algorithm];
+    if (++of_algorithm.trials > 1) continue;
+    of_algorithm.first =
+        fmt::format("seed {}{}{}: {}", run.seed, run.grip == 1 ? "" : fmt::format(", grip {:g}", run.grip),
+                    run.other_tremor == 0 ? "" : ", another tremor", *trial.faults);
+  }
+  for (const auto& [algorithm, one] : faults)
+    events.warn(fmt::format(
+        "{}, {}{}", algorithm.name, one.first,
+        one.trials == 1 ? "" : fmt::format("; such ticks also in {} other trials", one.trials - 1)));
+}
+
+}  // namespace
+
 std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
                                           const RunEvents& events) {
   const auto tried = run_trials(trials, "study", threads, events,
                                 [](const TrialPlan& plan) { return try_trial(StudyTest::milling, plan); });
   std::vector<MeasuredRun> all;
-  for (const TriedTrial& trial : tried) {
+  for (const TriedTrial& trial : tried)
     for (const TrialRow& row : trial.rows) all.push_back(row.run);
-    const MeasuredRun& last = all.back();
-    const auto warn = [&](const std::string& line) {
-      events.warn(fmt::format("{}, seed {}{}{}: {}", last.algorithm.name, last.seed,
-                              last.grip == 1 ? "" : fmt::format(", grip {:g}", last.grip),
-                              last.other_tremor == 0 ? "" : ", another tremor", line));
-    };
-    if (trial.faults) warn(*trial.faults);
-    if (!last.not_reached.empty()) warn(last.not_reached);
-  }
+  warn_of_faults(tried, events);
   return all;
 }
 

@@ -175,21 +175,15 @@ std::vector<double> Study::values_by_tremor(const AlgorithmId& algorithm, std::s
   return values;
 }
 
-ContactShares Study::contact(const AlgorithmId& algorithm, std::string_view phase) const {
-  const auto median = [&](const RunFigure& figure) {
-    return distribution_of(values(algorithm, phase, figure)).median;
-  };
-  ContactShares shares;
-  for (double ContactShares::*share : {&ContactShares::any, &ContactShares::burr, &ContactShares::shaft,
-                                       &ContactShares::force, &ContactShares::torque})
-    shares.*share = median([&](const M& m) { return m.contact.*share; });
-  const std::vector<double> lost =
-      values(algorithm, phase, [](const M& m) { return m.contact.lost_after_s; });
-  if (!lost.empty() && !are_most(seeds_.size() - lost.size()))
-    shares.lost_after_s = distribution_of(lost).median;
-  shares.lost_while_milling =
-      median([](const M& m) { return m.contact.lost_while_milling ? 1.0 : 0.0; }) > 0.5;
-  return shares;
+std::string Study::why_not_measured(const AlgorithmId& algorithm, std::string_view phase,
+                                    const RunFigure& figure) const {
+  std::vector<ContactShares> unmeasured;
+  for (const MeasuredRun& row : rows_) {
+    if (place(row) == std::tuple(phase_number(phase), algorithm) && std::isnan(figure(row.metrics)))
+      unmeasured.push_back(row.metrics.contact);
+  }
+  return seeds_.size() == 1 && !unmeasured.empty() ? contact_words(unmeasured.front())
+                                                   : contact_words(unmeasured, seeds_.size());
 }
 
 std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view phase) const {
@@ -210,6 +204,32 @@ std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view ph
     text += seeds_.size() == 1 ? words : fmt::format("{} ({} of {} hands)", words, count, seeds_.size());
   }
   return text;
+}
+
+std::vector<std::string> unreached_lines(const Study& study) {
+  std::vector<std::string> lines;
+  // It names all that the milling did not reach, too.
+  const std::string_view last = study.phases().back();
+  const auto count = [&](const std::vector<MeasuredRun>& rows, const AlgorithmId& algorithm, bool unreached) {
+    return std::ranges::count_if(rows, [&](const MeasuredRun& row) {
+      return row.algorithm == algorithm && row.phase == last && !(unreached && row.not_reached.empty());
+    });
+  };
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    const auto own = count(study.rows(), algorithm, true),
+               beside = count(study.rows_beside(), algorithm, true);
+    if (own + beside == 0) continue;
+    std::string line = algorithm.name + ": ";
+    if (own > 0 && study.seeds().size() > 1)
+      line += fmt::format("{} of {} hands did not do all of the test: ", own, study.seeds().size());
+    line += study.not_reached(algorithm, last);
+    if (beside > 0)
+      line += fmt::format("{}{} of {} trials with another grip or tremor did not do all of {}",
+                          own > 0 ? "; " : "", beside, count(study.rows_beside(), algorithm, false),
+                          own > 0 ? "it either" : "the test");
+    lines.push_back(std::move(line));
+  }
+  return lines;
 }
 
 void write_study_csv(const std::filesystem::path& path, const Study& study) {

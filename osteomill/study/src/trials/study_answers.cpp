@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -28,18 +27,53 @@ struct Question {
   const char* name;
   std::string_view phase;
   const char* column;
+  // The verdict on the algorithm that has least, and the word for having less.
+  const char* is_best;
+  const char* less;
 };
 
 std::vector<Question> questions_of(const Study& study) {
   std::vector<Question> all{
-      {"calm force while milling", kMilling, "force_hp_share"},
-      {"calm torque while milling", kMilling, "torque_hp_share"},
-      {"calm force while holding", kHolding, "force_hp_share"},
-      {"calm torque while holding", kHolding, "torque_hp_share"},
-      {"a shaft that follows the handle while milling", kMilling, "shaft_from_handle_deg"}};
+      {"calm force while milling", kMilling, "force_hp_share", "is calmest in force while milling", "calmer"},
+      {"calm torque while milling", kMilling, "torque_hp_share", "is calmest in torque while milling",
+       "calmer"},
+      {"calm force while holding", kHolding, "force_hp_share", "is calmest in force while holding", "calmer"},
+      {"calm torque while holding", kHolding, "torque_hp_share", "is calmest in torque while holding",
+       "calmer"},
+      {"a shaft that follows the handle while milling", kMilling, "shaft_from_handle_deg",
+       "keeps its shaft nearest to the handle while milling", "nearer"}};
   const std::vector<std::string_view> phases = study.phases();
   std::erase_if(all,
                 [&](const Question& one) { return std::ranges::find(phases, one.phase) == phases.end(); });
+  return all;
+}
+
+// In how many hands the algorithm did all of the test, milling and holding.
+std::size_t hands_that_did_all(const Study& study, const AlgorithmId& algorithm) {
+  std::size_t done = 0;
+  for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
+    done += std::ranges::all_of(study.rows_of_seed(seed), [&](const MeasuredRun& run) {
+      return run.algorithm != algorithm || (run.not_reached.empty() && !run.metrics.contact.is_lost());
+    });
+  }
+  return done;
+}
+
+// "0 of 8"
+std::string did_all_text(const Study& study, const AlgorithmId& algorithm) {
+  return fmt::format("{} of {}", hands_that_did_all(study, algorithm), study.seeds().size());
+}
+
+// Those that did all of the test in most hands are ranked among themselves; the others are not, however calm
+// they are.
+struct Considered {
+  std::vector<AlgorithmId> in, out;
+};
+
+Considered considered(const Study& study) {
+  Considered all;
+  for (const AlgorithmId& algorithm : study.algorithms())
+    (study.are_most(hands_that_did_all(study, algorithm)) ? all.in : all.out).push_back(algorithm);
   return all;
 }
 
@@ -49,9 +83,8 @@ struct Rank {
   std::size_t place = 1;
   // False if the figure is missing in half of the hands or more: it has no place, and takes none.
   bool is_measured = true;
-  // Short labels of those against which the hands do not settle it, and of those that are the same for a
-  // hand.
-  std::vector<std::string> open = {}, alike = {};
+  // Those against which the hands do not settle it, and those that are the same for a hand.
+  std::vector<AlgorithmId> open = {}, alike = {};
 
   bool is_first() const { return is_measured && open.empty() && place == 1; }
 };
@@ -75,30 +108,25 @@ std::vector<Rank> ranks_of(const Study& study, const Question& question,
       continue;
     }
     const auto list = pair.is_settled() ? &Rank::alike : &Rank::open;
-    ((*first).*list).push_back(short_label(pair.second));
-    ((*second).*list).push_back(short_label(pair.first));
+    ((*first).*list).push_back(pair.second);
+    ((*second).*list).push_back(pair.first);
   }
   return ranks;
 }
 
 std::string rank_text(const Rank& rank) {
   constexpr const char* kEndings[] = {"th", "st", "nd", "rd"};
+  const auto short_labels = [](const std::vector<AlgorithmId>& algorithms) {
+    std::string labels;
+    for (const AlgorithmId& algorithm : algorithms)
+      labels += (labels.empty() ? "" : ", ") + short_label(algorithm);
+    return labels;
+  };
   if (!rank.is_measured) return "no rank";
-  if (!rank.open.empty()) return fmt::format("not settled\nagainst {}", fmt::join(rank.open, ", "));
+  if (!rank.open.empty()) return "not settled\nagainst " + short_labels(rank.open);
   const std::string place = fmt::format("{}{}", rank.place, kEndings[rank.place < 4 ? rank.place : 0]);
   if (rank.alike.empty()) return place;
-  return fmt::format("{}, same for\na hand as {}", place, fmt::join(rank.alike, ", "));
-}
-
-// In how many hands the algorithm did all of the test, milling and holding.
-std::size_t hands_that_did_all(const Study& study, const AlgorithmId& algorithm) {
-  std::size_t done = 0;
-  for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
-    done += std::ranges::all_of(study.rows_of_seed(seed), [&](const MeasuredRun& run) {
-      return run.algorithm != algorithm || (run.not_reached.empty() && !run.metrics.contact.is_lost());
-    });
-  }
-  return done;
+  return fmt::format("{}, same for\na hand as {}", place, short_labels(rank.alike));
 }
 
 std::string share_text(double share) {
@@ -110,25 +138,37 @@ std::string head_of(const Question& question) {
   std::string head = question.name;
   head[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(head[0])));
   const Field<RunMetrics>& figure = metric(question.column);
-  return fmt::format("{}\n{}", head,
-                     figure.unit.empty() ? "above 20 Hz, of the mean" : "spread, " + figure.unit);
+  return fmt::format("{}\n{}\n(less is {})", head,
+                     figure.unit.empty() ? "above 20 Hz, of the mean" : "spread, " + figure.unit,
+                     question.less);
+}
+
+// Returns the rank among those that are considered; nothing if there is only one.
+std::vector<Cell::Piece> rank_pieces(const Study& study, const AlgorithmId& algorithm,
+                                     const std::vector<Rank>& ranks) {
+  if (!are_compared(study)) return {};
+  const auto rank = std::ranges::find(ranks, algorithm, &Rank::algorithm);
+  if (rank == ranks.end()) return {{"\nnot considered", Look::faint}};
+  if (ranks.size() == 1) return {};
+  return {{"\n" + rank_text(*rank), rank->is_first() ? Look::strong : Look::faint}};
 }
 
 // Returns the value of one hand and those with other tremors, or of several the median and the rank.
-Cell answer_cell(const Study& study, const Question& question, const Rank& rank) {
+Cell answer_cell(const Study& study, const Question& question, const AlgorithmId& algorithm,
+                 const std::vector<Rank>& ranks) {
   const Field<RunMetrics>& figure = metric(question.column);
   const auto text_of = [&](double value) {
     return figure.unit.empty() ? share_text(value) : in_two_digits(value);
   };
-  const std::vector<double> values = study.values(rank.algorithm, question.phase, figure.get);
-  if (values.empty()) return {contact_words(study.contact(rank.algorithm, question.phase)), Look::words};
+  const std::vector<double> values = study.values(algorithm, question.phase, figure.get);
+  if (values.empty()) return {study.why_not_measured(algorithm, question.phase, figure.get), Look::words};
   std::vector<Cell::Piece> cell{{text_of(distribution_of(values).median)}};
   if (values.size() < study.seeds().size())
     cell.push_back({fmt::format("\n{} of {} hands", values.size(), study.seeds().size()), Look::faint});
-  if (are_compared(study))
-    cell.push_back({"\n" + rank_text(rank), rank.is_first() ? Look::strong : Look::faint});
+  const std::vector<Cell::Piece> rank = rank_pieces(study, algorithm, ranks);
+  cell.insert(cell.end(), rank.begin(), rank.end());
   if (study.seeds().size() > 1) return cell;
-  const std::vector<double> by_tremor = study.values_by_tremor(rank.algorithm, question.phase, figure.get);
+  const std::vector<double> by_tremor = study.values_by_tremor(algorithm, question.phase, figure.get);
   if (by_tremor.size() > 1) {
     const auto [least, most] = std::ranges::minmax(by_tremor);
     const std::string from = figure.unit.empty() ? fmt::format("{:.2g}", 100 * least) : in_two_digits(least);
@@ -143,12 +183,14 @@ Table answer_table(const Study& study, const std::map<std::string, Probe>& probe
                                           : "In this hand"},
               {},
               true};
-  for (const AlgorithmId& algorithm : study.algorithms()) table.rows.push_back({algorithm.label});
+  const std::vector<AlgorithmId> algorithms = study.algorithms();
+  for (const AlgorithmId& algorithm : algorithms) table.rows.push_back({algorithm.label});
+  const std::vector<AlgorithmId> ranked = considered(study).in;
   for (const Question& question : questions_of(study)) {
     table.header.push_back(head_of(question));
-    const std::vector<Rank> ranks = ranks_of(study, question, study.algorithms());
-    for (std::size_t n = 0; n < ranks.size(); ++n)
-      table.rows[n].push_back(answer_cell(study, question, ranks[n]));
+    const std::vector<Rank> ranks = ranks_of(study, question, ranked);
+    for (std::size_t n = 0; n < algorithms.size(); ++n)
+      table.rows[n].push_back(answer_cell(study, question, algorithms[n], ranks));
   }
   table.header.emplace_back("Did all of the test\nhands");
   if (!probes.empty())
@@ -157,18 +199,17 @@ Table answer_table(const Study& study, const std::map<std::string, Probe>& probe
   table.header.emplace_back("A tick of milling takes\nmedian, µs");
   const Field<RunMetrics>& cost = metric("tick_us_median");
   for (std::size_t n = 0; n < table.rows.size(); ++n) {
-    const AlgorithmId algorithm = study.algorithms()[n];
     std::vector<Cell>& row = table.rows[n];
-    row.emplace_back(fmt::format("{} of {}", hands_that_did_all(study, algorithm), study.seeds().size()));
+    row.emplace_back(did_all_text(study, algorithms[n]));
     if (!probes.empty()) {
-      const auto probed = probes.find(algorithm.name);
+      const auto probed = probes.find(algorithms[n].name);
       const bool is_probed = probed != probes.end();
       row.emplace_back(!is_probed                                ? "–"
                        : std::isnan(probed->second.torque_error) ? "no force felt"
                                                                  : share_text(probed->second.torque_error));
       row.emplace_back(is_probed ? fmt::format("{:.3g}", probed->second.felt_N_per_mm) : "–");
     }
-    row.emplace_back(in_two_digits(distribution_of(study.values(algorithm, kMilling, cost.get)).median));
+    row.emplace_back(in_two_digits(distribution_of(study.values(algorithms[n], kMilling, cost.get)).median));
   }
   return table;
 }
@@ -196,6 +237,8 @@ std::string about_the_table(const Study& study) {
     text += fmt::format(
         " Below each value stands the range over {} runs of this hand that differ in its tremor alone.",
         tremors_tried(study));
+  if (are_compared(study) && !considered(study).out.empty())
+    text += " Ranks are those among the algorithms that did all of the test in most hands.";
   return text;
 }
 
@@ -217,68 +260,144 @@ std::vector<Table> conclusions(const Study& study, const std::map<std::string, P
 
 namespace {
 
-// "1.3 % against 2.8 % with the next"
-std::string reason_for(const Study& study, const Question& question, const AlgorithmId& best,
-                       const std::vector<AlgorithmId>& others) {
+// A question with what the hands answer to it.
+struct Answers {
+  const Study& study;
+  const Question& question;
   const Field<RunMetrics>& figure = metric(question.column);
-  const auto median = [&](const AlgorithmId& algorithm) {
+  std::vector<PairedComparison> pairs = compare_algorithms(study, question.phase, figure);
+
+  double median(const AlgorithmId& algorithm) const {
     return distribution_of(study.values(algorithm, question.phase, figure.get)).median;
-  };
-  double next = std::numeric_limits<double>::infinity();
-  for (const AlgorithmId& other : others)
-    if (other != best && !study.values(other, question.phase, figure.get).empty())
-      next = std::min(next, median(other));
-  const auto text = [&](double value) {
-    return figure.unit.empty() ? share_text(value) : in_two_digits(value) + " " + figure.unit;
-  };
-  return fmt::format("{} ({}, the next {})", question.name, text(median(best)), text(next));
+  }
+  // "6.9 %"
+  std::string value(const AlgorithmId& algorithm) const {
+    return figure.unit.empty() ? share_text(median(algorithm))
+                               : in_two_digits(median(algorithm)) + " " + figure.unit;
+  }
+  const PairedComparison* pair(const AlgorithmId& a, const AlgorithmId& b) const {
+    const auto found = std::ranges::find_if(pairs, [&](const PairedComparison& one) {
+      return (one.first == a && one.second == b) || (one.first == b && one.second == a);
+    });
+    return found == pairs.end() ? nullptr : &*found;
+  }
+  // ", p = 0.023, 8 hands"
+  std::string test(const AlgorithmId& a, const AlgorithmId& b) const {
+    const PairedComparison* tested = pair(a, b);
+    return tested == nullptr ? "" : fmt::format(", {}, {} hands", p_text(tested->p), tested->hands);
+  }
+  // Those of these that most hands could measure, the least first.
+  std::vector<AlgorithmId> by_median(std::vector<AlgorithmId> algorithms) const {
+    std::erase_if(algorithms, [&](const AlgorithmId& one) {
+      return !study.are_most(study.values(one, question.phase, figure.get).size());
+    });
+    std::ranges::stable_sort(algorithms, {}, [&](const AlgorithmId& one) { return median(one); });
+    return algorithms;
+  }
+};
+
+// "4 barrier-shell is calmest in force while milling: 2.6 % (3 point-shell 6.9 %, p = 0.023, 8 hands)."
+std::string best_words(const Answers& answers, const AlgorithmId& best,
+                       const std::vector<AlgorithmId>& by_median) {
+  const auto next = std::ranges::find_if(by_median, [&](const AlgorithmId& one) { return one != best; });
+  return fmt::format("{} {}: {} ({} {}{}).", best.label, answers.question.is_best, answers.value(best),
+                     next->label, answers.value(*next), answers.test(best, *next));
+}
+
+// A sentence on each of those that are not considered and had less than the best.
+std::vector<std::string> words_on_less(const Answers& answers, const AlgorithmId& best,
+                                       const std::vector<AlgorithmId>& not_considered) {
+  std::vector<std::string> sentences;
+  for (const AlgorithmId& other : answers.by_median(not_considered)) {
+    const PairedComparison* pair = answers.pair(best, other);
+    if (pair == nullptr) continue;
+    const bool is_less = pair->is_settled() ? (pair->first == other) == pair->second_is_greater
+                                            : answers.median(other) < answers.median(best);
+    if (!is_less) continue;
+    const std::string had =
+        pair->is_settled() && pair->is_noticeable
+            ? fmt::format("was {}", answers.question.less)
+            : fmt::format("had less, {}",
+                          pair->is_settled() ? "though the same for a hand" : "which is not settled");
+    sentences.push_back(fmt::format("{} {} ({}{}), but did all of the test in {} hands.", other.label, had,
+                                    answers.value(other), answers.test(best, other),
+                                    did_all_text(answers.study, other)));
+  }
+  return sentences;
+}
+
+// "calm force while holding (3 point-shell 3.1 %, 4 barrier-shell 3.5 %, p = 0.38, 8 hands)", with those of
+// the least that are not told apart.
+std::string open_words(const Answers& answers, const std::vector<Rank>& ranks,
+                       const std::vector<AlgorithmId>& by_median) {
+  const AlgorithmId& least = by_median.front();
+  const auto rank = std::ranges::find(ranks, least, &Rank::algorithm);
+  const auto next = std::ranges::find_if(by_median, [&](const AlgorithmId& one) {
+    return std::ranges::find(rank->open, one) != rank->open.end();
+  });
+  if (next == by_median.end()) return answers.question.name;
+  return fmt::format("{} ({} {}, {} {}{})", answers.question.name, least.label, answers.value(least),
+                     next->label, answers.value(*next), answers.test(least, *next));
+}
+
+// "a shaft that follows the handle while milling (3 point-shell 0.097 degrees, 4 barrier-shell 0.21 degrees)"
+std::string alike_words(const Answers& answers, const std::vector<Rank>& first) {
+  std::string list;
+  for (const Rank& rank : first)
+    list +=
+        fmt::format("{}{} {}", list.empty() ? "" : ", ", rank.algorithm.label, answers.value(rank.algorithm));
+  return fmt::format("{} ({})", answers.question.name, list);
+}
+
+// "1 line-proxy (0 of 8) and 2 surface-points (3 of 8)"
+std::string hands_in_words(const Study& study, const std::vector<AlgorithmId>& algorithms) {
+  std::vector<std::string> all;
+  for (const AlgorithmId& algorithm : algorithms)
+    all.push_back(fmt::format("{} ({})", algorithm.label, did_all_text(study, algorithm)));
+  return in_words(all);
 }
 
 }  // namespace
 
-// An algorithm whose test most hands could not do is taken for nothing, however calm it is.
 std::string which_to_take(const Study& study) {
   if (!are_compared(study)) return "";
-  std::vector<AlgorithmId> candidates;
-  std::vector<std::string> left_out;
-  for (const AlgorithmId& algorithm : study.algorithms()) {
-    const std::size_t done = hands_that_did_all(study, algorithm);
-    if (study.are_most(done))
-      candidates.push_back(algorithm);
-    else
-      left_out.push_back(fmt::format("{} ({} of {})", algorithm.label, done, study.seeds().size()));
-  }
-  if (candidates.size() < 2)
-    return fmt::format("None is recommended, because too few hands did all of the test: {}.",
-                       in_words(left_out));
-  std::map<AlgorithmId, std::vector<std::string>> reasons;
-  std::vector<std::string> same, open, unmeasured;
+  const auto [in, out] = considered(study);
+  if (in.empty())
+    return fmt::format("None did all of the test in most hands, so nothing is compared: {}.",
+                       hands_in_words(study, out));
+  if (in.size() == 1)
+    return fmt::format("Only {} did all of the test in most hands, so nothing is compared; {} did not.",
+                       hands_in_words(study, in), hands_in_words(study, out));
+  std::vector<std::string> sentences, same, open, unmeasured;
   for (const Question& question : questions_of(study)) {
-    std::vector<Rank> first = ranks_of(study, question, candidates);
-    const auto measured = std::ranges::count_if(first, &Rank::is_measured);
+    const Answers answers{study, question};
+    const std::vector<Rank> ranks = ranks_of(study, question, in);
+    const std::vector<AlgorithmId> by_median = answers.by_median(in);
+    std::vector<Rank> first = ranks;
     std::erase_if(first, [](const Rank& rank) { return !rank.is_first(); });
-    if (measured < 2)
+    if (by_median.size() < 2) {
       unmeasured.emplace_back(question.name);
-    else if (first.empty())
-      open.emplace_back(question.name);
-    else if (first.size() > 1)
-      same.emplace_back(question.name);
-    else
-      reasons[first.front().algorithm].push_back(
-          reason_for(study, question, first.front().algorithm, candidates));
+    } else if (first.empty()) {
+      open.push_back(open_words(answers, ranks, by_median));
+    } else if (first.size() > 1) {
+      same.push_back(alike_words(answers, first));
+    } else {
+      const AlgorithmId& best = first.front().algorithm;
+      const bool begins = sentences.empty() && !out.empty();
+      sentences.push_back((begins ? "Of the algorithms that did all of the test in most hands, " : "") +
+                          best_words(answers, best, by_median));
+      for (std::string& less : words_on_less(answers, best, out)) sentences.push_back(std::move(less));
+    }
   }
-  std::vector<std::string> sentences;
-  for (const auto& [algorithm, names] : reasons)
-    sentences.push_back(fmt::format("Take {} for {}.", algorithm.label, in_words(names)));
   if (!same.empty())
     sentences.push_back(fmt::format("The best are the same for a hand in this: {}.", in_words(same)));
   if (!open.empty()) sentences.push_back(fmt::format("Not settled: {}.", in_words(open)));
   if (!unmeasured.empty())
     sentences.push_back(
         fmt::format("Not compared, because most hands felt too little of it: {}.", in_words(unmeasured)));
-  if (!left_out.empty())
-    sentences.push_back(
-        fmt::format("Not considered, because too few hands did all of the test: {}.", in_words(left_out)));
+  if (!out.empty())
+    sentences.push_back(fmt::format("Not considered, because too few hands did all of the test: {}.",
+                                    hands_in_words(study, out)));
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 

@@ -30,9 +30,9 @@ std::string too_few_hands(const Study& study);
 /// paper's findings hold. `probes` has the algorithms that were probed, by their names.
 std::vector<Table> conclusions(const Study& study, const std::map<std::string, Probe>& probes = {});
 
-/// Returns which algorithm to take for what, with the reason, by the ranks that the hands settle among those
-/// that did all of the test in most hands, and what they do not settle; empty if the hands are too few, or
-/// for one algorithm alone.
+/// Returns which algorithm is best in what, with the next, p and the number of hands, by the ranks that the
+/// hands settle among those that did all of the test in most hands; which of the others had less; and what
+/// the hands do not settle. Empty if the hands are too few, or for one algorithm alone.
 std::string which_to_take(const Study& study);
 
 }  // namespace osteomill

@@ -8,6 +8,7 @@
 #include "osteomill/study/study_findings.h"
 
 #include "tests/support/study_samples.h"
+#include "trials/findings_section.h"
 #include "trials/hands_section.h"
 
 namespace osteomill {
@@ -57,7 +58,7 @@ TEST(Conclusions, RankAlgorithmsByWhatTheHandsSettle) {
   const Study study(rows);
   const std::vector<Table> tables = conclusions(study);
   EXPECT_EQ(tables[0].header.size(), 8u);
-  EXPECT_EQ(tables[0].header[1], "Calm force while milling\nabove 20 Hz, of the mean");
+  EXPECT_EQ(tables[0].header[1], "Calm force while milling\nabove 20 Hz, of the mean\n(less is calmer)");
   // 1 and 3 change places in force from hand to hand; their torques do not.
   EXPECT_TRUE(
       answer_row(rows, "1 line-proxy").starts_with("1 line-proxy|5.2 %\nnot settled\nagainst 3|30 %\n3rd|"));
@@ -65,12 +66,16 @@ TEST(Conclusions, RankAlgorithmsByWhatTheHandsSettle) {
   EXPECT_TRUE(answer_row(rows, "3 point-shell")
                   .starts_with("3 point-shell|5.2 %\nnot settled\nagainst 1|10 %\n1st|"));
   EXPECT_EQ(which_to_take(study),
-            "Take 3 point-shell for calm torque while milling (10 %, the next 20 %) and calm torque while "
-            "holding (10 %, the next 20 %). Not settled: calm force while milling, calm force while holding "
-            "and a shaft that follows the handle while milling.");
-  EXPECT_EQ(tables[1].header.front(), "7 of the paper's findings on force, torque and shaft")
-      << "without the one on grips";
-  EXPECT_EQ(row_of(tables[1], "agrees"), "agrees|4||");
+            "3 point-shell is calmest in torque while milling: 10 % (2 surface-points 20 %, p = 0.023, 8 "
+            "hands). 3 point-shell is calmest in torque while holding: 10 % (2 surface-points 20 %, p = "
+            "0.023, 8 hands). Not settled: calm force while milling (3 point-shell 5.2 %, 1 line-proxy 5.2 "
+            "%, p = 0.84, 8 hands), calm force while holding (3 point-shell 5.2 %, 1 line-proxy 5.2 %, p = "
+            "0.84, 8 hands) and a shaft that follows the handle while milling (1 line-proxy 0 degrees, 2 "
+            "surface-points 0 degrees, p = 1, 8 hands).");
+  EXPECT_EQ(tables[1].header.front(), "8 of the paper's nine findings") << "without the one on grips";
+  EXPECT_TRUE(row_of(tables[1], "agrees")
+                  .starts_with("agrees|5|“all the algorithms fulfill the real-time requirements”, in 8 of 8 "
+                               "hands;\n"));
   EXPECT_TRUE(row_of(tables[1], "does not agree").starts_with("does not agree|3|"));
   EXPECT_TRUE(too_few_hands(study).empty());
 }
@@ -121,15 +126,30 @@ TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
     if (r.algorithm == "line-proxy") r.metrics.torque_Nmm.hp_share = 0.001;
     if (r.algorithm == "point-shell" && r.seed < 5) r.not_reached = "the shaft turned";
   }
-  expect_says(which_to_take(Study(rows)), "calm torque while milling (0.1 %, the next 20 %)");
-  expect_says(which_to_take(Study(rows)),
-              "Not considered, because too few hands did all of the test: 3 point-shell (4 of 8).");
+  const std::string take = which_to_take(Study(rows));
+  EXPECT_TRUE(take.starts_with(
+      "Of the algorithms that did all of the test in most hands, 1 line-proxy is calmest in force while "
+      "milling: 5.2 % (2 surface-points 52 %, p = 0.023, 8 hands). 3 point-shell had less, which is not "
+      "settled (5.2 %, p = 0.84, 8 hands), but did all of the test in 4 of 8 hands. "))
+      << take;
+  expect_says(take, "1 line-proxy is calmest in torque while milling: 0.1 % (2 surface-points 20 %, p = 0.0");
+  expect_says(take, "Not considered, because too few hands did all of the test: 3 point-shell (4 of 8).");
+  // Its place is no rank, and takes none.
+  expect_says(answer_row(rows, "3 point-shell"), "|10 %\nnot considered|");
+  expect_says(answer_row(rows, "2 surface-points"), "|20 %\n2nd|");
+  expect_says(about_the_table(Study(rows)), "Ranks are those among the algorithms that did all of the test");
   for (MeasuredRun& r : rows) r.not_reached = r.algorithm == "surface-points" ? "" : "lost";
-  expect_says(which_to_take(Study(rows)),
-              "None is recommended, because too few hands did all of the test: 1 line-proxy (0 of 8) and 3 ");
+  EXPECT_EQ(which_to_take(Study(rows)),
+            "Only 2 surface-points (8 of 8) did all of the test in most hands, so nothing is compared; 1 "
+            "line-proxy (0 of 8) and 3 point-shell (0 of 8) did not.");
+  EXPECT_TRUE(answer_row(rows, "2 surface-points").starts_with("2 surface-points|52 %|20 %|"));
+  for (MeasuredRun& r : rows) r.not_reached = "lost";
+  EXPECT_TRUE(which_to_take(Study(rows)).starts_with("None did all of the test in most hands, so nothing "));
   for (MeasuredRun& r : rows) r.not_reached = r.algorithm == "line-proxy" && r.seed < 5 ? "lost" : "";
-  EXPECT_EQ(which_to_take(Study(rows)).find("Take 1"), std::string::npos);
-  expect_says(which_to_take(Study(rows)), "did all of the test: 1 line-proxy (4 of 8).");
+  expect_says(which_to_take(Study(rows)),
+              "3 point-shell is calmest in torque while milling: 10 % (2 surface-points 20 %, p = 0.023, 8 "
+              "hands). 1 line-proxy was calmer (0.1 %, p = 0.023, 8 hands), but did all of the test in 4 of "
+              "8 hands.");
   expect_says(answer_row(rows, "3 point-shell"), "|8 of 8|");
 }
 
@@ -204,7 +224,7 @@ TEST(Conclusions, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
     expect_says(force_row(rows), fmt::format("] in {} of 8 hands|1.04", 8 - lost));
     expect_says(force_row(rows), fmt::format("1 and 3 in {} hands: not settled", 8 - lost));
     expect_says(answer_row(rows, "1 line-proxy"),
-                lost == 4 ? "\n4 of 8 hands\nno rank|" : "\n5 of 8 hands\nnot settled\nagainst 2, 3|");
+                lost == 4 ? "\n4 of 8 hands\nnot considered|" : "\n5 of 8 hands\nnot settled\nagainst 2, 3|");
     // Half of the hands do not speak for all, and keep no other from its rank.
     if (lost == 4) expect_says(answer_row(rows, "3 point-shell"), "|10 %\n1st|");
     const Table verdicts = conclusions(Study(rows))[1];
@@ -219,7 +239,7 @@ TEST(Conclusions, WhatMostHandsCouldNotMeasureIsNotCompared) {
   for (MeasuredRun& r : rows)
     if (r.phase == kMilling && r.algorithm != "point-shell") r.metrics.torque_Nmm.hp_share = kNotMeasured;
   const std::string take = which_to_take(Study(rows));
-  expect_says(take, "Take 3 point-shell for calm torque while holding (10 %, the next 20 %).");
+  expect_says(take, "3 point-shell is calmest in torque while holding: 10 % (2 surface-points 20 %, p = ");
   expect_says(take, "Not compared, because most hands felt too little of it: calm torque while milling.");
 }
 
@@ -250,10 +270,33 @@ TEST(Conclusions, WhoLostContactIsNamedAndNeverCompared) {
   for (MeasuredRun& r : rows) {
     if (r.algorithm == "point-shell") lose(r);
   }
-  expect_says(force_row(rows), "|lost contact after 3.2 s|2 is 10 times 1, p = 0.0078|");
+  expect_says(force_row(rows), "|lost contact after 3.2 s in 8 of 8 hands|2 is 10 times 1, p = 0.0078|");
   const std::string text = conclusions_of(rows);
   expect_says(text, "too little contact  ");
   EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+}
+
+TEST(Conclusions, EachReasonIsSaidWithItsHands) {
+  std::vector<MeasuredRun> rows = sample_rows(8);
+  for (MeasuredRun& r : rows) {
+    if (r.algorithm != "surface-points") continue;
+    if (r.seed < 4) {
+      lose(r);
+    } else {
+      r.metrics.force_N.hp_rms = r.metrics.force_N.hp_share = kNotMeasured;
+      r.metrics.contact.force = 0;
+    }
+  }
+  expect_says(force_row(rows),
+              "|felt a force for less than 1 % of the time in 5 of 8 hands; lost contact after 3.2 s in 3 of "
+              "8 hands|");
+  const StudyFinding calmer = check_study_findings(Study(rows))[1];
+  expect_says(calmer.of_medians.measured,
+              "2: felt a force for less than 1 % of the time in 5 of 8 hands; lost");
+  EXPECT_EQ(calmer.tested, 0u);
+  const std::string section = html(findings_section(Study(rows)));
+  expect_says(section, "<td>not tested</td><td>–</td>");
+  EXPECT_EQ(section.find("0 of 0"), std::string::npos);
 }
 
 TEST(Conclusions, OneAlgorithmHasNothingToBeComparedWith) {

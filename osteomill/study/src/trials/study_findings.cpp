@@ -33,7 +33,6 @@ RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
     const std::vector<double> values = study.values(run.algorithm, run.phase, figure.get);
     figure.set(medians, study.are_most(values.size()) ? distribution_of(values).median : kNotMeasured);
   }
-  medians.contact = study.contact(run.algorithm, run.phase);
   return medians;
 }
 
@@ -59,7 +58,8 @@ GripForces medians_of_grips(const Study& study, std::optional<std::uint64_t> see
     if (forces.empty()) return {};
     const std::size_t tried = forces.size();
     std::erase_if(forces, [](double force) { return std::isnan(force); });
-    medians.push_back(2 * forces.size() > tried ? distribution_of(forces).median : kNotMeasured);
+    medians.push_back(
+        {2 * forces.size() > tried ? distribution_of(forces).median : kNotMeasured, forces.size(), tried});
   }
   return medians;
 }
@@ -77,7 +77,10 @@ std::vector<StudyFinding> check_study_findings(const Study& study) {
     run.not_reached = study.not_reached(run.algorithm, run.phase);
   }
   std::vector<StudyFinding> findings;
-  for (Finding& finding : check_findings(medians, medians_of_grips(study, {})))
+  const auto why = [&](const MeasuredRun& run, double (*figure)(const RunMetrics&)) {
+    return study.why_not_measured(run.algorithm, run.phase, figure);
+  };
+  for (Finding& finding : check_findings(medians, medians_of_grips(study, {}), why))
     findings.push_back({std::move(finding)});
   for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
     const std::vector<Finding> once =

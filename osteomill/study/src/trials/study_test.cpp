@@ -156,6 +156,33 @@ TEST(Study, AsManySeedsAreNeededAsCanShowADifference) {
   EXPECT_EQ(Study(rows).seeds_needed(), 8u) << "six pairs";
 }
 
+TEST(Study, WhatWasNotReachedIsALineForEachAlgorithm) {
+  std::vector<MeasuredRun> rows = sample_rows(3);
+  EXPECT_TRUE(unreached_lines(Study(rows)).empty());
+  for (MeasuredRun& r : rows) {
+    if (r.algorithm != "line-proxy") continue;
+    if (r.seed < 3) r.not_reached = "the hole stayed shallower than 3 mm";
+    if (r.seed == 2 && r.phase == kHolding) r.not_reached += "; the shaft turned by more than 3 degrees";
+  }
+  for (const double grip : {0.5, 2.0}) {
+    for (const std::string_view phase : kPhases) {
+      MeasuredRun& other = rows.emplace_back(testing_support::row(1, "surface-points", phase, {1, 2}));
+      other.grip = grip;
+      if (grip == 2) other.not_reached = "the burr moved by more than 0.5 mm";
+    }
+  }
+  EXPECT_EQ(
+      unreached_lines(Study(rows)),
+      (std::vector<std::string>{
+          "line-proxy: 2 of 3 hands did not do all of the test: the hole stayed shallower than 3 mm (2 of "
+          "3 hands); the shaft turned by more than 3 degrees (1 of 3 hands)",
+          "surface-points: 1 of 2 trials with another grip or tremor did not do all of the test"}));
+  std::erase_if(rows, [](const MeasuredRun& r) { return r.seed != 2; });
+  EXPECT_EQ(unreached_lines(Study(rows)),
+            (std::vector<std::string>{"line-proxy: the hole stayed shallower than 3 mm; the shaft turned by "
+                                      "more than 3 degrees"}));
+}
+
 TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
   const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "osteomill_study.csv";
   write_study_csv(path, Study(sample_rows(2)));

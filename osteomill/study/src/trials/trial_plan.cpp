@@ -29,7 +29,7 @@ RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::str
   run.phase = phase;
   run.settings.insert(run.settings.end(), plan.scan_settings.begin(), plan.scan_settings.end());
   run.settings.push_back({std::string(kScriptEntryKey), point_text(plan.entry.point_W), "mm"});
-  run.settings.push_back({"script.direction", point_text(plan.entry.direction_W), ""});
+  run.settings.push_back({std::string(kScriptDirectionKey), point_text(plan.entry.direction_W), ""});
   run.settings.push_back({"script.lateral", point_text(plan.entry.lateral_W), ""});
   run.settings.push_back({"script.depth", ScriptSettings::depth_mm, "mm"});
   put_fields(run, person);

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "osteomill/study/run_groups.h"
 
 namespace osteomill {
+
+/// The number of findings that check_findings() returns.
+inline constexpr std::size_t kFindings = 9;
 
 /// The verdict on a Finding. `not_settled`: the recordings speak neither for it nor against it;
 /// `not_recorded`: runs that it needs are not there; `too_little_contact`: a run that it needs had not enough
@@ -29,20 +34,33 @@ struct Finding {
   /// The numbers that the rule was applied to, and which of their runs did not reach all of their plan.
   std::string measured;
   Verdict verdict = Verdict::not_recorded;
-  /// It rests on compute times, which are the machine's and not the algorithms' alone.
-  bool of_the_machine = false;
 };
 
 /// The grips of the same hand for one of the findings, the loosest first: the factors of its stiffness and
 /// damping (gripping, hand.h).
 inline constexpr std::array<double, 3> kGrips{0.5, 1, 2};
 
-/// Algorithm 2's force above 20 Hz (rms, N) while it is held, for each of `kGrips`; empty if only one was
-/// tried, not a number if contact was lost.
-using GripForces = std::vector<double>;
+/// Algorithm 2's force while it is held in one grip.
+struct GripForce {
+  /// Above 20 Hz, rms; not a number if it was not felt for long enough, in several hands by most.
+  double hp_rms_N = 0;
+  /// The number of hands in which it was felt for long enough, and that of all.
+  std::size_t felt = 1;
+  std::size_t hands = 1;
+};
+/// One for each of `kGrips`; empty if only one grip was tried.
+using GripForces = std::vector<GripForce>;
+
+/// Returns why a figure of a run, or the median of several runs, is not a number.
+using WhyNotMeasured =
+    std::function<std::string(const MeasuredRun& run, double (*figure)(const RunMetrics&))>;
 
 /// Returns the nine findings of the paper's section 8, as its text has them. One that needs runs which are
 /// not there is `not_recorded`, one that needs a run that had not enough contact `too_little_contact`.
-std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips);
+std::vector<Finding> check_findings(
+    const RunGroup& group, const GripForces& grips,
+    const WhyNotMeasured& why = [](const MeasuredRun& run, auto) {
+      return contact_words(run.metrics.contact);
+    });
 
 }  // namespace osteomill

@@ -63,10 +63,12 @@ inline bool is_enough_contact(double share) {
 
 /// Returns why something that is felt could not be measured: "never touched", "lost while milling", "lost
 /// while milling, after 3.2 s", "lost contact after 3.2 s", "touched for 4 % of the time", "the shaft touched
-/// for 4 % of the time", "felt a torque for 4 % of the time" or "felt a force for 4 % of the time". Medians
-/// of several hands may be enough though half of the hands had too little: "too little contact in half of the
-/// hands".
+/// for 4 % of the time", "felt a torque for 4 % of the time" or "felt a force for 4 % of the time".
 std::string contact_words(const ContactShares& contact);
+/// Returns the same for the hands in which it could not be measured, of `hands` in all, with the number of
+/// hands for each reason and the median of their times: "lost while milling in 2 of 8 hands; felt a force for
+/// less than 1 % of the time in 6 of 8 hands". Empty for none.
+std::string contact_words(std::span<const ContactShares> unmeasured, std::size_t hands);
 
 /// Figures of a vector over time: force (N) or torque (N mm).
 struct VectorMetrics {

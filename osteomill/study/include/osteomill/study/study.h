@@ -60,9 +60,10 @@ class Study {
   /// tried others.
   std::vector<double> values_by_tremor(const AlgorithmId& algorithm, std::string_view phase,
                                        const RunFigure& figure) const;
-  /// Returns for how much of the phase the tool touched: medians of the seeds. `lost_after_s` is the median
-  /// of those that lost contact, if they are no fewer than half.
-  ContactShares contact(const AlgorithmId& algorithm, std::string_view phase) const;
+  /// Returns why the figure could not be measured (contact_words), with the number of hands for each reason
+  /// if there are several hands; empty if it was measured in all.
+  std::string why_not_measured(const AlgorithmId& algorithm, std::string_view phase,
+                               const RunFigure& figure) const;
   /// Returns which parts of the plan were not reached (MeasuredRun::not_reached), and in how many hands if
   /// there are several; empty for none.
   std::string not_reached(const AlgorithmId& algorithm, std::string_view phase) const;
@@ -74,6 +75,10 @@ class Study {
   std::vector<MeasuredRun> beside_;
   std::vector<std::uint64_t> seeds_;
 };
+
+/// Returns a line for each algorithm that did not do all of the test in some of the hands, or of the trials
+/// beside them: in how many, and what it did not reach.
+std::vector<std::string> unreached_lines(const Study& study);
 
 /// Writes study.csv: seed, the hand's stiffness (N/m) and damping (N s/m), its grip, the number of another
 /// tremor, and the columns of summary.csv; rows of other grips and tremors last. The file appears whole or

@@ -44,6 +44,9 @@ struct TrialPlan {
 /// The key of the setting in which every recording of this test says where the tool enters.
 inline constexpr std::string_view kScriptEntryKey = "script.entry";
 
+/// The key of the setting in which it says in which direction.
+inline constexpr std::string_view kScriptDirectionKey = "script.direction";
+
 /// The key of the setting in which it says for how long the tool was to be held still, in s.
 inline constexpr std::string_view kScriptHoldingKey = "script.holding";
 

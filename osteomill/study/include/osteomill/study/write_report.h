@@ -32,6 +32,8 @@ struct PageText {
   std::vector<Section> sections;
   /// Lines below the times that any session has.
   std::vector<MetricLine> further_times;
+  /// Paragraphs to add to the section on what was run.
+  std::vector<std::string> about_the_run;
   /// Notes to add below a figure, by the figure's name ("force").
   std::map<std::string, std::string> caption_notes;
 };
