@@ -6,6 +6,7 @@
 
 #include "osteomill/base/machine.h"
 #include "osteomill/session/milling_entry.h"
+#include "osteomill/study/findings.h"
 #include "osteomill/study/paper.h"
 #include "osteomill/study/run_trials.h"
 #include "osteomill/study/study_findings.h"
@@ -57,10 +58,13 @@ std::vector<MeasuredRun> rows_on(const Volume& bone, Hands hands, double phase_s
   return rows_on(bone, hands, phase_s, kAll, kNothing);
 }
 
-void add_findings(Section& section, const Volume& bone, const std::string& name, Hands hands,
-                  double phase_s) {
+// Adds a row for each finding. Returns how many of them the hands do not settle.
+std::size_t add_findings(Section& section, const Volume& bone, const std::string& name, Hands hands,
+                         double phase_s) {
   int number = 0;
+  std::size_t unsettled = 0;
   for (const StudyFinding& finding : check_study_findings(Study(rows_on(bone, hands, phase_s)))) {
+    unsettled += finding.verdict == Verdict::not_settled;
     const char* settled = finding.verdict == Verdict::not_settled ? ", not settled" : "";
     section.add(
         {fmt::format("{}, {} to {}: {}. {}", name, hands.first, hands.last, ++number,
@@ -68,6 +72,7 @@ void add_findings(Section& section, const Volume& bone, const std::string& name,
          finding.of_medians.measured, fmt::format("{} of {}{}", finding.agreeing, finding.tested, settled)},
         finding.of_medians.verdict == Verdict::agrees);
   }
+  return unsettled;
 }
 
 // A choice that the paper leaves open, or a hand or device that it does not know, another way.
@@ -130,8 +135,8 @@ double median_of(const Study& study, std::size_t algorithm, std::string_view pha
 }
 
 // Adds a row: how many findings hold, the numbers of those that do not, and the figures that the choices
-// change.
-void add_choice(Section& section, const std::string& name, std::vector<MeasuredRun> rows) {
+// change. Returns how many hold.
+std::size_t add_choice(Section& section, const std::string& name, std::vector<MeasuredRun> rows) {
   const Study study(std::move(rows));
   std::vector<std::size_t> missing;
   const std::vector<StudyFinding> findings = check_study_findings(study);
@@ -150,19 +155,26 @@ void add_choice(Section& section, const std::string& name, std::vector<MeasuredR
            ? fmt::format("{}", findings.size())
            : fmt::format("{}, not {}", findings.size() - missing.size(), fmt::join(missing, ", ")),
        of_all(kMilling, force), of_all(kHolding, force), of_all(kMilling, torque), of_all(kHolding, torque)});
+  return findings.size() - missing.size();
 }
 
-void add_choices(Section& section, const Volume& bone, const std::string& name, double phase_s) {
+// Returns how many findings hold on this bone with the choice that leaves the fewest.
+std::string add_choices(Section& section, const Volume& bone, const std::string& name, double phase_s) {
   const std::vector<MeasuredRun> as_it_is = rows_on(bone, kChosenWith, phase_s);
-  add_choice(section, fmt::format("{}, as it is", name), as_it_is);
+  std::size_t fewest = add_choice(section, fmt::format("{}, as it is", name), as_it_is);
+  std::string with = "nothing changed";
   for (const Choice& choice : choices()) {
     std::vector<MeasuredRun> rows = rows_on(bone, kChosenWith, phase_s, choice.algorithms, choice.change);
     for (const MeasuredRun& row : as_it_is) {
       const auto is_it = [&](std::size_t n) { return row.algorithm == kPapersAlgorithms[n - 1]; };
       if (std::none_of(choice.algorithms.begin(), choice.algorithms.end(), is_it)) rows.push_back(row);
     }
-    add_choice(section, fmt::format("{}, {}", name, choice.what), std::move(rows));
+    const std::size_t hold = add_choice(section, fmt::format("{}, {}", name, choice.what), std::move(rows));
+    if (hold >= fewest) continue;
+    fewest = hold;
+    with = choice.what;
   }
+  return fmt::format("{} of {} on {} with {}", fewest, kFindings, name, with);
 }
 
 }  // namespace
@@ -185,10 +197,13 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
       {},
       {}};
   const Volume builtin(builtin_tooth(), kBuiltinToothIsovalue);
+  std::size_t unsettled = 0;
   for (const Hands hands : {kChosenWith, kOthers}) {
-    add_findings(section, builtin, "the built-in tooth", hands, effort.phase_s);
-    add_findings(section, bones.tooth, bones.tooth_name, hands, effort.phase_s);
+    unsettled += add_findings(section, builtin, "the built-in tooth", hands, effort.phase_s);
+    unsettled += add_findings(section, bones.tooth, bones.tooth_name, hands, effort.phase_s);
   }
+  section.reservation =
+      fmt::format("in the medians; {} of them not settled by the hands' sign test", unsettled);
   return section;
 }
 
@@ -203,8 +218,11 @@ Section papers_choices(const Bones& bones, const Effort& effort) {
        "torque holding"},
       {},
       {}};
-  add_choices(section, Volume(builtin_tooth(), kBuiltinToothIsovalue), "the built-in tooth", effort.phase_s);
-  add_choices(section, bones.tooth, bones.tooth_name, effort.phase_s);
+  const std::string on_builtin = add_choices(section, Volume(builtin_tooth(), kBuiltinToothIsovalue),
+                                             "the built-in tooth", effort.phase_s);
+  section.reservation =
+      fmt::format("with a choice, the hand or the device changed, as few as {} and {}", on_builtin,
+                  add_choices(section, bones.tooth, bones.tooth_name, effort.phase_s));
   return section;
 }
 

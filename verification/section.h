@@ -17,6 +17,8 @@ struct Section {
   std::vector<std::vector<std::string>> rows;
   /// The rows, by their first cell, that are not what they must be.
   std::vector<std::string> misses;
+  /// The condition on its rows that the summary must name beside their number; empty for none.
+  std::string reservation = {};
 
   /// Adds a row; a last cell says whether it holds.
   void add(std::vector<std::string> cells, bool holds);

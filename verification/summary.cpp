@@ -72,16 +72,20 @@ std::size_t rows_with(const Section& section, const std::string& verdict) {
 // Returns the question's row of the table; an empty text if none of its sections was measured.
 std::string row_of(const Question& question, const MeasuredSections& measured) {
   std::vector<std::string> links;
+  std::string reservations;
   std::size_t holds = 0;
   std::size_t judged = 0;
   for (const auto& [name, section] : measured) {
     if (std::ranges::find(question.sections, name) == question.sections.end()) continue;
     links.push_back(link_to(section.title));
+    if (!section.reservation.empty())
+      reservations += (reservations.empty() ? " " : "; ") + section.reservation;
     holds += rows_with(section, "holds");
     judged += rows_with(section, "holds") + section.misses.size();
   }
   if (links.empty()) return "";
-  return fmt::format("| {} | {} of {} | {} |\n", question.text, holds, judged, fmt::join(links, ", "));
+  return fmt::format("| {} | {} of {}{} | {} |\n", question.text, holds, judged, reservations,
+                     fmt::join(links, ", "));
 }
 
 // Returns a list of the rows that miss, by section.

@@ -12,7 +12,7 @@ namespace osteomill::verification {
 using MeasuredSections = std::vector<std::pair<std::string, Section>>;
 
 /// Returns the head of docs/verification.md: how to read it, and for each question its sections, how many of
-/// their rows hold, and which miss.
+/// their rows hold, with which reservations, and which miss.
 std::string summary(const MeasuredSections& measured);
 
 }  // namespace osteomill::verification
