@@ -193,9 +193,9 @@ try:
             time.sleep(0.1)
         # However slow the pictures are, each shows the time that it is due.
         times[speed] = 1000 * (played[-1][0] - played[1][0]) / (played[-1][1] - played[1][1])
-        picture("playing")
         play.click()
         eventually(lambda: play.text == "Play", "it does not stop")
+        picture("played")
         still = run("return page.time()")
         time.sleep(0.3)
         assert run("return page.time()") == still
