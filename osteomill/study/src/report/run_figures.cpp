@@ -249,11 +249,15 @@ std::string degrees_text(double degrees) {
   return fmt::format("{:.{}f}", degrees, degrees < 1 ? 2 : 1);
 }
 
+// Why it was not measured takes two lines of a panel, and the tables say it in the same words.
 std::string words(const MeasuredRun& run) {
   const DirectionMetrics& shaft = run.metrics.shaft;
-  return std::isnan(shaft.spread_deg) ? contact_words(run.metrics.contact)
-                                      : fmt::format("spread {}°, at most {}°", degrees_text(shaft.spread_deg),
-                                                    degrees_text(shaft.excursion_deg));
+  if (!std::isnan(shaft.spread_deg))
+    return fmt::format("spread {}°, at most {}°", degrees_text(shaft.spread_deg),
+                       degrees_text(shaft.excursion_deg));
+  std::string why = contact_words(run.metrics.contact);
+  if (const std::size_t at = why.find(" for "); at != std::string::npos) why.replace(at, 1, "\\n");
+  return why;
 }
 
 std::string shaft_panel(const MeasuredRun& run, const PanelGrid& grid, const PanelCell& cell,
@@ -323,7 +327,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
     last_s = std::max(last_s, time_s(run, run.recording->records.back()));
   }
   // Square panels, and the colours' scale on their right.
-  constexpr double kLeft_px = 84, kRight_px = 12, kAbove_px = 60, kBelow_px = 64, kBar_px = 128;
+  constexpr double kLeft_px = 84, kRight_px = 12, kAbove_px = 76, kBelow_px = 64, kBar_px = 128;
   const double wide_px = std::min(380.0, (PanelGrid::kWidth_px - kBar_px) / static_cast<double>(columns));
   const PanelGrid grid{.height_px = static_cast<double>(phases.size()) *
                                     (wide_px - kLeft_px - kRight_px + kAbove_px + kBelow_px),
