@@ -100,7 +100,8 @@ void draw_box(const ViewState& view, const GridGeometry& grid, const VoxelBox& b
 std::string text_of(const BonePiece& piece, double voxel_mm3) {
   const auto place =
       1 + std::ranges::count_if(piece.sizes, [&](std::size_t size) { return size > piece.voxels; });
-  const std::string volume = fmt::format("{:.4g} mm³", static_cast<double>(piece.voxels) * voxel_mm3);
+  const double mm3 = static_cast<double>(piece.voxels) * voxel_mm3;
+  const std::string volume = fmt::format("{:.{}f} mm³", mm3, mm3 < 100 ? 2 : 0);
   if (piece.sizes.size() == 1) return volume + ", all of the bone";
   if (place == 1) return fmt::format("{}, the largest of {} pieces", volume, piece.sizes.size());
   return fmt::format("{}, number {} of {} pieces by size", volume, place, piece.sizes.size());
@@ -131,7 +132,7 @@ std::optional<PieceRemoval> draw_actions(ChosenPiece& chosen, double voxel_mm3, 
   ImGui::SameLine();
   ImGui::SetNextItemWidth(ui::px(130));
   ui::slider("volume", "Volume from which on pieces stay. Drag, or hold Ctrl and click to type a number",
-             &chosen.min_mm3, 0.1f, 100000, "%.4g mm³",
+             &chosen.min_mm3, 0.1f, 100000, "%.1f mm³",
              ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
   if (chosen.piece)
     ImGui::TextDisabled(small == 1 ? "%d piece is smaller" : "%d pieces are smaller",
