@@ -180,6 +180,7 @@ void draw_piece_menu(ViewState& view, Simulation& simulation, const PixelSize& s
     ImGui::CloseCurrentPopup();
   }
   if (chosen.piece) draw_box(view, grid, chosen.piece->box, size);
+  if (ui::is_key_pressed(GLFW_KEY_ESCAPE)) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }
 
