@@ -125,7 +125,7 @@ END
 keep_pictures cranium
 "$osteomill" info "$cranium" --json --quiet | tr -d ' \n' | sed -E 's/.*"pieces":\{"count":([0-9]+).*/\1/' >count
 is chosen pieces "$(cat count)"; is alone pieces 1; is alone piece_mm3 "$(value chosen piece_mm3)"
-# As many voxels of bone as the command line keeps.
-voxels() { "$osteomill" info "$@" --iso "$(value chosen isovalue)" --json --quiet | sed -n 's/.*"voxels_above_iso": *\([0-9]*\).*/\1/p'; }
-[ -n "$(voxels "$cranium")" ] && [ "$(voxels "$cranium" --keep-largest)" = "$(voxels out/*-milled.nrrd)" ] ||
-  fail "the window keeps $(voxels out/*-milled.nrrd) voxels, --keep-largest $(voxels "$cranium" --keep-largest)"
+# The piece that the command line keeps.
+pieces() { "$osteomill" info "$@" --iso "$(value chosen isovalue)" --json --quiet | tr -d ' \n' | sed -nE 's/.*"pieces":(\{[^}]*\}).*/\1/p'; }
+[ -n "$(pieces "$cranium")" ] && [ "$(pieces "$cranium" --keep-largest)" = "$(pieces out/*-milled.nrrd)" ] ||
+  fail "the window keeps $(pieces out/*-milled.nrrd), --keep-largest $(pieces "$cranium" --keep-largest)"
