@@ -257,7 +257,7 @@ wait 0.3 ;; click S ;; settle ;; wait 0.5
 click Choose piece ;; wait 0.1 ;; state choosing ;; click Click on bone ... ;; glide 755 428 0.1 ;; press left ;; release left ;; wait 0.3 ;; state not-choosing
 click Choose piece ;; glide 755 428 0.1 ;; press left ;; release left ;; settle ;; wait 0.2 ;; state chosen ;; screenshot controls-8-piece.png ;; key escape ;; wait 0.1 ;; state closed
 press right ;; glide 755 470 0.1 ;; release right ;; wait 0.3 ;; state dragged ;; press right ;; glide 755 428 0.1 ;; release right ;; wait 0.2
-glide 440 428 0.1 ;; press right ;; release right ;; settle ;; wait 0.2 ;; state small ;; drag volume -20 ;; wait 0.1
+glide 440 428 0.1 ;; press right ;; release right ;; settle ;; wait 0.2 ;; state small ;; drag volume -70 ;; wait 0.1
 click Remove pieces below ;; settle ;; wait 0.2 ;; state without-crumb
 glide 440 428 0.1 ;; press right ;; release right ;; settle ;; wait 0.2 ;; click Remove this piece ;; settle ;; wait 0.2 ;; state without-small
 click Undo cut ;; settle ;; click Undo cut ;; settle ;; glide 440 428 0.1 ;; press right ;; release right ;; settle ;; wait 0.2
