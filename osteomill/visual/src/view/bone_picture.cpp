@@ -11,6 +11,7 @@
 #include "osteomill/visual/clip_face.h"
 #include "osteomill/visual/offscreen_context.h"
 #include "osteomill/visual/surface_mesh.h"
+#include "osteomill/volume/sampling.h"
 
 #include "view/bone_layer.h"
 #include "view/cavity_pass.h"
@@ -67,6 +68,15 @@ ViewScene scene_with(const Volume& bone, double reference_density, const Camera&
   return scene;
 }
 
+// A still picture has time for colours from deeper below the surface, where the scanner's blur has ended.
+void deepen_density(const Volume& bone, MeshVertex& vertex) {
+  const double voxel_mm = bone.geometry().spacing_mm.minCoeff();
+  for (const double voxels : {1.25, 2.5}) {
+    const Vec3 below_W = vec3_of(vertex.position_mm) - voxels * voxel_mm * vec3_of(vertex.normal);
+    vertex.density = std::max(vertex.density, static_cast<float>(density_at(bone.grid(), below_W)));
+  }
+}
+
 // Draws the bone, which is never in memory as a whole.
 class BonePainter {
  public:
@@ -111,6 +121,7 @@ class BonePainter {
       if (depths.is_hidden(layer_.bounds(brick))) continue;
       BrickMesh mesh = mesh_brick(view, brick);
       if (mesh.empty()) continue;
+      for (MeshVertex& vertex : mesh.vertices) deepen_density(bone_, vertex);
       drawn.push_back(brick);
       triangles += mesh.triangle_count();
       layer_.set_brick(brick, full_detail(std::move(mesh)));
