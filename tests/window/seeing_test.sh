@@ -30,9 +30,9 @@ work() { # WIDTH HEIGHT
 wait 0.3 ;; click Milling ;; click Record and save ;; click Cuts ;; click A ;; key b ;; settle ;; state start
 key r ;; wait 0.1 ;; say first ;; await first ;; say second ;; await second ;; wait 0.2 ;; state measured ;; screenshot seeing-$1-measured.png
 click Copy points ;; click Save points ;; wait 0.3 ;; state saved
-key r ;; click Clear points ;; wait 0.1 ;; state cleared
+click measure (R) ;; click Clear points ;; wait 0.1 ;; state cleared
 key v ;; wait 2 ;; state followed
-hold arrow-right 0.8 ;; wait 2 ;; state followed-on ;; key v ;; wait 0.2 ;; hold arrow-left 0.8 ;; wait 1 ;; state left-behind
+hold arrow-right 0.8 ;; wait 2 ;; state followed-on ;; click follow the burr (V) ;; wait 0.2 ;; hold arrow-left 0.8 ;; wait 1 ;; state left-behind
 key l ;; wait 0.5 ;; state magnified ;; screenshot seeing-$1-loupe.png ;; drag power 60 ;; wait 0.3 ;; screenshot seeing-$1-power.png ;; click loupe (L)
 click sagittal ;; settle ;; wait 0.3 ;; click L ;; wait 0.3 ;; screenshot seeing-$1-grey-before.png ;; state grey
 glide $middle 0 ;; say dragged ;; await dragged ;; wait 0.3 ;; state dragged ;; screenshot seeing-$1-grey-after.png
