@@ -51,7 +51,7 @@ inline Recording record_poses(const Volume& bone, const std::vector<Vec3>& burr_
   recording.path = "attempt.h5";
   recording.description = describe_run(bone, {"scan", fingerprint_of(bone.grid())}, settings,
                                        session.algorithm().sample_point_count());
-  recording.sessions.push_back({0, {recording.description, {}, 0, {}, ""}});
+  recording.sessions.push_back({0, {.run = recording.description}});
   std::vector<TrajectoryPoint> trajectory;
   for (const Vec3& place_W : burr_W)
     trajectory.push_back({1e-3 * static_cast<double>(trajectory.size()), {place_W, Quat::Identity()}, true});
