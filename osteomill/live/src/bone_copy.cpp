@@ -40,7 +40,8 @@ void BoneCopy::load_milled(const std::vector<DensityBlock>& milled, const std::v
     EditableVolume(*bone_).swap(same);
     if (put(block)) history_.save(block);
   }
-  history_.set_piece_drops(piece_drops);
+  // Those of another label map mean nothing here.
+  if (piece_drops.size() == no_drops(*copy_).size()) history_.set_piece_drops(piece_drops);
 }
 
 std::vector<double> BoneCopy::drops_by_label() const {
@@ -95,6 +96,8 @@ BoneCopy::NextBone BoneCopy::without_last_cut(double removed_mm3) {
 }
 
 BoneCopy::NextBone BoneCopy::with_undone_cut(double removed_mm3) {
+  // Something may have been cut since the user asked for it.
+  if (history_.undone_cuts() == 0) return {copy_, removed_mm3, {}};
   return with(history_.state_after_undone_cut(), Step::redo, removed_mm3);
 }
 
@@ -138,7 +141,7 @@ void BoneCopy::note_step() {
 }
 
 void BoneCopy::exchange() {
-  note_step();
+  // The haptic thread has the other bone already, so nothing that may throw comes before.
   std::swap(bone_, copy_);
   const Volume& bone = *bone_;
   EditableVolume copy(*copy_);
@@ -147,6 +150,7 @@ void BoneCopy::exchange() {
     copy.swap(now);
   }
   copy.set_isovalue(bone.isovalue());
+  note_step();
   differing_.clear();
 }
 

@@ -81,8 +81,7 @@ CutHistory::SavedState CutHistory::state_before_last_cut() const {
 }
 
 CutHistory::SavedState CutHistory::state_after_undone_cut() const {
-  const Cut& next = undone_.empty() ? cuts_.back() : undone_.back();
-  return {next.bricks, next.removed_mm3};
+  return {undone_.back().bricks, undone_.back().removed_mm3};
 }
 
 void CutHistory::exchange(Cut& cut, const std::vector<DensityBlock>& were, double removed_mm3) {

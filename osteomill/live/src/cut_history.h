@@ -55,7 +55,7 @@ class CutHistory {
   /// Returns the state before the last cut; no bricks if there is none.
   SavedState state_before_last_cut() const;
   SavedState state_before_all_cuts() const { return {original_bricks_, 0}; }
-  /// Returns the state after the cut that was taken back last; no bricks if there is none.
+  /// Returns the state after the cut that was taken back last. Only if there is one.
   SavedState state_after_undone_cut() const;
   /// Take note that the last cut was taken back, or the one taken back last was made again. The bricks of
   /// that state are given as they were before, and `removed_mm3` of then.

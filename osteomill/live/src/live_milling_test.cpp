@@ -325,6 +325,22 @@ TEST_F(LiveMillingOfTwoPiecesTest, PiecesGoAndComeBackLikeCutsAndDoNotCountAsMil
   EXPECT_TRUE(surface_is_the_bones());
 }
 
+TEST_F(LiveMillingOfTwoPiecesTest, ARedoThatComesTooLateLeavesTheNewCut) {
+  mill(0.1);
+  finish(milling_.undo());
+  mill(0.1);
+  const CopyOnWriteFloats milled = bone();
+  const double removed_mm3 = milling_.state().record.removed_mm3;
+  ASSERT_GT(removed_mm3, 0);
+  ASSERT_EQ(milling_.follower().undone_cuts(), 0u);
+  finish(milling_.redo());
+  EXPECT_EQ(bone(), milled);
+  EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
+  EXPECT_EQ(milling_.follower().cuts(), 1u);
+  finish(milling_.undo());
+  EXPECT_NE(bone(), milled);
+}
+
 TEST_F(LiveMillingOfTwoPiecesTest, ARemovalThatCannotBeLeavesAllAsItWas) {
   const CopyOnWriteFloats before = bone();
   EXPECT_TRUE(milling_.remove_pieces({PieceRemoval::Which::chosen, {0, 0, 0}}));
