@@ -216,20 +216,24 @@ void relax_if_let_go(ViewState& view, Simulation& simulation, const ToolInput& i
   simulation.hand.pull_to(view.X_W_target);
 }
 
+void release_buttons(ViewState& view, LiveMilling& milling) {
+  if (view.pedal_down) milling.set_spindle(false);
+  view.pedal_down = view.dragging_tool = view.dragging_view = false;
+}
+
 // Returns how a game controller moves the tool.
 SpaceMouseState take_gamepad(const GamepadInput& input, ViewState& view, LiveMilling& milling) {
-  if (input.is_mill_pressed || input.is_mill_released) milling.set_spindle(input.is_mill_pressed);
-  if (input.is_let_go) {
-    view.holding_tool = false;
-    milling.set_spindle(false);
-  }
+  if (input.is_mill_pressed) milling.set_spindle(view.pedal_down = true);
   if (input.is_undo && milling.follower().cuts() > 0) view.undo_requested = true;
   return input.motion;
 }
 
-void release_buttons(ViewState& view, LiveMilling& milling) {
-  if (view.pedal_down) milling.set_spindle(false);
-  view.pedal_down = view.dragging_tool = view.dragging_view = false;
+// Lets go of what was let go of, whatever else takes the input of this picture.
+void take_releases(const GamepadInput& gamepad, ViewState& view, LiveMilling& milling) {
+  if (gamepad.is_let_go) view.holding_tool = false;
+  if (gamepad.is_let_go) milling.set_spindle(false);
+  if (gamepad.is_mill_released || ImGui::IsMouseReleased(0) || is_dialogue_open())
+    release_buttons(view, milling);
 }
 
 }  // namespace
@@ -237,12 +241,11 @@ void release_buttons(ViewState& view, LiveMilling& milling) {
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, Gamepad& gamepad,
                 const PixelSize& size) {
   const GamepadInput by_gamepad = gamepad.read();
-  if (is_dialogue_open()) {
-    release_buttons(view, simulation.milling);
+  take_releases(by_gamepad, view, simulation.milling);
+  if (is_dialogue_open() || drag_cut(view, size) || drag_grey(view, simulation.scan.grey_window, size)) {
     relax_if_let_go(view, simulation, {.passed_s = static_cast<double>(ImGui::GetIO().DeltaTime)});
     return;
   }
-  if (drag_cut(view, size) || drag_grey(view, simulation.scan.grey_window, size)) return;
   const ImGuiIO& io = ImGui::GetIO();
   LiveMilling& milling = simulation.milling;
   const LiveState& state = milling.state();
@@ -256,7 +259,6 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     view.pedal_down = on_picture && view.holding_tool;
     if (view.pedal_down) milling.set_spindle(true);
   }
-  if (ImGui::IsMouseReleased(0)) release_buttons(view, milling);
   const bool on_picture = !io.WantCaptureMouse || view.dragging_view || view.dragging_tool;
   if (on_picture) move_camera(view, size, !view.dragging_view);
 
