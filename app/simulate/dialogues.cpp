@@ -96,16 +96,20 @@ Dialogue measuring_message(std::function<bool()> is_measured, Dialogue::Action c
 
 Dialogue leftover_question(const SessionStart& leftover, Dialogue::Action open, Dialogue::Action remove,
                            Dialogue::Action later) {
-  return {
-      "Milled bone that was not saved",
-      fmt::format("When osteomill last ended, {:.1f} mm³ of this bone had been milled and not saved:\n{}\n"
-                  "(isovalue {:g}). Shall it be opened as it was?",
-                  leftover.removed_mm3, leftover.run.scan_name, leftover.run.isovalue),
-      {{"Open it", "Opens the scan with what was milled of it", std::move(open)},
-       {"Delete it", "Deletes what was milled; the scan stays", std::move(remove)},
-       {"Later", "Asks again at the next start", std::move(later)}},
-      {},
-      {}};
+  // Pieces that were removed do not count as milled.
+  const std::string what =
+      leftover.removed_mm3 > 0
+          ? fmt::format("{:.1f} mm³ of this bone had been milled and", leftover.removed_mm3)
+          : "pieces of this bone had been removed and";
+  return {"Milled bone that was not saved",
+          fmt::format("When osteomill last ended, {} not saved:\n{}\n"
+                      "(isovalue {:g}). Shall it be opened as it was?",
+                      what, leftover.run.scan_name, leftover.run.isovalue),
+          {{"Open it", "Opens the scan with what was milled of it", std::move(open)},
+           {"Delete it", "Deletes what was milled; the scan stays", std::move(remove)},
+           {"Later", "Asks again at the next start", std::move(later)}},
+          {},
+          {}};
 }
 
 }  // namespace osteomill::app

@@ -115,7 +115,9 @@ PreparedScan open_for_playback(const OpenRequest& request) {
   if (request.from.at_s != 0) ticks_until(work.recording, request.from.at_s);
   const WorkProgress::Part milling(1);
   ScanInfo info{.name = scan.scan, .source = work.scan};
-  return {.scan = std::move(info), .playback = std::make_unique<Playback>(std::move(work))};
+  return {.scan = std::move(info),
+          .playback = std::make_unique<Playback>(std::move(work)),
+          .play_at_s = request.from.at_s};
 }
 
 }  // namespace

@@ -54,8 +54,9 @@ struct PreparedScan {
   std::optional<BranchPoint> from = {};
   /// The file that already keeps what was milled of it, if any.
   std::optional<AutosaveFile> milled_file = {};
-  /// A recording that is to be played; nothing is then milled.
+  /// A recording that is to be played from this time of it, s; nothing is then milled.
   std::unique_ptr<Playback> playback = {};
+  double play_at_s = 0;
   /// The series that a folder holds, if there are several and none was named. Nothing else was then read.
   std::vector<SeriesSummary> series = {};
 };

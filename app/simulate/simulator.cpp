@@ -232,9 +232,11 @@ void Simulator::ask_about_leftover() {
 void Simulator::open_leftover() {
   ScanOptions scan = scan_of(leftover_->start.run);
   scan.read.max_memory_bytes = options_.scan.read.max_memory_bytes;
-  // The labels that were asked for at this start come before those of the earlier run.
+  // The labels that were asked for at this start come before those of the earlier run, unless that removed
+  // pieces, of which each label's share is counted.
   std::error_code other;
-  if (!options_.scan.labels.map.empty() && std::filesystem::equivalent(scan.scan, options_.scan.scan, other))
+  if (!options_.scan.labels.map.empty() && leftover_->start.piece_drops.empty() &&
+      std::filesystem::equivalent(scan.scan, options_.scan.scan, other))
     scan.labels = options_.scan.labels;
   begin_opening({.scan = std::move(scan), .milled = std::exchange(leftover_, std::nullopt)});
 }
@@ -288,7 +290,8 @@ void Simulator::open_another() {
   } else if (!asked.empty() && !opened_) {
     begin_scan(asked.front());
   }
-  if (!opening_.is_ready()) return;
+  // One at a time waits for the answer to what becomes of the bone that is milled.
+  if (opened_ || !opening_.is_ready()) return;
   if (!view.dialogues.run_reporting_errors([this] { opened_ = opening_.take(); })) return;
   if (ask_for_series()) return;
   const auto take = [this] { after_writing("Writing ...", [this] { take_opened(); }); };
@@ -310,6 +313,7 @@ void Simulator::take_first() {
 }
 
 void Simulator::take_opened() {
+  if (!opened_) return;
   PreparedScan opened = *std::exchange(opened_, std::nullopt);
   ViewState& view = stage_.view;
   const bool brings_tool = milling_ || opened.exercise || opened.from || !options_.is_tool_free;
@@ -327,7 +331,7 @@ void Simulator::take_opened() {
     if (!brings_tool) recall_tool(view);
     return;
   }
-  const double at_s = options_.from.given() ? 0 : std::exchange(options_.from.at_s, 0);
+  const double at_s = opened.play_at_s;
   playback_ = std::make_unique<PlaybackScreen>(std::move(opened.playback), at_s, stage_);
 }
 
