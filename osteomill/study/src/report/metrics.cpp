@@ -105,14 +105,13 @@ void require_usable(const Recording& recording, std::span<const TickRecord> reco
   }
 }
 
-// Milling takes and only an undo or a reset gives; a redo takes it again from one session to the next,
-// between which nothing is milled.
+// Milling takes and only an undo or a reset gives; a redo takes it again from one session to the next. What
+// the first tick of a session mills counts as that, too: one tick is nothing against a cut.
 double put_back_mm3(std::span<const TickRecord> records) {
   double sum_mm3 = 0;
   for (std::size_t n = 1; n < records.size(); ++n) {
     const double back_mm3 = records[n - 1].removed_mm3 - records[n].removed_mm3;
-    const bool is_milled = records[n].session == records[n - 1].session || records[n].spindle_on;
-    sum_mm3 += is_milled ? std::max(0.0, back_mm3) : back_mm3;
+    sum_mm3 += records[n].session == records[n - 1].session ? std::max(0.0, back_mm3) : back_mm3;
   }
   return sum_mm3;
 }

@@ -164,7 +164,7 @@ TEST(RunMetrics, ACutMadeAgainIsNotCountedTwice) {
     const std::size_t session = std::min<std::size_t>(n / 250, 2);
     const double more_mm3 = std::clamp(0.02 * (static_cast<double>(n) - 600), 0.0, 3.0);
     record.session = static_cast<std::uint32_t>(session);
-    record.spindle_on = n < 200 || n > 600;
+    record.spindle_on = n < 200 || n >= 500;
     record.removed_mm3 = session == 0 ? std::min(5.0, 0.1 * static_cast<double>(n)) : 0;
     if (session == 2) record.removed_mm3 = 5 + more_mm3;
   }
