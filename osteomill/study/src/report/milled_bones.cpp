@@ -1,12 +1,13 @@
 #include "report/milled_bones.h"
 
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/study/bone_page.h"
 #include "osteomill/visual/surface_mesh.h"
@@ -26,8 +27,13 @@ struct CutPlace {
   Vec3 towards_hand_W = Vec3::Zero();
 
   void add(const Recording& recording) {
-    double removed_mm3 = recording.sessions.front().start.removed_mm3;
-    for (const TickRecord& record : recording.records) {
+    double removed_mm3 = 0;
+    auto next = recording.sessions.begin();
+    for (std::size_t n = 0; n < recording.records.size(); ++n) {
+      const TickRecord& record = recording.records[n];
+      // A cut that is made again between two sessions was not made by the tool.
+      for (; next != recording.sessions.end() && next->first <= n; ++next)
+        removed_mm3 = next->start.removed_mm3;
       if (std::exchange(removed_mm3, record.removed_mm3) >= record.removed_mm3) continue;
       box_W.extend(record.X_WT.position_mm);
       towards_hand_W += record.X_WT.orientation * Vec3::UnitZ();
@@ -116,7 +122,10 @@ MilledBones milled_bones(const RunGroup& group, const ScanOf& scan_of, std::size
                       is_only_one(*run) ? run->algorithm.label : run_name(*run), run->metrics.removed_mm3));
     put_view(data, ball, place.up_W());
     bones.data = std::move(data);
-  } catch (const InputError& error) {
+  } catch (const WorkStopped&) {
+    throw;
+  } catch (const std::exception& error) {
+    // The rest of the page is worth having without it.
     bones.notices = {fmt::format("No bone in 3D: {}.", error.what())};
   }
   return bones;
