@@ -135,8 +135,15 @@ void OpenDialog::draw_files() {
 }
 
 std::optional<std::string> OpenDialog::draw(OpenKind request, bool is_waiting, std::string& last_folder) {
-  if (request != OpenKind::none && !is_waiting && !is_shown_ && !portal_.is_asking())
-    begin(request, last_folder);
+  if (request != OpenKind::none && !is_waiting && !is_shown_) {
+    if (portal_.is_asking()) {
+      // Its dialog is out of sight, or it has ended without an answer.
+      portal_.give_up();
+      show();
+    } else {
+      begin(request, last_folder);
+    }
+  }
   if (const auto answer = portal_.take_answer()) {
     if (!answer->is_available) show();
     if (answer->path) last_folder = (folder_ = fs::path(*answer->path).parent_path()).string();

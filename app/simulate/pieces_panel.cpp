@@ -162,8 +162,10 @@ void draw_piece_controls(ViewState& view, const Simulation& simulation) {
 
 void draw_piece_menu(ViewState& view, Simulation& simulation, const PixelSize& size) {
   ChosenPiece& chosen = view.chosen_piece;
-  if (is_ready(chosen.pending)) chosen.piece = chosen.pending.get();
-  if (is_ready(chosen.box)) view.box = chosen.box.get();
+  view.dialogues.run_reporting_errors([&] {
+    if (is_ready(chosen.pending)) chosen.piece = chosen.pending.get();
+    if (is_ready(chosen.box)) view.box = chosen.box.get();
+  });
   take_click(view, simulation, size);
   if (!ImGui::BeginPopup(kMenu)) {
     chosen.voxel.reset();

@@ -99,6 +99,10 @@ void PortalDialog::ask(bool for_folder, const std::filesystem::path& start) {
   }
 }
 
+void PortalDialog::give_up() {
+  request_.reset();
+}
+
 std::optional<PortalAnswer> PortalDialog::take_answer() {
   if (!request_) return std::nullopt;
   std::optional<PortalAnswer> answer;

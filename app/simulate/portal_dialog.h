@@ -27,6 +27,8 @@ class PortalDialog {
   /// Shows the dialog, in `start` if the desktop follows. Not while it is shown.
   void ask(bool for_folder, const std::filesystem::path& start);
   bool is_asking() const { return request_ != nullptr; }
+  /// Waits for no answer any longer.
+  void give_up();
   /// Returns the answer once it is there.
   std::optional<PortalAnswer> take_answer();
 
