@@ -355,7 +355,7 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
   draw_grey(view, simulation.scan.grey_window);
 }
 
-void draw_view(ViewState& view, const FilesPanel& files, const Vec3& tool_W, const PixelSize& size) {
+void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   if (!ui::header("View", "From where you see the bone, and what is drawn beside it", view.open.view)) return;
   for (const auto& [from, direction_W, up_W] : kPatientViews) {
     const std::string letter(1, static_cast<char>(std::toupper(from.front())));
@@ -370,8 +370,6 @@ void draw_view(ViewState& view, const FilesPanel& files, const Vec3& tool_W, con
   ui::checkbox("ghost", kGhostHint, &view.ghost);
   ImGui::SameLine();
   ui::checkbox("arrows", kArrowsHint, &view.arrows);
-  ui::checkbox("see through", kSeeThroughHint, &view.see_through);
-  draw_seeing(view, files);
 }
 
 }  // namespace
@@ -422,8 +420,9 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   bool changed = false;
   ToolChoice choice{!simulation.exercise || simulation.exercise->placed().exercise.burrs.empty()};
   draw_milling(view, simulation, choice);
-  draw_view(view, files, simulation.milling.state().record.X_WT.position_mm, size);
+  draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);
   files.draw(view, simulation);
+  draw_seeing(view, files);
   draw_cuts(view, simulation);
   draw_isovalue(view, simulation);
   draw_laboratory(view, choice, changed);

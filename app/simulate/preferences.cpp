@@ -95,6 +95,7 @@ const std::vector<Field<P>>& kept_numbers() {
         group("open-milling", "Open the group Milling", &O::milling),
         group("open-view", "Open the group View", &O::view),
         group("open-record-and-save", "Open the group Record and save", &O::files),
+        group("open-look-closer", "Open the group Look closer", &O::closer),
         group("open-bone", "Open the group Bone", &O::bone),
         group("open-cuts", "Open the group Cuts", &O::cuts),
         group("laboratory", "Show the laboratory's controls and readings", &O::laboratory),

@@ -40,7 +40,7 @@ struct Preferences {
   /// Whether a group of controls, or a panel, is more than its title.
   struct Open {
     bool controls = true, readings = true;
-    bool milling = true, view = true, files = true, bone = false, cuts = false;
+    bool milling = true, view = true, files = true, closer = false, bone = false, cuts = false;
     /// The laboratory's groups are there at all, and each of them.
     bool laboratory = false;
     bool algorithm = true, tool = true, drive = false;

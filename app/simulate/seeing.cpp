@@ -135,6 +135,8 @@ void update_seeing(ViewState& view, Simulation& simulation, const PixelSize& siz
     if (ui::is_key_pressed(GLFW_KEY_V)) view.follow_burr = !view.follow_burr;
     if (ui::is_key_pressed(GLFW_KEY_L)) view.loupe = !view.loupe;
     if (ui::is_key_pressed(GLFW_KEY_R)) view.measuring = !view.measuring;
+    // The list of points is there.
+    if (view.measuring && ui::is_key_pressed(GLFW_KEY_R)) view.open.closer = true;
   }
   if (view.measuring) take_click(view, simulation, size);
   if (!view.follow_burr) return;
@@ -164,6 +166,10 @@ void draw_seen(const ViewState& view, const ViewScene& scene, BoneScene& bone, c
 }
 
 void draw_seeing(ViewState& view, const FilesPanel& files) {
+  if (!ui::header("Look closer", "See through bone, follow and magnify the burr, and measure in mm",
+                  view.open.closer))
+    return;
+  ui::checkbox("see through", kSeeThroughHint, &view.see_through);
   ui::checkbox("follow the burr (V)", "Keeps the burr in the middle of the view", &view.follow_burr);
   ui::checkbox("loupe (L)", "Shows the surroundings of the burr magnified, in a picture of their own",
                &view.loupe);

@@ -161,7 +161,7 @@ window ball.nrrd --no-help <<'END'
 wait 0.2 ;; click S ;; glide 700 450 0 ;; key b ;; settle ;; click I ;; wait 1 ;; state behind ;; colour behind
 key x ;; wait 0.3 ;; state through ;; colour through ;; screenshot controls-8-through.png
 key x ;; wait 0.3 ;; state behind-again ;; colour behind-again
-click see through ;; wait 0.3 ;; state through-again ;; colour through-again ;; click see through ;; wait 0.1 ;; close
+click Look closer ;; wait 0.2 ;; click see through ;; wait 0.3 ;; state through-again ;; colour through-again ;; click see through ;; wait 0.1 ;; close
 END
 is behind see_through false; is through see_through true; is behind-again see_through false; is through-again see_through true
 changed behind through colour; same behind behind-again colour; same through through-again colour
@@ -195,6 +195,7 @@ drag stiffness -20 ;; settle ;; state point-shell-stiffness
 drag burr radius -10 ;; settle ;; state burr
 drag shaft radius -10 ;; settle ;; state shaft
 drag spindle speed 30 ;; settle ;; state rpm
+glide 100 600 0 ;; wheel -60 0.5 ;; wait 0.3
 click vibration ;; settle ;; state no-vibration
 click burr pulls ;; settle ;; state no-pull
 click drag ;; settle ;; state no-drag

@@ -27,7 +27,7 @@ work() { # WIDTH HEIGHT
   moments=(first second cleared)
   {
     sed 's/ *;; */\n/g' <<END
-wait 0.3 ;; click Milling ;; click Record and save ;; click Cuts ;; click A ;; key b ;; settle ;; state start
+wait 0.3 ;; click Milling ;; click Record and save ;; click Look closer ;; click Cuts ;; click A ;; key b ;; settle ;; state start
 key r ;; wait 0.1 ;; say first ;; await first ;; say second ;; await second ;; wait 0.2 ;; state measured ;; screenshot seeing-$1-measured.png
 click Copy points ;; click Save points ;; wait 0.3 ;; state saved
 click measure (R) ;; click Clear points ;; wait 0.1 ;; state cleared
