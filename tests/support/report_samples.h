@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "osteomill/haptics/algorithms.h"
@@ -76,6 +77,14 @@ inline Recording sample_run(std::string_view algorithm, std::string_view phase, 
   }
   if (milling) recording.pictures = {{"after", sample_png(true)}, {"before", sample_png(false)}};
   return recording;
+}
+
+/// Returns a page without the names of XML's namespaces, which look like links.
+inline std::string without_namespaces(std::string page) {
+  constexpr std::string_view kNamespace = "http://www.w3.org/";
+  for (auto at = page.find(kNamespace); at != std::string::npos; at = page.find(kNamespace, at))
+    page.erase(at, kNamespace.size());
+  return page;
 }
 
 /// Three algorithms, two phases.
