@@ -22,13 +22,13 @@ struct SessionStart {
   double removed_mm3 = 0;
   /// Every brick in which the bone may differ from the scan, as it is at the beginning.
   std::vector<DensityBlock> bricks;
-  /// By how much densities fell with pieces that were removed and not milled, times the voxels' volume, mm^3,
-  /// summed over each label's voxels, by its place; empty if there are none.
-  std::vector<double> piece_drops = {};
   /// If not empty, the session began in the recording of this name in the same folder, and this one goes on
   /// after the first `continues_after` of its ticks (0: after all). The other fields mean nothing then.
   std::string continues_from = {};
   std::uint64_t continues_after = 0;
+  /// By how much densities fell with pieces that were removed and not milled, times the voxels' volume, mm^3,
+  /// summed over each label's voxels, by its place; empty if there are none.
+  std::vector<double> piece_drops = {};
 };
 
 /// A picture that belongs to a recording, as the bytes of a PNG file.
