@@ -253,8 +253,11 @@ void LiveMilling::describe_current(RunDescription& run) const {
 void LiveMilling::record_session_start(const SessionHandover& handover) {
   RunDescription run = recorded_;
   describe_current(run);
-  recorder_->begin_session(live_.session_number(), {std::move(run), handover, live_.session().removed_mm3(),
-                                                    follower_->touched_bricks(), follower_->piece_drops()});
+  recorder_->begin_session(live_.session_number(), {.run = std::move(run),
+                                                    .handover = handover,
+                                                    .removed_mm3 = live_.session().removed_mm3(),
+                                                    .bricks = follower_->touched_bricks(),
+                                                    .piece_drops = follower_->piece_drops()});
 }
 
 std::filesystem::path LiveMilling::stop_recording() {
