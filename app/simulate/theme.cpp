@@ -22,6 +22,8 @@ void set_dark(ImGuiStyle& style) {
   colour(style, ImGuiCol_SliderGrab, 0.24f, 0.42f, 0.63f);
   colour(style, ImGuiCol_SliderGrabActive, 0.27f, 0.46f, 0.68f);
   colour(style, ImGuiCol_TextDisabled, 0.62f, 0.64f, 0.67f);
+  // Darkens the window behind a dialogue, which ImGui would make paler.
+  colour(style, ImGuiCol_ModalWindowDimBg, 0, 0, 0, 0.5f);
 }
 
 void set_light(ImGuiStyle& style) {
