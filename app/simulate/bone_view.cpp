@@ -117,13 +117,18 @@ std::optional<Sight> beyond(const Sight& sight, const ClipPlane& cut) {
 
 }  // namespace
 
+std::optional<Vec3> bone_point_seen_at(const Volume& bone, const Camera& camera, const PixelSize& size,
+                                       const Eigen::Vector2d& pixel, std::span<const ClipPlane> cuts) {
+  auto sight = sight_through(bone.geometry(), camera, ray_through(camera, size, pixel.x(), pixel.y()));
+  for (const ClipPlane& cut : cuts)
+    if (sight) sight = beyond(*sight, cut);
+  return sight ? first_crossing(bone, sight->from_W, sight->to_W) : std::nullopt;
+}
+
 std::optional<VoxelIndex> bone_voxel_seen_at(const Volume& bone, const Camera& camera, const PixelSize& size,
                                              const Eigen::Vector2d& pixel, std::span<const ClipPlane> cuts) {
   const GridGeometry& geometry = bone.geometry();
-  auto sight = sight_through(geometry, camera, ray_through(camera, size, pixel.x(), pixel.y()));
-  for (const ClipPlane& cut : cuts)
-    if (sight) sight = beyond(*sight, cut);
-  const auto point_W = sight ? first_crossing(bone, sight->from_W, sight->to_W) : std::nullopt;
+  const auto point_W = bone_point_seen_at(bone, camera, size, pixel, cuts);
   if (!point_W) return std::nullopt;
   const Vec3 point = geometry.voxel_from_world(*point_W);
   const VoxelIndex middle{static_cast<int>(std::lround(point.x())), static_cast<int>(std::lround(point.y())),
@@ -141,10 +146,9 @@ std::optional<VoxelIndex> bone_voxel_seen_at(const Volume& bone, const Camera& c
 
 std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
                                      const PixelSize& size, double x_px, double y_px) {
-  const Vec3 ray_W = ray_through(camera, size, x_px, y_px);
-  const auto sight = sight_through(bone.geometry(), camera, ray_W);
-  const auto point_W = sight ? first_crossing(bone, sight->from_W, sight->to_W) : std::nullopt;
+  const auto point_W = bone_point_seen_at(bone, camera, size, {x_px, y_px}, {});
   if (!point_W) return std::nullopt;
+  const Vec3 ray_W = ray_through(camera, size, x_px, y_px);
   // Before the point in the direction of the eye, so that the tool is seen at the pixel.
   const Vec3 right_W = camera.up_W().cross(-ray_W).normalized();
   return free_pose_before(bone, tool, *point_W, -ray_W, -ray_W.cross(right_W));

@@ -36,6 +36,10 @@ Camera first_camera(const BoneBox& box, const PixelSize& size);
 /// The view into which the target's surface faces, with all of the bone.
 Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, const PixelSize& size);
 
+/// Returns the point of bone that is seen at a pixel, on its surface or on one of these cuts; nothing if no
+/// bone is.
+std::optional<Vec3> bone_point_seen_at(const Volume& bone, const Camera& camera, const PixelSize& size,
+                                       const Eigen::Vector2d& pixel, std::span<const ClipPlane> cuts);
 /// Returns a voxel of the bone that is seen at a pixel, of what these cuts leave; nothing if no bone is.
 std::optional<VoxelIndex> bone_voxel_seen_at(const Volume& bone, const Camera& camera, const PixelSize& size,
                                              const Eigen::Vector2d& pixel, std::span<const ClipPlane> cuts);

@@ -20,16 +20,8 @@ namespace osteomill::app {
 namespace {
 
 constexpr const char* kMenu = "##piece";
-// A click that moves further is a drag, pixels at the usual size of text.
-constexpr float kClick_px = 4;
 constexpr const char* kNotInExercise =
     "Pieces cannot be removed in an exercise, whose results count all bone that is gone";
-
-bool is_click(ImGuiMouseButton button) {
-  const float reach_px = ui::px(kClick_px);
-  return ImGui::IsMouseReleased(button) &&
-         ImGui::GetIO().MouseDragMaxDistanceSqr[button] < reach_px * reach_px;
-}
 
 // The pieces are counted in a copy, which shares its memory with the bone, so that milling goes on.
 void choose(ChosenPiece& chosen, const Simulation& simulation, const VoxelIndex& voxel) {
@@ -48,13 +40,11 @@ void choose(ChosenPiece& chosen, const Simulation& simulation, const VoxelIndex&
 std::optional<VoxelIndex> voxel_under_pointer(const ViewState& view, const Simulation& simulation,
                                               const PixelSize& size) {
   const ImVec2 pointer = ImGui::GetIO().MousePos;
-  std::vector<ClipPlane> cuts;
-  for (const ViewState::Cut& cut : view.cuts)
-    if (cut.on) cuts.push_back(plane_of(cut));
   std::optional<VoxelIndex> voxel;
   simulation.milling.follower().read([&](const Volume& bone) {
-    voxel = bone_voxel_seen_at(bone, view.camera, size,
-                               {static_cast<double>(pointer.x), static_cast<double>(pointer.y)}, cuts);
+    voxel =
+        bone_voxel_seen_at(bone, view.camera, size,
+                           {static_cast<double>(pointer.x), static_cast<double>(pointer.y)}, planes_of(view));
   });
   return voxel;
 }
@@ -62,7 +52,7 @@ std::optional<VoxelIndex> voxel_under_pointer(const ViewState& view, const Simul
 void take_click(ViewState& view, const Simulation& simulation, const PixelSize& size) {
   ChosenPiece& chosen = view.chosen_piece;
   if (view.holding_tool || ui::is_key_pressed(GLFW_KEY_ESCAPE)) chosen.choosing = false;
-  const bool clicked = is_click(1) || (chosen.choosing && is_click(0));
+  const bool clicked = ui::is_click(1) || (chosen.choosing && ui::is_click(0));
   if (!clicked || view.holding_tool || is_dialogue_open() || ImGui::GetIO().WantCaptureMouse) return;
   const auto voxel = voxel_under_pointer(view, simulation, size);
   if (!voxel) return;

@@ -59,6 +59,13 @@ void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W
   cut.other_side = place_mm > most_mm - kLeast * (most_mm - least_mm);
 }
 
+std::vector<ClipPlane> planes_of(const ViewState& view) {
+  std::vector<ClipPlane> planes;
+  for (const ViewState::Cut& cut : view.cuts)
+    if (cut.on) planes.push_back(plane_of(cut));
+  return planes;
+}
+
 static ViewScene scene_of(const ViewState& view, const TickRecord& record, const SessionSettings& settings) {
   ViewScene scene;
   scene.camera = view.camera;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "osteomill/visual/scene_renderer.h"
 
@@ -14,6 +15,8 @@ namespace osteomill::app {
 
 /// Returns the plane of a cut; its `other_side` turns it round.
 ClipPlane plane_of(const ViewState::Cut& cut);
+/// Returns the planes of the cuts that are on.
+std::vector<ClipPlane> planes_of(const ViewState& view);
 
 /// Returns the scene to be drawn now.
 ViewScene scene_of(const ViewState& view, Simulation& simulation);

@@ -8,8 +8,6 @@
 #include <fmt/core.h>
 #include <imgui.h>
 
-#include "osteomill/volume/sampling.h"
-
 #include "app/simulate/bone_scene.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/panels.h"
@@ -22,8 +20,6 @@ namespace {
 
 // The burr comes to the middle by two thirds of its way in this time, so that its trembling is not followed.
 constexpr double kFollowing_s = 0.25;
-// A click that moves further turns the view.
-constexpr float kClick_px = 4;
 // The side of the loupe as a share of the window's height.
 constexpr double kLoupeShare = 0.4;
 
@@ -46,13 +42,12 @@ Eigen::Vector2i loupe_corner(const PixelSize& size, int side_px) {
 
 void take_click(ViewState& view, const Simulation& simulation, const PixelSize& size) {
   const ImGuiIO& io = ImGui::GetIO();
-  const float moved_px = ui::px(kClick_px);
-  if (!ImGui::IsMouseReleased(0) || io.WantCaptureMouse || view.holding_tool || io.KeyCtrl) return;
-  if (io.MouseDragMaxDistanceSqr[0] > moved_px * moved_px) return;
+  if (!ui::is_click(0) || io.WantCaptureMouse || view.holding_tool || io.KeyCtrl) return;
   std::optional<Vec3> point_W;
   simulation.milling.follower().read([&](const Volume& bone) {
-    point_W = bone_point_seen(bone, view, size, static_cast<double>(io.MousePos.x),
-                              static_cast<double>(io.MousePos.y));
+    point_W = bone_point_seen_at(bone, view.camera, size,
+                                 {static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y)},
+                                 planes_of(view));
   });
   if (point_W) view.landmarks.push_back({fmt::format("P{}", view.landmarks.size() + 1), *point_W});
 }
@@ -102,31 +97,6 @@ std::string table_text(const std::vector<Landmark>& landmarks) {
 }
 
 }  // namespace
-
-std::optional<Vec3> bone_point_seen(const Volume& bone, const ViewState& view, const PixelSize& size,
-                                    double x_px, double y_px) {
-  const Vec3 ray_W = ray_through(view.camera, size, x_px, y_px);
-  const Vec3 eye_W = view.camera.eye_W();
-  const Sphere bounds = view.box.bounds();
-  const double middle_mm = ray_W.dot(bounds.centre_W - eye_W);
-  double near_mm = std::max(0.0, middle_mm - bounds.radius_mm), far_mm = middle_mm + bounds.radius_mm;
-  for (const ViewState::Cut& cut : view.cuts) {
-    if (!cut.on) continue;
-    const ClipPlane plane = plane_of(cut);
-    const double towards = plane.normal_W.dot(ray_W);
-    const double beyond_mm = plane.normal_W.dot(eye_W) - plane.offset_mm;
-    // Parallel to the plane, all of the ray is cut away or none.
-    if (std::abs(towards) < 1e-9) {
-      if (beyond_mm < 0) return std::nullopt;
-    } else if (towards > 0) {
-      near_mm = std::max(near_mm, -beyond_mm / towards);
-    } else {
-      far_mm = std::min(far_mm, -beyond_mm / towards);
-    }
-  }
-  if (near_mm >= far_mm) return std::nullopt;
-  return first_crossing(bone, eye_W + near_mm * ray_W, eye_W + far_mm * ray_W);
-}
 
 void update_seeing(ViewState& view, Simulation& simulation, const PixelSize& size) {
   const ImGuiIO& io = ImGui::GetIO();

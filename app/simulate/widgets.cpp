@@ -55,6 +55,13 @@ bool is_key_pressed(int key) {
   return ImGui::IsKeyPressed(key, false);
 }
 
+bool is_click(ImGuiMouseButton button) {
+  constexpr float kReach_px = 4;
+  const float reach_px = px(kReach_px);
+  return ImGui::IsMouseReleased(button) &&
+         ImGui::GetIO().MouseDragMaxDistanceSqr[button] <= reach_px * reach_px;
+}
+
 bool begin_panel(const char* title, bool& open, ImGuiWindowFlags flags) {
   ImGui::SetNextWindowCollapsed(!open);
   open = ImGui::Begin(title, nullptr, flags | ImGuiWindowFlags_NoMove);

@@ -32,6 +32,8 @@ void set_scale(double scale);
 inline constexpr float kSidePanelWidth_px = 250;
 /// Returns whether the key (GLFW's number) went down in this picture.
 bool is_key_pressed(int key);
+/// Returns whether a mouse button went up in this picture without having dragged anything.
+bool is_click(ImGuiMouseButton button);
 
 /// Begins a panel of the right column, with its upper edge at `y_px`. `open`: whether it is more than its
 /// title.
