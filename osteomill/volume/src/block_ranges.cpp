@@ -6,8 +6,8 @@ namespace osteomill {
 
 namespace {
 
-// The first brick whose range counts voxel coordinate `v`: its own, or the one below if `v` is the layer
-// between.
+// First brick along an axis whose range includes voxel coordinate `v`: its own, or the one below if that
+// counts `v` as its extra layer.
 int first_counting(int v) {
   const int own = v / BlockRanges::kBrickVoxels;
   return v % BlockRanges::kBrickVoxels == 0 && own > 0 ? own - 1 : own;

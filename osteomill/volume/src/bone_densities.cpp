@@ -17,15 +17,15 @@ namespace {
 
 constexpr int kStepsAway = 8;
 
-// Grows with the number.
+// Maps a float to an integer of the same order.
 std::uint32_t rank_of(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   return (bits >> 31) != 0 ? ~bits : bits | 1u << 31;
 }
 
-// The median of the values that `for_each` passes to its argument. It is called twice and must pass the same
-// values: the first pass counts by the upper 16 bits of their ranks, the second by the lower 16 bits of those
-// that share the median's upper bits. So a billion values need not be kept.
+// Returns the median of the values that `for_each` passes to its argument. Calls it twice, with the same
+// values each time: the first pass counts by the upper 16 bits of the ranks, the second by the lower 16 bits
+// of the ranks in the median's bin. This avoids storing up to a billion values.
 template <typename ForEach>
 std::optional<double> median(const ForEach& for_each) {
   std::vector<std::size_t> counts(1 << 16);
@@ -39,7 +39,7 @@ std::optional<double> median(const ForEach& for_each) {
   }
   if (all == 0) return std::nullopt;
   std::size_t before = all / 2;
-  // In which half rank the wanted one lies, and how many of that come before it.
+  // Finds the bin that holds the median; leaves in `before` the number of its values below the median.
   const auto find = [&] {
     std::uint32_t half = 0;
     for (; before >= counts[half]; ++half) before -= counts[half];
@@ -55,8 +55,7 @@ std::optional<double> median(const ForEach& for_each) {
   return static_cast<double>(std::bit_cast<float>((rank >> 31) != 0 ? rank & ~(1u << 31) : ~rank));
 }
 
-// The density some steps out of the bone along an axis, if all voxels on the way are in the grid and not
-// bone.
+// Density kStepsAway steps along an axis, if all voxels on the way are in the grid and not bone.
 std::optional<float> density_away(const Volume& volume, const VoxelIndex& bone, std::size_t axis, int sign) {
   std::array<int, 3> v{bone.i, bone.j, bone.k};
   for (int step = 0; step < kStepsAway; ++step) {
@@ -69,7 +68,7 @@ std::optional<float> density_away(const Volume& volume, const VoxelIndex& bone, 
   return volume.grid()[away];
 }
 
-// Returns the median density of the voxels around the bone that lie well outside of it.
+// Returns the median density of the voxels that density_away() finds around the bone.
 std::optional<double> median_around(const Volume& volume) {
   std::vector<float> around;
   {

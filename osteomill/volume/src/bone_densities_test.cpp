@@ -22,7 +22,7 @@ Volume uniform_volume(float density, double isovalue) {
   return Volume(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), density)), isovalue);
 }
 
-// The scan as it was fetched: raw counts of two bytes, the higher first.
+// Scan as downloaded: raw 16-bit counts, big-endian.
 Volume real_tooth(double slope = 1, double intercept = 0) {
   GridGeometry geometry;
   geometry.dims = {103, 94, 161};

@@ -13,13 +13,13 @@ namespace osteomill {
 
 namespace {
 
-// Voxels of bone that follow each other in a row.
+// Consecutive bone voxels of a row.
 struct Run {
   int first;
   int last;
 };
 
-// The runs of a bone and which of them are connected (union-find).
+// Runs of a bone and their connected components (union-find).
 class ConnectedRuns {
  public:
   ConnectedRuns(const DensityGrid& grid, double isovalue) : rows_per_slice_(grid.geometry().dims[1]) {
@@ -32,14 +32,14 @@ class ConnectedRuns {
     });
   }
 
-  // Calls `use(run, its piece)`. A piece is the number of its first run.
+  // Calls `use(run, piece)` for each run of a row. A piece is identified by the index of its first run.
   template <typename Use>
   void for_each_in_row(int j, int k, const Use& use) {
     for (std::size_t n = begin_of_row_[row(j, k)]; n < begin_of_row_[row(j, k) + 1]; ++n)
       use(runs_[n], piece_of(n));
   }
 
-  // Returns the piece of a voxel; nothing if it is no bone.
+  // Returns the piece of a voxel; nullopt if it is not bone.
   std::optional<std::size_t> piece_with(const VoxelIndex& voxel) {
     std::optional<std::size_t> found;
     for_each_in_row(voxel.j, voxel.k, [&](const Run& run, std::size_t piece) {
@@ -48,7 +48,7 @@ class ConnectedRuns {
     return found;
   }
 
-  // Returns how many voxels each piece has, by its number; 0 for numbers that are no piece's.
+  // Returns the voxel count of each piece, by its index; 0 for runs that do not identify a piece.
   std::vector<std::size_t> sizes() {
     std::vector<std::size_t> voxels(runs_.size());
     for (std::size_t n = 0; n < runs_.size(); ++n)
@@ -76,7 +76,7 @@ class ConnectedRuns {
     begin_of_row_.push_back(runs_.size());
   }
 
-  // Connects the row that was added last with the neighbours that came before it.
+  // Connects the row added last with its neighbours among the earlier rows.
   void connect_row(int j, int k) {
     if (j > 0) connect(row(j, k), row(j - 1, k));
     if (k == 0) return;
@@ -112,7 +112,7 @@ std::vector<std::size_t> largest_first(std::vector<std::size_t> sizes) {
   return sizes;
 }
 
-// Calls `use(run, its piece, j, k)` with every run of the grid.
+// Calls `use(run, piece, j, k)` with every run of the grid.
 template <typename Use>
 void for_each_run(const GridGeometry& geometry, ConnectedRuns& runs, const Use& use) {
   VoxelBox rows = geometry.all_voxels();
@@ -123,7 +123,7 @@ void for_each_run(const GridGeometry& geometry, ConnectedRuns& runs, const Use& 
   });
 }
 
-// Copies bricks of a grid, in which voxels are then given its least density.
+// Copies of a grid's bricks in which removed voxels are set to the grid's lowest density.
 class EmptiedBricks {
  public:
   EmptiedBricks(const DensityGrid& grid, std::size_t max_bricks)
@@ -152,8 +152,8 @@ class EmptiedBricks {
     if (place == kNone) {
       if (bricks_.size() == max_bricks_)
         throw std::length_error(
-            "the pieces take more memory than can be taken back; "
-            "--keep-largest and --min-piece leave pieces out when a scan is opened");
+            "removing these pieces takes more memory than undo allows; "
+            "use --keep-largest or --min-piece when opening the scan");
       place = bricks_.size();
       bricks_.emplace_back(grid_, VoxelBox::of_brick(brick, kSide).first);
     }
@@ -174,10 +174,10 @@ const std::vector<Field<PieceChoice>>& fields_of<PieceChoice>() {
   using P = PieceChoice;
   static const std::vector<Field<P>> all{
       field<P>({"scan.only_largest", "", NumberRange::on_or_off(),
-                "Leave out every piece of bone but the largest", kMayBeAbsent, "keep-largest"},
+                "Remove all pieces of bone except the largest", kMayBeAbsent, "keep-largest"},
                &P::only_largest),
       field<P>({"scan.min_piece", "mm^3", NumberRange::not_negative(),
-                "Leave out pieces of bone that are smaller", kMayBeAbsent, "min-piece"},
+                "Remove pieces of bone smaller than this volume", kMayBeAbsent, "min-piece"},
                &P::min_mm3)};
   return all;
 }
@@ -231,7 +231,7 @@ std::vector<DensityBlock> bricks_without(const DensityGrid& grid, double isovalu
   const std::vector<std::size_t> sizes = runs.sizes();
   const auto chosen = runs.piece_with(removal.voxel);
   if (removal.which != Which::smaller && !chosen)
-    throw std::invalid_argument("there is no bone any more where the piece was chosen");
+    throw std::invalid_argument("the chosen piece is no longer bone; choose another");
   const double voxel_mm3 = grid.geometry().voxel_volume_mm3();
   EmptiedBricks bricks(grid, max_bricks);
   for_each_run(grid.geometry(), runs, [&](const Run& run, std::size_t piece, int j, int k) {

@@ -27,7 +27,7 @@ DensityGrid made_of(const GridGeometry& geometry, const std::function<bool(const
   return DensityGrid(geometry, std::move(densities));
 }
 
-// Fills piece after piece, voxel by voxel.
+// Reference flood fill, voxel by voxel.
 std::vector<std::vector<VoxelIndex>> filled_pieces(const DensityGrid& grid) {
   std::vector<bool> seen(grid.geometry().voxel_count());
   std::vector<std::vector<VoxelIndex>> pieces;
@@ -70,7 +70,7 @@ TEST(BonePieces, AreThoseOfAFloodFillAtEveryShareOfBone) {
   }
 }
 
-// Every piece of random bones, by each of its voxels and each kind of removal.
+// Covers every piece of random bones, chosen by each of its voxels, and each kind of removal.
 TEST(BonePieces, RemovedOnesAreThoseOfAFloodFill) {
   std::mt19937 random(11);
   GridGeometry geometry = centred_cube(1, 0.5);

@@ -14,7 +14,7 @@ namespace {
 
 using testing_support::centred_cube;
 
-// Air, soft tissue from `skin_mm` from the middle on, bone from `bone_mm`, with edges two voxels wide.
+// Air, soft tissue within kSkin_mm of the centre and bone within kBone_mm, with edges two voxels wide.
 DensityGrid head(double soft, double bone, double noise, Vec3 spacing_mm = {0.5, 0.5, 0.5}) {
   constexpr double kSkin_mm = 9, kBone_mm = 6;
   GridGeometry geometry = centred_cube(48, 0.5);

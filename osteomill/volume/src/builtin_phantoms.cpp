@@ -13,7 +13,8 @@ namespace osteomill {
 
 namespace {
 
-// Everything below is in mm, z outward. Only + - * / and sqrt, which give the same bits on every machine.
+// Everything below is in mm, z outward, and uses only + - * / and sqrt, which are bit-identical on every
+// machine.
 
 constexpr double kSpacing_mm = 0.25;
 constexpr double kAir = 0;
@@ -21,7 +22,7 @@ constexpr double kSoftTissue = 40;
 constexpr double kSoftBone = 1200;
 constexpr double kHardBone = 1800;
 
-// Returns how much of a voxel lies inside a surface, given its centre's distance, negative inside.
+// Returns the fraction of a voxel inside a surface, given its centre's signed distance (negative inside).
 double share_inside(double distance_mm) {
   return std::clamp(0.5 - distance_mm / (2 * kSpacing_mm), 0.0, 1.0);
 }
@@ -54,7 +55,7 @@ DensityGrid layers() {
   return grid_of({96, 96, 64}, 4 + 0.5 * kSpacing_mm, layers_density);
 }
 
-// The mastoid. Rods are round, with ends beyond the grid or rounded.
+// Mastoid phantom: signed distance of a round rod, whose ends are rounded or outside the grid.
 
 double rod_distance_mm(const Vec3& p, const Vec3& from, const Vec3& to, double radius_mm) {
   const Vec3 along = to - from;
@@ -69,7 +70,7 @@ double soft_tissue_distance_mm(const Vec3& p) {
   return std::min({nerve, sinus, dura});
 }
 
-// Returns a number from 0 to 1 that belongs to a place of the lattice of cells.
+// Returns a pseudo-random number from 0 to 1 for a node of the cell lattice.
 double lattice_number(int i, int j, int k, std::uint32_t which) {
   std::uint32_t x = static_cast<std::uint32_t>(i) * 73856093u ^ static_cast<std::uint32_t>(j) * 19349663u ^
                     static_cast<std::uint32_t>(k) * 83492791u ^ which * 2654435761u;
@@ -78,7 +79,7 @@ double lattice_number(int i, int j, int k, std::uint32_t which) {
   return static_cast<double>((x ^ (x >> 16)) & 0xffffu) / 65535.0;
 }
 
-// Air cells on a shaken lattice, larger with depth; and the antrum.
+// Signed distance of the antrum and the air cells, which lie on a jittered lattice and grow with depth.
 double cell_distance_mm(const Vec3& p) {
   constexpr double kApart_mm = 2.4;
   const Vec3 at = p / kApart_mm;
@@ -102,7 +103,7 @@ double mastoid_density(const Vec3& p) {
   const double outside_mm = p.z();
   if (outside_mm > 2 * kSpacing_mm) return kAir;
   const double tissue_mm = soft_tissue_distance_mm(p);
-  // Cells keep away from the cortex and from the plates over nerve, sinus and dura.
+  // Cells spare the cortex and the plates over nerve, sinus and dura.
   const double cell_mm = std::max({cell_distance_mm(p), kPlate_mm - tissue_mm, outside_mm + kCortex_mm});
   const double bone =
       mixed(kSoftBone, kHardBone, share_inside(std::min(tissue_mm - kPlate_mm, -kCortex_mm - outside_mm)));

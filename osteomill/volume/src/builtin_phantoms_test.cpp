@@ -38,7 +38,7 @@ TEST(BuiltinPhantom, MastoidHasItsStructuresUnderSolidBoneAndCellsElsewhere) {
   std::size_t cells = 0, voxels = 0;
   for_each(mastoid.geometry().all_voxels(), [&](const VoxelIndex& v) {
     const Vec3 p = mastoid.geometry().world_from_voxel(v);
-    // A millimetre of bone over the nerve, to all sides.
+    // Solid bone around the nerve, on all sides.
     const double from_nerve_mm = Vec3(p.x() + 1, 0, p.z() + 13).norm() - 0.75;
     if (p.y() < 8 && from_nerve_mm > 0.3 && from_nerve_mm < 1) {
       EXPECT_TRUE(mastoid.is_bone(v));

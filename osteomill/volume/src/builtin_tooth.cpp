@@ -13,9 +13,9 @@ namespace osteomill {
 
 namespace {
 
-// Everything below is in mm: x from mesial to distal, y from cheek to tongue, z up to the cusps. Shapes are
-// implicit functions, below 0 inside and roughly a distance near the surface. Only + - * / and sqrt, which
-// give the same bits on every machine.
+// Everything below is in mm: x mesial to distal, y buccal to lingual, z towards the cusps. Shapes are
+// implicit functions, negative inside and roughly a distance near the surface. Uses only + - * / and sqrt,
+// which are bit-identical on every machine.
 
 constexpr double kSurroundings = 0;
 constexpr double kPulp = 40;
@@ -26,8 +26,8 @@ constexpr double kSpacing_mm = 0.125;
 constexpr std::array<int, 3> kDims{256, 256, 176};
 constexpr double kEdge_mm = 0.25;
 
-constexpr double kNeck_z = 13.2;     // where enamel ends
-constexpr double kContour_z = 17.2;  // where the crown is widest
+constexpr double kNeck_z = 13.2;     // lower edge of the enamel
+constexpr double kContour_z = 17.2;  // widest section of the crown
 
 double square(double x) {
   return x * x;
@@ -35,7 +35,7 @@ double square(double x) {
 double ramp(double x) {
   return std::clamp(x, 0.0, 1.0);
 }
-// Returns a ramp from 0 to 1 with level ends.
+// Returns a ramp from 0 to 1 with zero slope at both ends.
 double smooth_ramp(double x) {
   const double t = ramp(x);
   return t * t * (3 - 2 * t);
@@ -53,13 +53,13 @@ double smooth_max(double a, double b, double blend) {
   return -smooth_min(-a, -b, blend);
 }
 
-// Returns 1 on an ellipse with somewhat square shoulders, as molars have.
+// Norm whose unit curve is an ellipse with slightly square shoulders, as in molars.
 double shoulder_norm(double u, double v) {
   const double u2 = u * u, v2 = v * v;
   return std::sqrt(0.55 * (u2 + v2) + 0.45 * std::sqrt(u2 * u2 + v2 * v2));
 }
 
-// A smooth wave of period 2 between -1 and 1.
+// Piecewise parabolic wave of period 2 between -1 and 1.
 double wave(double t) {
   const double turns = t - 2 * std::floor(0.5 * t);
   const double half = turns < 1 ? turns : turns - 1;
@@ -79,7 +79,7 @@ constexpr std::array<Cusp, 4> kCusps{{{-2.55, -2.75, 20.75, 0.80},
                                       {-2.35, 2.55, 21.0, 0.88},
                                       {2.3, 2.45, 20.7, 0.86}}};
 
-// A cusp's cone with a lower lobe on either side, which leave shallow grooves between them.
+// Height of a cusp: a rounded cone with a lower lobe on either side and shallow grooves between them.
 double cusp_z(const Cusp& cusp, double x, double y) {
   const double dx = x - cusp.x;
   const double dy = y - cusp.y;
@@ -88,7 +88,7 @@ double cusp_z(const Cusp& cusp, double x, double y) {
   return smooth_max(rounded_cone_z(dx, dy, cusp.tip_z, cusp.slope), outer, 0.25);
 }
 
-// Height of the chewing surface: cusps that meet in winding fissures, within marginal ridges.
+// Height of the occlusal surface: cusps that meet in winding fissures, between marginal ridges.
 double chewing_surface_z(double x, double y) {
   const double u = x + 0.16 * wave(0.7 * y + 0.2) + 0.1 * wave(1.6 * y);
   const double v = y + 0.2 * wave(0.45 * x + 0.4) + 0.08 * wave(1.5 * x + 0.5);
@@ -109,19 +109,19 @@ double crown(double x, double y, double z) {
   const double above = smooth_ramp((z - kContour_z) / 6.0);
   const double half_x = 4.35 + 1.15 * below - 1.6 * above;
   const double half_y = 4.15 + 1.1 * below - 1.75 * above;
-  // A shallow furrow down both flanks, from between the cusps to where the roots part.
+  // Shallow furrow down both flanks, from between the cusps to the furcation of the roots.
   const double furrow = 0.33 * bump(x / 1.9) * (1 - 0.6 * bump((z - 15) / 2.5));
   const double flank = (shoulder_norm(x / half_x, y / (half_y - furrow)) - 1) * std::min(half_x, half_y);
-  // Far below the chewing surface it makes no difference.
+  // The chewing surface does not matter far below it.
   const double top = z > 14 ? (z - chewing_surface_z(x, y)) * 0.8 : -10;
   return smooth_max(smooth_max(flank, top, 0.9), 9.9 - z, 2.2);
 }
 
 struct Root {
-  double top_x, apex_x;   // of its axis at kRootTop_z and at the apex
+  double top_x, apex_x;   // position of the axis at kRootTop_z and at the apex
   double half_x, half_y;  // at the top
   double apex_z;
-  double lean;  // how far the axis bows outwards half-way
+  double lean;  // outward bow of the axis at half length
 };
 constexpr double kRootTop_z = 13.0;
 constexpr std::array<Root, 2> kRoots{
@@ -148,7 +148,7 @@ double tooth(double x, double y, double z) {
   return smooth_min(crown(x, y, z), roots, 1.4);
 }
 
-// A round rod from (ax, ay, az) to (bx, by, bz), tapering from ra to rb.
+// Round rod from `a` to `b`, tapering from radius `ra` to `rb`.
 double rod(const Vec3& p, const Vec3& a, const Vec3& b, double ra, double rb) {
   const Vec3 along = b - a;
   const double t = ramp((p - a).dot(along) / along.squaredNorm());
@@ -178,8 +178,8 @@ double pulp(double x, double y, double z) {
   return shape;
 }
 
-// Returns the enamel's thickness: 0 at the neck, which rises a little towards the neighbouring teeth; largest
-// on the cusps.
+// Returns the enamel's thickness: 0 at the neck (slightly higher towards the adjacent teeth), largest on the
+// cusps.
 double enamel_thickness_mm(double x, double y, double z) {
   const double neck_z = kNeck_z + 0.7 * square(x / 4.5) - 0.3 * square(y / 4.3);
   const double up = (z - neck_z) / 3.2;
@@ -187,7 +187,7 @@ double enamel_thickness_mm(double x, double y, double z) {
   return 1.35 * std::sqrt(ramp(up) * (2 - ramp(up))) + 0.65 * smooth_ramp((z - kContour_z) / 2.5);
 }
 
-// Turns an implicit function into mm near its surface, if its slope is not 1.
+// Converts the value of an implicit function near its surface to a distance in mm by dividing by its slope.
 template <typename Shape>
 double in_mm(const Shape& shape, double value, double x, double y, double z) {
   constexpr double kStep = 0.02;
@@ -233,7 +233,8 @@ GridGeometry tooth_geometry(double refinement) {
   return geometry;
 }
 
-// A block of voxels is skipped if the tooth is farther from its centre than any of its voxels.
+// Blocks of voxels are skipped if the tooth is farther from their centre than any of their voxels; kSteepest
+// bounds the slope of tooth().
 constexpr int kBlock = 8;
 constexpr double kSteepest = 2.0;
 

@@ -21,7 +21,7 @@ bool is_bone(const DensityGrid& grid, const VoxelIndex& v) {
   return static_cast<double>(grid[v]) > kBuiltinToothIsovalue;
 }
 
-// Returns how many pieces, joined by voxel faces, the wanted voxels of a box make.
+// Returns the number of face-connected components of the wanted voxels of a box.
 int count_pieces(const DensityGrid& grid, const VoxelBox& box,
                  const std::function<bool(const VoxelIndex&)>& wanted) {
   std::vector<bool> seen(grid.geometry().voxel_count(), false);
@@ -94,11 +94,11 @@ TEST(BuiltinTooth, EndsInFourCusps) {
 }
 
 TEST(BuiltinTooth, EnclosesItsPulp) {
-  // Round the tooth there is one empty space, inside it another: the chamber with its canals.
+  // One empty component around the tooth and one inside it: the chamber with its canals.
   const auto empty = [](const VoxelIndex& v) { return !is_bone(tooth(), v); };
   EXPECT_EQ(count_pieces(tooth(), tooth().geometry().all_voxels(), empty), 2);
   EXPECT_NEAR(density_at(tooth(), {0, 0, 13.9}), 40, 1);
-  // A canal in each root: three pieces in a slice through the roots.
+  // Outside plus a canal in each root: three components in a slice through the roots.
   EXPECT_EQ(count_pieces(tooth(), slice(tooth(), 60), empty), 3);
 }
 
@@ -129,7 +129,7 @@ TEST(BuiltinTooth, IsTheSameToothAtAnyRefinement) {
   EXPECT_EQ(coarse.geometry().dims, (std::array<int, 3>{128, 128, 88}));
   EXPECT_EQ(coarse.geometry().spacing_mm, Vec3::Constant(0.25));
   EXPECT_NEAR(bone_volume_mm3(coarse) / bone_volume_mm3(tooth()), 1, 0.02);
-  // The mean of the eight fine voxels about a coarse one is its density, except at the bends of the edges.
+  // The mean of the eight fine voxels in a coarse one is its density, except at kinks of the edge profile.
   double worst = 0, sum = 0;
   for (int k = 0; k < 88; ++k)
     for (int j = 0; j < 128; ++j)

@@ -26,7 +26,7 @@ std::size_t mapped_bytes(std::size_t floats) {
 [[noreturn]] void throw_system_error() {
   if (errno != EFBIG) throw std::bad_alloc();
   throw std::system_error(errno, std::generic_category(),
-                          "densities lie in a file in memory, which a limit forbids (ulimit -f)");
+                          "the densities exceed the file size limit; raise it (ulimit -f)");
 }
 
 void write_all(int file, const char* bytes, std::size_t count, std::size_t at) {
@@ -40,7 +40,7 @@ void write_all(int file, const char* bytes, std::size_t count, std::size_t at) {
   }
 }
 
-// Discards the pages that lie wholly in [from, to) and frees their memory.
+// Frees the pages wholly inside [from, to).
 void give_back(float* from, float* to) {
   const auto up = (reinterpret_cast<std::uintptr_t>(from) + kPageBytes - 1) / kPageBytes * kPageBytes;
   const auto down = reinterpret_cast<std::uintptr_t>(to) / kPageBytes * kPageBytes;
@@ -49,7 +49,7 @@ void give_back(float* from, float* to) {
 
 }  // namespace
 
-// A file that lies in memory alone and has no name, never written once it is filled.
+// Anonymous in-memory file (memfd), constant once filled.
 class CopyOnWriteFloats::Original {
  public:
   Original(std::vector<float> values, const RowLayout& layout)
@@ -97,9 +97,9 @@ class CopyOnWriteFloats::Original {
 
 RowLayout RowLayout::with_padding(std::size_t row_length, std::size_t slice_rows, std::size_t slices) {
   constexpr std::size_t kLineFloats = 16;
-  // Sets of a first-level cache of 32 KiB; an odd count of lines goes through all of them.
+  // Sets of a 32 KiB L1 cache. Rows of an odd number of lines cycle through all of them.
   constexpr std::size_t kSets = 64;
-  // Number of rows of a slice with sets of their own before the next slice's begin.
+  // Number of rows of a slice whose sets precede those of the next slice's first row.
   constexpr std::size_t kRowsTogether = 12;
   constexpr std::size_t kThin = 64;
   if (row_length < kThin || slice_rows < kThin)
@@ -122,7 +122,7 @@ CopyOnWriteFloats::CopyOnWriteFloats(const CopyOnWriteFloats& other)
     : original_(other.original_), size_(other.size_), written_(other.written_.size()) {
   if (empty()) return;
   map();
-  // Another thread may be preparing pages, which changes nothing in them.
+  // Another thread may be pre-faulting pages, which does not change their contents.
   for (std::size_t page = 0; page < written_.size(); ++page) {
     auto& made = const_cast<std::uint8_t&>(other.written_[page]);
     written_[page] = std::atomic_ref(made).load(std::memory_order_relaxed);
@@ -172,7 +172,7 @@ void CopyOnWriteFloats::prefault(std::size_t first, std::size_t last) {
     const std::size_t begin = page;
     while (page < end && !made(page)) std::atomic_ref(written_[page++]).store(1, std::memory_order_relaxed);
 #ifdef MADV_POPULATE_WRITE
-    // If the system cannot, they are made as they are written.
+    // If the kernel does not support this, pages are copied on their first write.
     madvise(values_ + begin * kPageFloats, (page - begin) * kPageBytes, MADV_POPULATE_WRITE);
 #endif
   }

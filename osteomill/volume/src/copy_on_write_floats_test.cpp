@@ -128,7 +128,7 @@ TEST(CopyOnWriteFloats, PreparingChangesNothingAndSharesNothingWritten) {
   }
 }
 
-// 40 MB; what the allocator itself keeps is well below a tenth of it.
+// 40 MB; the allocator's own overhead is well below a tenth of that.
 TEST(CopyOnWriteFloats, CopiesTakeTheMemoryOfWhatWasWritten) {
   const CopyOnWriteFloats first = dense(ascending(kCount));
   const double before_MiB = own_memory_MiB();

@@ -14,7 +14,7 @@ namespace osteomill {
 
 namespace {
 
-// Distance that a burr at 20 mm/s covers in 25 ms.
+// A burr at 20 mm/s covers this distance in 25 ms.
 constexpr double kAhead_mm = 0.5;
 
 RowLayout layout_of(const GridGeometry& geometry) {
@@ -23,7 +23,7 @@ RowLayout layout_of(const GridGeometry& geometry) {
                                  static_cast<std::size_t>(k));
 }
 
-// Null if all have a density.
+// Marks voxels without density; null if all have one.
 std::shared_ptr<const std::vector<bool>> without_density(const std::vector<float>& densities) {
   const auto has_none = [](float density) { return std::isnan(density); };
   if (std::none_of(densities.begin(), densities.end(), has_none)) return nullptr;
@@ -32,12 +32,12 @@ std::shared_ptr<const std::vector<bool>> without_density(const std::vector<float
   return without;
 }
 
-// Returns the grid's densities, the least one in the place of none. Throws if there are none at all.
+// Replaces NaN by the lowest density. Throws if no voxel has a density.
 std::vector<float> filled(const GridGeometry& geometry, std::vector<float> densities) {
   const auto is_less = [](float a, float b) { return a < b || (std::isnan(b) && !std::isnan(a)); };
   const auto least = std::min_element(densities.begin(), densities.end(), is_less);
   if (densities.size() != geometry.voxel_count() || least == densities.end() || std::isnan(*least)) {
-    throw std::invalid_argument("DensityGrid: as many densities as voxels, and at least one");
+    throw std::invalid_argument("DensityGrid: needs one density per voxel, at least one of them not NaN");
   }
   const float lowest = *least;
   std::replace_if(
@@ -76,7 +76,7 @@ void DensityGrid::prefault_around(const VoxelBox& changed) {
   };
   const VoxelBox near = grown(kAhead_mm);
   if (near.intersected(prefaulted_) == near) return;
-  // Twice as far, so that it is not due again with every voxel that the burr goes on.
+  // Twice as far, so that it need not be repeated for every voxel the burr advances.
   prefaulted_ = grown(2 * kAhead_mm);
   const auto& [first, last] = prefaulted_;
   for (int k = first.k; k <= last.k; ++k) {
@@ -92,7 +92,7 @@ std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every)
     const auto& [i, j, k] = cell_at(dims, n);
     if (grid.has_density(n)) densities.push_back(grid[{i, j, k}]);
   }
-  // Few voxels have one.
+  // Falls back to all voxels: few have a density, and none of these.
   if (densities.empty() && every > 1) return every_nth_density(grid, 1);
   return densities;
 }

@@ -45,7 +45,7 @@ TEST(DensityHash, FollowsEveryWayOfWritingAndForgetsTheWay) {
   const std::uint64_t milled = bone.change_hash();
   EXPECT_NE(milled, 0u);
   EXPECT_EQ(milled, difference_of_all(bone, scan));
-  // The last brick reaches beyond the grid.
+  // The last brick extends beyond the grid.
   for (const VoxelIndex& first : {VoxelIndex{8, 8, 8}, VoxelIndex{16, 16, 16}}) {
     DensityBlock untouched(scan.grid(), first);
     EditableVolume(bone).swap(untouched);

@@ -8,7 +8,7 @@
 namespace osteomill {
 namespace {
 
-// Densities 0 to 999, each as often as any other, and one far away.
+// Uniform densities 0 to 999 and one outlier.
 TEST(DensityHistogram, CountsEvenlyAndLeavesTheRarestOut) {
   GridGeometry geometry;
   geometry.dims = {100, 100, 100};
@@ -18,7 +18,7 @@ TEST(DensityHistogram, CountsEvenlyAndLeavesTheRarestOut) {
   const DensityHistogram histogram = histogram_of(DensityGrid(geometry, densities));
   EXPECT_NEAR(histogram.min, 0, 2);
   EXPECT_NEAR(histogram.max, 999, 2);
-  // A seventh of a million in 128 bins.
+  // One seventh of a million samples in 128 bins.
   for (const float count : histogram.log_counts) EXPECT_NEAR(count, std::log1p(1e6 / 7 / 128), 0.15);
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 struct Sample {
   double density;
-  // Sum over the axes of the densities' difference across the voxel.
+  // Sum over the axes of the absolute difference between the voxel's two neighbours.
   double change;
   float gradient_per_mm;
 };
@@ -31,7 +31,7 @@ bool is_less_dense(const Sample& a, const Sample& b) {
   return a.density < b.density;
 }
 
-// Samples every `step`th voxel along each axis that has a density.
+// Samples every `step`th voxel along each axis, without those that have no density.
 std::vector<Sample> samples_of(const DensityGrid& grid, int step) {
   const GridGeometry& geometry = grid.geometry();
   const auto& dims = geometry.dims;
@@ -71,12 +71,12 @@ std::vector<Sample> samples_of(const DensityGrid& grid) {
   const int step = static_cast<int>(
       std::ceil(std::cbrt(static_cast<double>(grid.geometry().voxel_count()) / kMaxSamples)));
   std::vector<Sample> samples = samples_of(grid, step);
-  // Few voxels have a density.
+  // Falls back to all voxels: few have a density, and none of these.
   return samples.empty() ? samples_of(grid, 1) : samples;
 }
 
-// Otsu 1979, eq. 18: how many of the samples, which ascend, are the lower of the two classes with the
-// greatest variance between them. At least one is in each.
+// Otsu's threshold (1979, eq. 18) on ascending samples: returns the size of the lower of the two classes with
+// maximum between-class variance. Neither class is empty.
 std::size_t lower_class(std::span<const Sample> samples) {
   const double lowest = samples.front().density;
   double all_sum = 0;
@@ -98,7 +98,7 @@ std::size_t lower_class(std::span<const Sample> samples) {
   return best;
 }
 
-// The commonest density of the quarter that changes least from voxel to voxel.
+// Returns the mode of the densities among the quarter of the samples with the smallest change.
 double commonest(std::span<const Sample> samples) {
   constexpr std::size_t kBins = 1024;
   constexpr int kBlur = 10;
@@ -106,7 +106,7 @@ double commonest(std::span<const Sample> samples) {
   for (const Sample& sample : samples) changes.push_back(sample.change);
   const auto quarter = changes.begin() + static_cast<std::ptrdiff_t>((changes.size() - 1) / 4);
   std::nth_element(changes.begin(), quarter, changes.end());
-  // Without the rarest at both ends, which would only make the bins wide.
+  // Excludes outliers at both ends, which would only widen the bins.
   const std::size_t rare = samples.size() / 2000;
   const double min = samples[rare].density;
   const double max = samples[samples.size() - 1 - rare].density;
@@ -134,12 +134,12 @@ double commonest(std::span<const Sample> samples) {
   return min + (static_cast<double>(best) + 0.5) * width;
 }
 
-// Holds the densities of the materials, as far as they can be told apart.
+// Densities of the materials.
 struct Materials {
-  // The commonest density around the bone and in it; of a body, those of air and soft tissue.
+  // Most common densities around and in the bone; in a body, those of air and soft tissue.
   double around = 0;
   double bone = 0;
-  // In a body: the density of water.
+  // Density of water; set only for a body.
   std::optional<double> water;
 };
 
@@ -150,7 +150,8 @@ Materials materials_of(std::span<const Sample> samples, bool in_hounsfield_units
   if (std::abs(materials.bone - materials.around - kAirToSoftTissue_HU) > kWithin_HU) return materials;
   const double off_HU = materials.bone - kSoftTissue_HU;
   const double water = in_hounsfield_units || std::abs(off_HU) < kWithin_HU ? 0 : off_HU;
-  // A body has bones; of a specimen with air and bone as far apart, little is above its commonest density.
+  // A body has bone well above its soft tissue; a specimen whose air and bone are as far apart has little
+  // above its most common density.
   const auto above = std::count_if(samples.begin(), samples.end(),
                                    [&](const Sample& sample) { return sample.density > water + kBone_HU; });
   if (static_cast<double>(above) > 0.03 * static_cast<double>(samples.size() - lower))
@@ -166,7 +167,7 @@ std::span<const Sample> without_lowest(std::span<const Sample> samples) {
   return {others, samples.end()};
 }
 
-// Single voxels of noise are no bone.
+// Ignores isolated noise voxels.
 constexpr double kTouchingShare = 1e-3;
 
 struct Range {
@@ -200,14 +201,14 @@ bool bone_touches(const DensityGrid& grid, double isovalue, std::size_t axis, in
 struct Choice {
   double value = 0;
   std::string how;
-  // Halfway between two densities, whatever these are of: the densities have no scale that is known.
+  // Halfway between two densities, because the scale of the densities is unknown.
   bool is_halfway = false;
 };
 
-// Takes samples that ascend.
+// `samples` must ascend.
 Choice isovalue_of_bone(std::span<const Sample> samples, bool in_hounsfield_units) {
   if (!(samples.back().density > samples.front().density)) {
-    return {samples.front().density, "the only density there is"};
+    return {samples.front().density, "the only density in the scan"};
   }
   Materials found = materials_of(samples, in_hounsfield_units);
   const std::span<const Sample> unpadded = without_lowest(samples);
@@ -218,16 +219,16 @@ Choice isovalue_of_bone(std::span<const Sample> samples, bool in_hounsfield_unit
   const double halfway = 0.5 * (found.around + found.bone);
   if (in_hounsfield_units && (found.water || halfway < kBone_HU) && samples.back().density > kBone_HU &&
       samples.front().density < kBone_HU) {
-    return {kBone_HU, "where bone begins in Hounsfield units"};
+    return {kBone_HU, "lower limit of bone in Hounsfield units"};
   }
   if (found.water) {
     return {*found.water + kBone_HU,
-            fmt::format("{:g} above water; the densities are spaced as Hounsfield units are{}", kBone_HU,
-                        *found.water == 0 ? "" : ", with another zero")};
+            fmt::format("{:g} above water; the densities are spaced like Hounsfield units{}", kBone_HU,
+                        *found.water == 0 ? "" : ", with a different zero")};
   }
   return {halfway,
-          fmt::format("halfway between the commonest densities, {:.4g} below and {:.4g} above", found.around,
-                      found.bone),
+          fmt::format("halfway between the most common densities, {:.4g} below and {:.4g} above",
+                      found.around, found.bone),
           true};
 }
 
@@ -250,7 +251,7 @@ Curve blurred(const Curve& curve) {
   return result;
 }
 
-// The mean gradient along the isosurface of a density.
+// Mean gradient along the isosurface of a density.
 struct Level {
   double density;
   double gradient;
@@ -260,7 +261,7 @@ bool is_less_sharp(const Level& a, const Level& b) {
   return a.gradient < b.gradient;
 }
 
-// The least gradient on the way from a level, down or up, to one that is sharper than it.
+// Minimum gradient between a level and the next sharper one in the direction of `next`.
 template <typename Way>
 double min_before_sharper(const Level& from, Way next, Way end) {
   const Way sharper =
@@ -268,10 +269,10 @@ double min_before_sharper(const Level& from, Way next, Way end) {
   return next == sharper ? from.gradient : std::min_element(next, sharper, is_less_sharp)->gradient;
 }
 
-// Changes the order of the samples.
+// Reorders the samples.
 std::vector<Boundary> boundaries_of(std::vector<Sample>& samples) {
   constexpr double kProminence = 0.1, kMinArea = 0.01;
-  // The rarest at both ends would only make the levels wide.
+  // Excludes outliers at both ends, which would only widen the levels.
   const auto rare = static_cast<std::ptrdiff_t>(samples.size() / 2000);
   const auto density_at = [&](std::ptrdiff_t rank) {
     std::nth_element(samples.begin(), samples.begin() + rank, samples.end(), is_less_dense);
@@ -280,7 +281,7 @@ std::vector<Boundary> boundaries_of(std::vector<Sample>& samples) {
   const double min = density_at(rare), max = density_at(std::ssize(samples) - 1 - rare);
   if (!(max > min)) return {};
   const double width = (max - min) / kLevels;
-  // An isosurface's area is what the gradient sums up to over the voxels that lie between two levels.
+  // The isosurface area is proportional to the sum of the gradient over the voxels between two levels.
   Curve area{}, gradient{};
   for (const Sample& sample : samples) {
     const double level = (sample.density - min) / width;
@@ -324,8 +325,8 @@ std::vector<Boundary> boundaries_in(const DensityGrid& grid) {
 
 namespace {
 
-// Whether the isovalue bounds what the boundary bounds. One that is halfway between two densities may lie far
-// from where the boundary is sharpest, and then bounds something else: the skin, if this is the bone's.
+// Returns whether the isovalue belongs to the boundary. An isovalue halfway between two densities may be far
+// from the sharpest density of the bone's boundary, and is then that of another one, such as the skin.
 bool lies_on(const Choice& chosen, const Boundary& boundary) {
   constexpr double kNear = 0.18;
   const double off = std::abs(chosen.value - boundary.density) / (boundary.above - boundary.below);
@@ -372,7 +373,7 @@ std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isova
 }
 
 DensityHistogram histogram_of(const DensityGrid& grid) {
-  // An odd number, so that not all come from the same columns.
+  // Odd, so that the samples do not all come from the same columns.
   constexpr std::size_t kEnough = 1'000'000;
   std::vector<float> sample =
       every_nth_density(grid, std::max<std::size_t>(7, grid.geometry().voxel_count() / kEnough | 1));

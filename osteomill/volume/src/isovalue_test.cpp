@@ -30,7 +30,8 @@ DensityGrid with_noise(const DensityGrid& grid, double slope, double offset, dou
   return DensityGrid(grid.geometry(), std::move(densities));
 }
 
-// A head of soft tissue in air, a skull of bone from 300 up in it, and the corners that a scanner leaves out.
+// Head of soft tissue in air with a skull of bone from 300 up and, optionally, padding outside the field of
+// view.
 DensityGrid head(double offset, bool padded) {
   const GridGeometry geometry = centred_cube(60, 3);
   std::mt19937_64 random(3);
@@ -54,7 +55,7 @@ DensityGrid head(double offset, bool padded) {
   return DensityGrid(geometry, std::move(densities));
 }
 
-// Half of a volume's slices.
+// First half of a volume's slices.
 DensityGrid first_half(const DensityGrid& grid) {
   GridGeometry geometry = grid.geometry();
   geometry.dims[2] /= 2;
@@ -76,7 +77,7 @@ TEST(SuggestIsovalue, WhatHasNoDensityChangesNothing) {
     EXPECT_EQ(suggested.value, expected.value);
     EXPECT_EQ(suggested.how, expected.how);
     EXPECT_EQ(every_nth_density(grid, 1), every_nth_density(measured, 1));
-    // Every seventh voxel counts.
+    // The histogram samples every seventh voxel.
     double counted = 0;
     for (const float log_count : histogram_of(grid).log_counts) counted += std::expm1(log_count);
     EXPECT_LT(counted, static_cast<double>(measured.geometry().voxel_count()) / 7 + 1);
@@ -94,7 +95,7 @@ TEST(SuggestIsovalue, LiesHalfwayBetweenBoneAndItsSurroundings) {
   }
 }
 
-// The share of bone in the volume, and a denser part of it, as enamel is, do not draw it to their side.
+// Neither the share of bone in the volume nor a denser part, such as enamel, biases the isovalue.
 TEST(SuggestIsovalue, OfTheBuiltinToothLiesBetweenAirAndDentineWhateverSurroundsIt) {
   EXPECT_NEAR(suggest_isovalue(with_noise(builtin_tooth(0.5), 1, 0, 30)).value, kBuiltinToothIsovalue, 40);
   EXPECT_NEAR(suggest_isovalue(with_noise(builtin_tooth(0.25), 1, 0, 30)).value, kBuiltinToothIsovalue, 40);
@@ -103,12 +104,12 @@ TEST(SuggestIsovalue, OfTheBuiltinToothLiesBetweenAirAndDentineWhateverSurrounds
 TEST(SuggestIsovalue, OfABodyIsBoneAndNotSkin) {
   EXPECT_EQ(suggest_isovalue(head(0, false), true).value, kBone_HU);
   EXPECT_EQ(suggest_isovalue(head(0, true), true).value, kBone_HU);
-  // Without a word of the unit, and stored with an offset.
+  // Unit not stated, without and with an offset.
   EXPECT_EQ(suggest_isovalue(head(0, false)).value, kBone_HU);
   EXPECT_EQ(suggest_isovalue(head(0, true)).value, kBone_HU);
   EXPECT_NEAR(suggest_isovalue(head(1024, false)).value, 1024 + kBone_HU, 30);
   const auto has_another_zero = [](double offset) {
-    return suggest_isovalue(head(offset, false)).how.find("with another zero") != std::string::npos;
+    return suggest_isovalue(head(offset, false)).how.find("with a different zero") != std::string::npos;
   };
   EXPECT_FALSE(has_another_zero(0));
   EXPECT_TRUE(has_another_zero(1024));
@@ -131,7 +132,7 @@ TEST(SuggestIsovalue, IsSaidToBeAGuessWhereThereIsAnotherBoundary) {
   EXPECT_NE(suggested.boundaries[0].is_suggested, suggested.boundaries[1].is_suggested);
 }
 
-// A specimen in air of which nothing lies near 260 HU: halfway is more than that, and right.
+// Specimen in air without densities near 260 HU: halfway is above 260 and right.
 TEST(SuggestIsovalue, InHounsfieldUnitsIsNeverBelowBone) {
   const Volume volume = shape_volume(centred_cube(40, 0.25), ball(Vec3::Zero(), 3));
   EXPECT_NEAR(suggest_isovalue(with_noise(volume.grid(), 1.5, 0, 30), true).value, 750, 40);

@@ -23,7 +23,7 @@ VoxelBox labelled_box(const GridGeometry& own, const std::vector<LabelMap::Label
 }
 
 int nearest(double voxel, int dim) {
-  // Beyond the grid alike, however far: no voxel lies there, and an int could not hold it.
+  // Clamped so that distant points do not overflow int; both bounds are outside the grid.
   return static_cast<int>(std::lround(std::clamp(voxel, -2.0, static_cast<double>(dim) + 1)));
 }
 
@@ -33,7 +33,7 @@ VoxelIndex nearest_voxel(const GridGeometry& geometry, const Vec3& point_W) {
           nearest(voxel.z(), geometry.dims[2])};
 }
 
-// The voxels of `scan` whose centres may lie in those of `own`.
+// Voxels of `scan` whose centres may be inside `voxels` of `own`.
 VoxelBox covered(const GridGeometry& scan, const GridGeometry& own, const VoxelBox& voxels) {
   VoxelBox box;
   if (voxels.empty()) return box;
@@ -58,7 +58,7 @@ LabelMap::LabelMap(std::vector<Label> labels, const GridGeometry& scan, const Gr
   if (labels_.size() > kMaxLabels) throw std::invalid_argument("LabelMap: too many labels");
   if (indices.size() != own.voxel_count() ||
       std::any_of(indices.begin(), indices.end(), [&](LabelIndex index) { return index > labels_.size(); })) {
-    throw std::invalid_argument("LabelMap: indices that do not fit its grid or labels");
+    throw std::invalid_argument("LabelMap: wrong number of indices, or an index without a label");
   }
   const VoxelBox own_voxels = own.all_voxels();
   const auto at_nearest = [&](const VoxelIndex& v) -> LabelIndex {

@@ -18,7 +18,7 @@ std::vector<Label> three_labels() {
   return {{7, "shell", {255, 0, 0}}, {9, "core", {0, 255, 0}, true}, {12, "unused", {0, 0, 255}}};
 }
 
-// A shell with a core in it, in no particular place.
+// Shell with a core, off-centre.
 std::vector<LabelMap::LabelIndex> shell_and_core(const GridGeometry& grid) {
   std::vector<LabelMap::LabelIndex> places;
   for (int k = 0; k < grid.dims[2]; ++k) {
@@ -56,7 +56,7 @@ TEST(LabelMap, OnTheScansOwnGridKeepsEveryVoxel) {
   EXPECT_EQ(map.at({5, 21, 5}), 0);
 }
 
-// Against a search through all voxels of the map for the nearest.
+// Compares with a brute-force search for the nearest voxel of the map.
 TEST(LabelMap, OnAnotherGridEveryVoxelHasTheLabelOfTheNearest) {
   GridGeometry scan = centred_cube(17, 0.31);
   scan.direction = quaternion_from_rotation_vector({0.3, -0.5, 0.2}).toRotationMatrix();
@@ -81,7 +81,7 @@ TEST(LabelMap, OnAnotherGridEveryVoxelHasTheLabelOfTheNearest) {
             for (int a = 0; a < own.dims[0]; ++a, ++n) {
               const Vec3 away =
                   own.direction.transpose() * (own.world_from_voxel(VoxelIndex{a, b, c}) - point_W);
-              // The voxel in whose box the point lies.
+              // Voxel whose box contains the point.
               const double far = away.cwiseAbs().cwiseQuotient(own.spacing_mm).maxCoeff();
               if (far >= least || far > 0.5) continue;
               least = far;

@@ -21,9 +21,9 @@ namespace {
 
 constexpr int kMaxLabel = std::numeric_limits<std::int16_t>::max();
 
-// The different values of a grid, which are few whole numbers from 0 up.
+// Distinct values of a grid, if they are few whole numbers from 0 up.
 struct Values {
-  // By value, how many voxels have it; empty if the values are others.
+  // Voxel count by value; empty if the grid has other values.
   std::vector<std::size_t> counts;
   std::size_t different = 0;
 };
@@ -47,11 +47,11 @@ Values values_of(const DensityGrid& grid) {
   return values;
 }
 
-// No rank: a few stray voxels say nothing of the rest.
+// No rank: the value has too few voxels to count.
 constexpr int kRare = -1;
 
-// By value its rank among those that occur. The rarest values, all of which hold less than a two-hundredth of
-// what is not 0, are kRare.
+// Rank by value among the values that occur. The rarest values, together at most 0.5 % of the voxels that are
+// not 0, get kRare.
 std::vector<int> ranks_of(const Values& values) {
   constexpr double kRareShare = 0.005;
   const std::size_t labelled =
@@ -75,16 +75,17 @@ std::vector<int> ranks_of(const Values& values) {
   return ranks;
 }
 
-// How the values of neighbours differ, as shares.
+// Statistics of the differences between neighbouring values.
 struct Edges {
-  // Share of the edges between two values that leave out a value between them.
+  // Share of edges that skip at least one rank.
   double far = 0;
-  // Share of the voxels that are not 0 whose value often lies between a lower and a higher one.
+  // Share of the voxels, except those of value 0, whose value often lies between a lower and a higher
+  // neighbour.
   double between = 0;
 };
 
 Edges edges_of(const DensityGrid& grid, const std::vector<int>& ranks) {
-  // Share of the voxels of a value.
+  // Minimum share of a value's voxels to count as often.
   constexpr double kOften = 0.2;
   struct Count {
     std::size_t voxels = 0;
@@ -132,14 +133,14 @@ Edges edges_of(const DensityGrid& grid, const std::vector<int>& ranks) {
 }  // namespace
 
 LabelGuess guess_labels(const DensityGrid& grid) {
-  // In real label maps the first is at least 0.23 and the second 0. Of CTs and phantoms in 3 to 256 levels
-  // the first is at most 0.05 or the second at least 0.018.
+  // Measured: real label maps have `far` >= 0.23 and `between` = 0; CTs and phantoms quantised to 3 to 256
+  // levels have `far` <= 0.05 or `between` >= 0.018.
   constexpr double kSeldomFar = 0.05, kSeldomBetween = 0.01, kOftenBetween = 0.05;
   constexpr std::size_t kFewLevels = 32;
   const Values values = values_of(grid);
   if (values.different < 2) return LabelGuess::densities;
   const bool mostly_0 = values.counts[0] == *std::max_element(values.counts.begin(), values.counts.end());
-  // With two values none can lie between others, and the bone of a mask is what it would be as a scan.
+  // With two values, neither can lie between others, and a mask gives the same bone as labels or as a scan.
   if (values.different == 2) return mostly_0 ? LabelGuess::labels : LabelGuess::densities;
   const Edges edges = edges_of(grid, ranks_of(values));
   const bool touch_any = edges.far >= kSeldomFar;

@@ -31,8 +31,7 @@ DensityGrid filled(const Shape& value) {
   return DensityGrid(kGrid, std::move(values));
 }
 
-// Returns labels as in segmentations of a brain: white matter of either side, the cortex in parcels, nuclei
-// inside.
+// Returns labels as in a brain segmentation: white matter of either side, cortex parcels, nuclei inside.
 double brain(const Vec3& p) {
   const double from_mm = p.norm();
   if (from_mm > 5) return 0;
@@ -51,7 +50,7 @@ TEST(LabelScan, SegmentationsAndMasksLookLikeLabels) {
             })));
 }
 
-// The brain, with `strays` voxels of another label strewn over it.
+// The brain with `strays` scattered voxels of another label.
 DensityGrid strewn(std::size_t strays, double label) {
   std::vector<float> values = every_nth_density(filled(brain), 1);
   std::size_t left = strays;
@@ -71,7 +70,8 @@ TEST(LabelScan, AFewStrayVoxelsOfALabelDecideNothing) {
   }
 }
 
-// A phantom's edges hold a few voxels of other levels, which make no two materials lie beside each other.
+// A phantom's edges contain a few voxels of other levels, which must not make it look like touching
+// structures.
 TEST(LabelScan, AFewStrayVoxelsOfALevelDecideNothing) {
   int number = 0;
   const DensityGrid phantom = filled([&](const Vec3& p) {
@@ -94,7 +94,7 @@ TEST(LabelScan, WhatMayBeLevelsOrLabelsIsUnclear) {
             })));
 }
 
-// Air, a head of soft tissue and a skull in it, blurred over a voxel, in a few levels.
+// Air, a head of soft tissue and a skull, blurred over a voxel and quantised to a few levels.
 TEST(LabelScan, ACtOfFewLevelsIsNone) {
   const auto step = [](double from_mm) { return std::clamp(0.5 - from_mm, 0.0, 1.0); };
   for (const int levels : {3, 4, 8, 16}) {
@@ -111,7 +111,7 @@ TEST(LabelScan, DensitiesAreNone) {
   EXPECT_EQ(LabelGuess::densities, guess_labels(filled(phantom)));
   EXPECT_NE(LabelGuess::labels, guess_labels(filled([&](const Vec3& p) { return phantom(p) + 1000.5; })));
   EXPECT_EQ(LabelGuess::densities, guess_labels(filled([](const Vec3&) { return 3; })));
-  // A shape whose edge has one shade, wherever it lies between voxels and whichever way it runs.
+  // Shape whose edge has a single intermediate level, at any sub-voxel offset and orientation.
   for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0, 1, 1), Vec3(1, 2, 3), Vec3(1, 1, 1)}) {
     const Vec3 way = normal.normalized();
     for (const double offset_mm : {0.0, 0.11, 0.25}) {

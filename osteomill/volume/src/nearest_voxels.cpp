@@ -11,21 +11,22 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-// A parabola of the lower envelope: its foot, its height there, and up to which voxel it is the lowest.
+// Parabola of the lower envelope: its vertex, the height there, and the last coordinate at which it is
+// lowest.
 struct Parabola {
   int foot = 0;
   float height = 0;
   double until = 0;
 };
 
-// The distance along an axis that counts between voxels `apart` of each other.
+// Distance along an axis between voxels `apart` indices apart, in voxels.
 double counted(int apart, NearestVoxels::To to) {
   return to == NearestVoxels::To::centres ? apart : std::max(0.0, std::abs(apart) - 0.5);
 }
 
-// Returns from which place on a parabola is lower than one before it. To faces, both fall between their feet
-// as if these were a voxel nearer to each other, one of them is level within half a voxel of its foot, and
-// beyond they are shifted by half a voxel.
+// Returns the coordinate from which a parabola is lower than an earlier one. For `To::faces`, a parabola is
+// flat within half a voxel of its vertex and shifted outwards by half a voxel beyond: between their vertices
+// the two intersect as if these were one voxel closer together.
 double crossing(const Parabola& before, int foot, float height, double step_mm, NearestVoxels::To to) {
   const int apart = foot - before.foot;
   const double rise =
@@ -60,7 +61,8 @@ NearestVoxels::NearestVoxels(const VoxelSet& set, const VoxelBox& box, const Vec
   for (std::size_t axis = 0; axis < 3 && found_; ++axis) sweep(axis, to, squares_mm2);
 }
 
-// Finds along each line of the box, at every voxel, the least of all squares plus their distance squared.
+// One pass of the transform: replaces the squared distances along each line of the box by the lower envelope
+// of the parabolas.
 void NearestVoxels::sweep(std::size_t axis, To to, std::vector<float>& squares_mm2) {
   const std::size_t stride = axis == 0 ? 1
                              : axis == 1
@@ -80,7 +82,7 @@ void NearestVoxels::sweep(std::size_t axis, To to, std::vector<float>& squares_m
       before[static_cast<std::size_t>(n)] = nearest_[place];
       const float height = squares_mm2[place];
       if (height == kInfinite) continue;
-      // Removes parabolas that this one hides, and finds from which voxel on it is lower than the last.
+      // Removes parabolas hidden by this one and finds where it becomes the lowest.
       double from = -1;
       while (parabolas > 0) {
         const Parabola& last = envelope[parabolas - 1];
@@ -106,7 +108,7 @@ void NearestVoxels::sweep(std::size_t axis, To to, std::vector<float>& squares_m
 
 VoxelIndex NearestVoxels::nearest_to(const VoxelIndex& v) const noexcept {
   const std::size_t place = row_major(dims_, v.i - box_.first.i, v.j - box_.first.j, v.k - box_.first.k);
-  // Divides 32 bits, which takes a fraction of the time of 64.
+  // 32-bit divisions are several times faster than 64-bit ones.
   const std::int32_t near = nearest_[place], row = near / dims_[0], layer = row / dims_[1];
   return {box_.first.i + near - row * dims_[0], box_.first.j + row - layer * dims_[1], box_.first.k + layer};
 }

@@ -14,13 +14,14 @@ struct Cell {
   bool far_outside = false;
 };
 
-// Floor of a number within int's range; std::floor is a library call on plain x86-64.
+// Floor of a number in the range of int; std::floor is a library call on baseline x86-64.
 int floor_of(double value) {
   const int truncated = static_cast<int>(value);
   return truncated - (static_cast<double>(truncated) > value ? 1 : 0);
 }
 
-// The cell of eight voxel centres around a point. Coordinates beyond int's range are all far outside.
+// Cell of eight voxel centres around a point. Also covers coordinates beyond the range of int: these are far
+// outside.
 Cell cell_around(const DensityGrid& grid, const Vec3& voxel) {
   const auto& dims = grid.geometry().dims;
   const double x = voxel.x(), y = voxel.y(), z = voxel.z();
@@ -36,7 +37,7 @@ double interpolate(double a, double b, double fraction) {
   return a + fraction * (b - a);
 }
 
-// The corners in pairs along i, whose first densities these point at, j running faster than k.
+// Each pointer refers to a pair of corners adjacent along i; the pairs are ordered j before k.
 inline double interpolate_cell(const float* pair00, const float* pair10, const float* pair01,
                                const float* pair11, double fx, double fy, double fz) {
   const auto along_i = [fx](const float* pair) { return interpolate(pair[0], pair[1], fx); };
@@ -44,7 +45,7 @@ inline double interpolate_cell(const float* pair00, const float* pair10, const f
                      interpolate(along_i(pair01), along_i(pair11), fy), fz);
 }
 
-// Returns the corners of a cell that is not wholly in the grid.
+// Returns the corners of a cell that is not entirely inside the grid.
 std::array<float, 8> cell_corners(const DensityGrid& grid, const VoxelIndex& c) {
   std::array<float, 8> corner;
   for (int n = 0; n < 8; ++n) {
@@ -54,7 +55,7 @@ std::array<float, 8> cell_corners(const DensityGrid& grid, const VoxelIndex& c) 
   return corner;
 }
 
-// Weights of four voxels in a row for a point at `f` between the two in the middle.
+// Weights of four consecutive voxels for a point at fraction `f` between the middle two.
 using Weights = std::array<double, 4>;
 
 Weights difference_weights(double f) {
@@ -64,7 +65,7 @@ Weights smoothing_weights(double f) {
   return {(1 - f) * 3 / 16, ((1 - f) * 10 + f * 3) / 16, ((1 - f) * 3 + f * 10) / 16, f * 3 / 16};
 }
 
-// The 4 x 4 x 4 voxels around a cell, i running fastest.
+// The 4 x 4 x 4 voxels around a cell, i fastest.
 using Block = std::array<float, 64>;
 
 Block voxels_around(const DensityGrid& grid, const VoxelIndex& cell) {
@@ -93,8 +94,8 @@ struct Span {
   double last = 1.0;
 };
 
-// The part of a line of voxel coordinates, as fractions of `path`, in the grid and the one voxel around it
-// where densities still fall. It ends before it begins if there is none.
+// Clips a line in voxel coordinates to the grid plus a margin of one voxel, in which the density still falls.
+// Returns fractions of `path`; first > last if the line misses it.
 Span span_in_grid(const GridGeometry& geometry, const Vec3& from, const Vec3& path) {
   Span span;
   for (int axis = 0; axis < 3; ++axis) {
@@ -118,7 +119,7 @@ double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) noexcept {
   const auto& dims = grid.geometry().dims;
   const double x = voxel.x(), y = voxel.y(), z = voxel.z();
   if (x >= 0 && y >= 0 && z >= 0 && x < dims[0] - 1 && y < dims[1] - 1 && z < dims[2] - 1) {
-    // Nearly always: the whole cell lies in the grid.
+    // Common case: the whole cell is in the grid.
     const VoxelIndex c{static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
     const float* row = grid.address_of(c);
     const float* next = row + grid.slice_stride();
@@ -200,7 +201,7 @@ std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, con
   const auto at = [&](double n) { return Vec3(from_W + (n / steps) * (to_W - from_W)); };
   const double first = std::max(1.0, std::floor(span.first * steps));
   const double last = std::min(steps, std::ceil(span.last * steps));
-  // Bounds the loop: for points too far away for exact coordinates the number of steps could be anything.
+  // Bounds the loop: for very distant points, rounding makes the number of steps unreliable.
   const int most = 4 + 2 * (geometry.dims[0] + geometry.dims[1] + geometry.dims[2] + 3);
   Vec3 before = at(first - 1);
   for (int n = 0; n < most && first + n <= last; ++n) {

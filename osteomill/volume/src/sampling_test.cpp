@@ -24,7 +24,7 @@ GridGeometry turned_geometry() {
   return geometry;
 }
 
-// A density that is linear in W: trilinear sampling and its gradient are exact for it.
+// Density linear in W, for which trilinear sampling and its gradient are exact.
 DensityGrid linear_grid(const GridGeometry& geometry, const Vec3& slope) {
   std::vector<float> densities;
   for (int k = 0; k < geometry.dims[2]; ++k)
@@ -69,7 +69,7 @@ struct AngleError {
   double mean_deg = 0;
 };
 
-// On an edge two voxels wide, over planes off the axes.
+// Error on an edge two voxels wide, over planes oblique to the axes.
 AngleError normal_error() {
   AngleError error;
   int count = 0;

@@ -77,9 +77,9 @@ DistanceSlope StructureDistance::slope_from(const Vec3& point_W) const noexcept 
       solid_);
 }
 
-// With n the direction to a point at distance d, |r| more along a and |a| away, |d n + a| is at most
-// d + n a + a^2 / 2 d; the interpolation's weights make the second term vanish, and the third at most this.
-// Nor is it ever more than the mean of |a|, at most half a voxel's diagonal.
+// Let d be the distance, n the direction to the nearest point and a the offset to a corner. Then |d n + a| <=
+// d + n a + a^2 / 2 d. Summed with the interpolation weights, the second term vanishes and the third is at
+// most the result. The excess also never exceeds the mean of |a|, which is at most half a voxel's diagonal.
 double StructureDistance::max_excess_mm(double distance_mm) const noexcept {
   if (!nearest_.found()) return 0;
   const double half_mm = 0.5 * scan_.spacing_mm.norm();
@@ -91,7 +91,7 @@ double StructureDistance::voxel_distance2_mm2(const Vec3& point, const VoxelInde
   return outside.cwiseProduct(scan_.spacing_mm).squaredNorm();
 }
 
-// Returns the first of the eight voxels around a point, or of those nearest to it that are known.
+// Returns the lowest of the eight voxels around a point, clamped to the box of `nearest_`.
 VoxelIndex StructureDistance::cell_corner(const Vec3& point) const noexcept {
   const VoxelBox& box = nearest_.box();
   const Vec3 first(box.first.i, box.first.j, box.first.k), last(box.last.i, box.last.j, box.last.k);

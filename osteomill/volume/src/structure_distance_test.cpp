@@ -28,7 +28,7 @@ TEST(StructureDistance, IsWithinHalfAVoxelOfABruteForceSearchAtTenThousandPoses)
   scan.spacing_mm = {0.3, 0.3, 0.5};
   scan.origin_mm = {-4, 3, 11};
   scan.direction = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-  // A nerve that bends, two voxels thick.
+  // Curved nerve, two voxels thick.
   VoxelSet nerve(VoxelBox{{15, 10, 10}, {55, 50, 32}});
   std::vector<VoxelIndex> voxels;
   for (double t = 0; t < 1; t += 0.002) {

@@ -35,7 +35,7 @@ TEST(Volume, RowThatWouldRiseStaysAsItIs) {
 TEST(EditableVolume, BlockThatIsSwappedTwiceLeavesTheBoneAsItWas) {
   const Volume scan = half_of_bone();
   Volume bone = scan;
-  // The last block reaches beyond the grid.
+  // The last block extends beyond the grid.
   for (const VoxelIndex& first : {VoxelIndex{0, 8, 8}, VoxelIndex{16, 16, 16}}) {
     DensityBlock filled(bone.grid(), first);
     filled.densities.fill(2000);

@@ -9,17 +9,17 @@
 
 namespace osteomill {
 
-/// Keeps the least and greatest density in each brick of 8 x 8 x 8 voxels, each brick counted with one more
-/// layer of voxels at its upper sides, so that it speaks of every trilinear cell that begins in it. Ranges
-/// hold every density; after `lower_row` the upper end may be too wide until `refresh`.
+/// Minimum and maximum density of each brick of 8 x 8 x 8 voxels. A brick includes one more layer of voxels
+/// at its upper sides, so that its range bounds every trilinear cell that begins in it. Ranges are
+/// conservative: after `lower_row` the maximum may be too high until `refresh`.
 class BlockRanges {
  public:
   static constexpr int kBrickVoxels = 8;
-  /// The least and the greatest density of a brick.
+  /// Minimum and maximum density of a brick.
   struct Range {
     float min;
     float max;
-    /// Grows (and begins at 0 again after 2^32) whenever one of its densities is set again.
+    /// Incremented whenever one of its densities is set; wraps around at 2^32.
     std::uint32_t changes = 0;
   };
 
@@ -27,20 +27,20 @@ class BlockRanges {
   explicit BlockRanges(const DensityGrid& grid);
 
   const std::array<int, 3>& dims() const { return dims_; }
-  /// Returns the voxels that a brick counts, as far as they lie in the grid.
+  /// Returns the voxels that a brick's range covers, clipped to the grid.
   static VoxelBox counted_voxels(const VoxelIndex& brick, const GridGeometry& geometry);
-  /// Returns the range of the brick with these brick coordinates, counted from 0.
+  /// Returns the range of the brick with these brick coordinates, from 0.
   const Range& at(int bi, int bj, int bk) const noexcept { return ranges_[row_major(dims_, bi, bj, bk)]; }
   const Range& at(const VoxelIndex& brick) const noexcept { return at(brick.i, brick.j, brick.k); }
 
-  /// Returns a number that differs from the one returned before if the density of any of these voxels, all in
-  /// the grid, was set since. Safe in the haptic tick.
+  /// Returns a change counter for these voxels, all in the grid: it differs from an earlier result if any of
+  /// their densities was set since. Safe in the haptic tick.
   std::uint32_t changes_in(const VoxelBox& voxels) const noexcept;
 
-  /// Takes in new, lower densities of `count` voxels of one row, whose columns ascend. Safe in the haptic
-  /// tick.
+  /// Updates the ranges for new, lower densities of `count` voxels of one row, columns ascending. Safe in the
+  /// haptic tick.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) noexcept;
-  /// Makes the ranges of all bricks that touch `box` exact again.
+  /// Recomputes the exact ranges of all bricks that touch `box`.
   void refresh(const DensityGrid& grid, const VoxelBox& box);
 
  private:

@@ -7,20 +7,19 @@
 
 namespace osteomill {
 
-/// A made-up bone for exercises. Densities are HU-like, edges as soft as a scanner leaves them.
+/// Synthetic bone for exercises. Densities are HU-like; edges are blurred as in a CT scan.
 struct BuiltinPhantom {
   std::string_view name;
   double isovalue = 0;
   DensityGrid (*make)() = nullptr;
 };
 
-/// Returns all of them:
+/// Returns all built-in phantoms:
 /// - `layers`: 24 x 24 x 12 mm of bone with a flat surface at z = 0: 2 mm of hard bone, 3 mm of soft bone, 1
-/// mm
-///   of hard bone, and soft bone below. Voxels of 0.25 mm.
-/// - `mastoid`: 26 x 30 x 24 mm of temporal bone seen from its side, outward along +z, with a cortex of 2 mm,
-///   air cells and an antrum, and as soft tissue a facial nerve, a sigmoid sinus and the dura
-///   (docs/exercises.md has their places), each under 1.3 mm of solid bone. Voxels of 0.25 mm.
+///   mm of hard bone, and soft bone below. 0.25 mm voxels.
+/// - `mastoid`: 26 x 30 x 24 mm of temporal bone, lateral side towards +z, with a 2 mm cortex, air cells and
+///   an antrum. Facial nerve, sigmoid sinus and dura are soft tissue, each under 1.3 mm of solid bone
+///   (positions: docs/exercises.md). 0.25 mm voxels.
 std::span<const BuiltinPhantom> builtin_phantoms();
 
 }  // namespace osteomill

@@ -13,41 +13,40 @@
 
 namespace osteomill {
 
-/// The densities of a scan, one float a voxel (Hounsfield units if the scan has them), in rows along i.
-/// Outside the grid there is nothing: every voxel there counts as `outside_density()`. Copies share the
-/// memory of all that was changed in none of them. Reading is safe in the haptic tick; one thread writes.
-/// `read_scan` and `builtin_tooth` make one.
+/// Densities of a scan, one float per voxel (Hounsfield units if the scan has them), in rows along i. Voxels
+/// outside the grid have `outside_density()`. Copies share memory until they are changed (copy on write).
+/// Reading is safe in the haptic tick; one thread writes. Made by `read_scan` and `builtin_tooth`.
 class DensityGrid {
  public:
   DensityGrid() = default;
-  /// `densities` has `geometry.voxel_count()` values, i running fastest, all finite (the readers see to
-  /// that) or NaN if the scan has none for a voxel, which then gets the least of the others. Throws
-  /// std::invalid_argument if the count differs or is 0, or no voxel has a density.
+  /// `densities` has `geometry.voxel_count()` values, i fastest, all finite (the readers ensure that) or NaN
+  /// for a voxel without density, which then gets the lowest of the others. Throws std::invalid_argument if
+  /// the count differs or is 0, or no voxel has a density.
   DensityGrid(const GridGeometry& geometry, std::vector<float> densities);
 
   const GridGeometry& geometry() const { return geometry_; }
-  /// Returns the densities as they lie in memory, to be kept and compared.
+  /// Returns the densities in their memory layout, to be copied or compared as a whole.
   const CopyOnWriteFloats& densities() const { return densities_; }
   /// Returns the densities of row (j, k), from i = 0.
   std::span<const float> row(int j, int k) const noexcept {
     return {densities_.data() + offset_of(0, j, k), layout_.row_length};
   }
-  /// Returns the address of the density of `v`, which must be in the grid. Those that follow along i lie
-  /// behind it; along j and k the next are row_stride() and slice_stride() floats on. 64 bytes behind any may
-  /// be read.
+  /// Returns the address of the density of `v`, which must be in the grid. Neighbours along i are adjacent;
+  /// along j and k they are row_stride() and slice_stride() floats apart. The 64 bytes after any density are
+  /// readable.
   const float* address_of(const VoxelIndex& v) const noexcept {
     return densities_.data() + offset_of(v.i, v.j, v.k);
   }
   std::ptrdiff_t row_stride() const { return static_cast<std::ptrdiff_t>(layout_.row_stride); }
   std::ptrdiff_t slice_stride() const { return static_cast<std::ptrdiff_t>(layout_.slice_stride); }
-  /// Returns whether the scan has a density for a voxel, by its number (linear_index()). A voxel without one
-  /// counts in no statistics.
+  /// Returns whether the scan has a density for the voxel with this linear_index(). Statistics ignore voxels
+  /// without one.
   bool has_density(std::size_t voxel) const { return !without_density_ || !(*without_density_)[voxel]; }
   std::size_t voxels_without_density() const { return voxels_without_density_; }
-  /// Returns the least density of the grid as it was made.
+  /// Returns the lowest density the grid had when it was constructed.
   float outside_density() const { return outside_density_; }
 
-  /// Returns the voxel's number, i running fastest: not its offset in memory.
+  /// Returns the voxel's index, i fastest; not its offset in memory, which includes padding.
   std::size_t linear_index(const VoxelIndex& v) const noexcept {
     return row_major(geometry_.dims, v.i, v.j, v.k);
   }
@@ -55,13 +54,13 @@ class DensityGrid {
     return v.i >= 0 && v.j >= 0 && v.k >= 0 && v.i < geometry_.dims[0] && v.j < geometry_.dims[1] &&
            v.k < geometry_.dims[2];
   }
-  /// Returns the density of `v`, which must lie in the grid.
+  /// Returns the density of `v`, which must be in the grid.
   float operator[](const VoxelIndex& v) const { return *address_of(v); }
-  /// Returns the density of any `v`; the outside density beyond the border.
+  /// Returns the density of `v`; outside_density() if it is not in the grid.
   float at_or_outside(const VoxelIndex& v) const noexcept {
     return contains(v) ? *address_of(v) : outside_density_;
   }
-  /// Asks for the voxel's cache line ahead of reading it. `v` must lie in the grid.
+  /// Prefetches the voxel's cache line. `v` must be in the grid.
   void prefetch(const VoxelIndex& v) const {
 #ifdef __GNUC__
     __builtin_prefetch(address_of(v));
@@ -72,8 +71,8 @@ class DensityGrid {
   void set(const VoxelIndex& v, float density) noexcept {
     densities_.set(offset_of(v.i, v.j, v.k), density);
   }
-  /// Pre-faults the pages around `changed`, so that the tick does not page-fault
-  /// (CopyOnWriteFloats::prepare), as far as a burr may go on from there in some tens of milliseconds.
+  /// Pre-faults the pages around `changed`, as far as a burr may move in some tens of milliseconds, so that
+  /// the tick does not page-fault (CopyOnWriteFloats::prefault).
   void prefault_around(const VoxelBox& changed);
 
  private:
@@ -84,7 +83,7 @@ class DensityGrid {
 
   GridGeometry geometry_;
   RowLayout layout_;
-  // By number; null if every voxel has a density.
+  // By linear index; null if every voxel has a density.
   std::shared_ptr<const std::vector<bool>> without_density_;
   std::size_t voxels_without_density_ = 0;
   CopyOnWriteFloats densities_;
@@ -92,7 +91,7 @@ class DensityGrid {
   float outside_density_ = 0;
 };
 
-/// Calls `use` with every row, a std::span<const float>, j running fastest. Long work (WorkProgress).
+/// Calls `use` with every row, a std::span<const float>, j fastest. Long work (WorkProgress).
 template <typename Use>
 void for_each_row(const DensityGrid& grid, const Use& use) {
   VoxelBox rows = grid.geometry().all_voxels();
@@ -100,7 +99,7 @@ void for_each_row(const DensityGrid& grid, const Use& use) {
   for_each_with_progress(rows, [&](const VoxelIndex& v) { use(grid.row(v.j, v.k)); });
 }
 
-/// Calls `use` with the density of every voxel that has one, in the order of their numbers. Long work.
+/// Calls `use` with the density of every voxel that has one, in linear order. Long work.
 template <typename Use>
 void for_each_density(const DensityGrid& grid, const Use& use) {
   std::size_t voxel = 0;
@@ -111,12 +110,11 @@ void for_each_density(const DensityGrid& grid, const Use& use) {
   });
 }
 
-/// Returns the densities of every `every`th voxel, in the order of their numbers, without the voxels that
-/// have none.
+/// Returns the densities of every `every`th voxel in linear order, without the voxels that have none.
 std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every);
 
-/// Returns one voxel's part in a hash that is the sum of all parts (modulo 2^64): after a change, in any
-/// order, only the parts of the changed voxels are computed again. Safe in the haptic tick.
+/// Returns one voxel's term of a hash that is the sum of all terms (modulo 2^64), so that it can be updated
+/// from the changed voxels alone, in any order. Safe in the haptic tick.
 inline std::uint64_t density_hash(std::size_t voxel, float density) noexcept {
   std::uint64_t x = (static_cast<std::uint64_t>(voxel) << 32) ^ std::bit_cast<std::uint32_t>(density);
   x *= 0x9e3779b97f4a7c15;
@@ -125,7 +123,7 @@ inline std::uint64_t density_hash(std::size_t voxel, float density) noexcept {
   return x ^ (x >> 32);
 }
 
-/// Hashes words by FNV-1a, a word at a time, as fingerprint_of() does with a grid's densities.
+/// FNV-1a hash applied word by word, as fingerprint_of() applies it to a grid's densities.
 class WordHash {
  public:
   void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3; }
@@ -135,7 +133,7 @@ class WordHash {
   std::uint64_t hash_ = 0xcbf29ce484222325;
 };
 
-/// Returns a number that two scans hardly share. Goes through every voxel; not for the tick.
+/// Returns a 64-bit hash that identifies a scan by its densities. Passes over the voxels; not for the tick.
 std::uint64_t fingerprint_of(const DensityGrid& grid);
 
 }  // namespace osteomill

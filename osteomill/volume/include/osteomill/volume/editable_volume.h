@@ -5,19 +5,18 @@
 
 namespace osteomill {
 
-/// Changes a bone that nothing follows, in ways that milling cannot: densities may rise, and the isovalue may
-/// change. No session mills or feels the bone from when this is made until its last call; an algorithm that
-/// is prepared later sees the bone as it then is. Not for the tick.
+/// Edits a bone in ways that milling cannot: densities may rise and the isovalue may change. No session may
+/// mill or render the bone from this object's construction until its last call; algorithms prepared
+/// afterwards see the edited bone. Not for the tick.
 class EditableVolume {
  public:
-  /// Makes the bone editable. `bone` outlives this object.
+  /// `bone` must outlive this object.
   explicit EditableVolume(Volume& bone) : bone_(bone) {}
 
-  /// Puts the block's densities into the bone, and the bone's into the block: a second call undoes the first.
-  /// Returns which voxels changed. The bone's ranges are exact again if a density rose.
+  /// Swaps the block's densities with the bone's: a second call undoes the first. Returns a box that contains
+  /// the changed voxels. If a density rose, the bone's ranges around it are recomputed exactly.
   VoxelBox swap(DensityBlock& block);
-  /// Sets the density above which there is bone from now on. Throws std::invalid_argument if it is not
-  /// finite.
+  /// Sets the isovalue. Throws std::invalid_argument if it is not finite.
   void set_isovalue(double isovalue) { bone_.set_isovalue(isovalue); }
 
  private:

@@ -18,7 +18,7 @@ struct VoxelIndex {
   friend bool operator==(const VoxelIndex&, const VoxelIndex&) = default;
 };
 
-/// A box of voxels, both corners inside it. Empty if `last` lies below `first` along any axis.
+/// Box of voxels; both corners are inclusive. Empty if `last` is below `first` along any axis.
 struct VoxelBox {
   VoxelIndex first{0, 0, 0};
   VoxelIndex last{-1, -1, -1};
@@ -38,36 +38,36 @@ struct VoxelBox {
     first = {std::min(first.i, v.i), std::min(first.j, v.j), std::min(first.k, v.k)};
     last = {std::max(last.i, v.i), std::max(last.j, v.j), std::max(last.k, v.k)};
   }
-  /// Returns the box wider by `voxels` on every side (an empty box stays empty).
+  /// Returns the box grown by `voxels` on every side (an empty box stays empty).
   VoxelBox grown(int voxels) const {
     if (empty()) return *this;
     return {{first.i - voxels, first.j - voxels, first.k - voxels},
             {last.i + voxels, last.j + voxels, last.k + voxels}};
   }
-  /// Returns the part that is in `other` too.
+  /// Returns the intersection with `other`.
   VoxelBox intersected(const VoxelBox& other) const {
     return {{std::max(first.i, other.first.i), std::max(first.j, other.first.j),
              std::max(first.k, other.first.k)},
             {std::min(last.i, other.last.i), std::min(last.j, other.last.j), std::min(last.k, other.last.k)}};
   }
-  /// Returns how many voxels it has along each axis. It must not be empty.
+  /// Returns the number of voxels along each axis. The box must not be empty.
   std::array<int, 3> dims() const {
     return {last.i - first.i + 1, last.j - first.j + 1, last.k - first.k + 1};
   }
-  /// Returns the bricks of `side` voxels in which it lies, as a box of their coordinates, counted from voxel
-  /// 0. The box has no coordinates below 0.
+  /// Returns the bricks of `side` voxels, counted from voxel 0, that the box overlaps, as a box of brick
+  /// coordinates. The box must not have negative coordinates.
   VoxelBox bricks(int side) const {
     if (empty()) return {};
     return {{first.i / side, first.j / side, first.k / side}, {last.i / side, last.j / side, last.k / side}};
   }
-  /// Returns the voxels of one of those bricks.
+  /// Returns the voxels of a brick of `side` voxels.
   static VoxelBox of_brick(const VoxelIndex& brick, int side) {
     const VoxelIndex first{brick.i * side, brick.j * side, brick.k * side};
     return {first, {first.i + side - 1, first.j + side - 1, first.k + side - 1}};
   }
 };
 
-/// Calls `use` with every voxel (or brick) of the box, along i fastest.
+/// Calls `use` with every voxel (or brick) of the box, i fastest.
 template <typename Use>
 void for_each(const VoxelBox& box, const Use& use) {
   for (int k = box.first.k; k <= box.last.k; ++k) {
@@ -77,7 +77,7 @@ void for_each(const VoxelBox& box, const Use& use) {
   }
 }
 
-/// Calls `use` as `for_each` does, and reports before each slice how far it is (WorkProgress): for long work.
+/// Like `for_each`, but reports progress before each slice (WorkProgress): for long work.
 template <typename Use>
 void for_each_with_progress(const VoxelBox& box, const Use& use) {
   for (int k = box.first.k; k <= box.last.k; ++k) {
@@ -86,27 +86,27 @@ void for_each_with_progress(const VoxelBox& box, const Use& use) {
   }
 }
 
-/// Describes where a grid of voxels lies in the world frame W (the scan's patient axes, mm).
-/// Voxel coordinates are continuous: the centre of voxel (i, j, k) has the coordinates (i, j, k).
+/// Pose and size of a voxel grid in the world frame W (the scan's patient axes, mm). Voxel coordinates are
+/// continuous: the centre of voxel (i, j, k) is at (i, j, k).
 struct GridGeometry {
   std::array<int, 3> dims{0, 0, 0};
-  /// Distance of neighbouring voxel centres along i, j, k.
+  /// Distance between neighbouring voxel centres along i, j, k.
   Vec3 spacing_mm = Vec3::Ones();
   /// Centre of voxel (0, 0, 0) in W.
   Vec3 origin_mm = Vec3::Zero();
-  /// Columns: the unit directions of i, j, k in W; orthogonal, right- or left-handed.
+  /// Columns: unit directions of i, j, k in W; orthogonal, right- or left-handed.
   Mat3 direction = Mat3::Identity();
 
   std::size_t voxel_count() const { return cell_count(dims); }
   VoxelBox all_voxels() const { return {{0, 0, 0}, {dims[0] - 1, dims[1] - 1, dims[2] - 1}}; }
   double voxel_volume_mm3() const { return spacing_mm.prod(); }
 
-  /// Returns the point in W, mm, of continuous voxel coordinates.
+  /// Converts continuous voxel coordinates to a point in W, mm.
   Vec3 world_from_voxel(const Vec3& voxel) const {
     return origin_mm + direction * spacing_mm.cwiseProduct(voxel);
   }
   Vec3 world_from_voxel(const VoxelIndex& v) const { return world_from_voxel(Vec3(v.i, v.j, v.k)); }
-  /// Returns the continuous voxel coordinates of a point in W, mm.
+  /// Converts a point in W, mm, to continuous voxel coordinates.
   Vec3 voxel_from_world(const Vec3& point_W) const {
     return (direction.transpose() * (point_W - origin_mm)).cwiseQuotient(spacing_mm);
   }

@@ -8,67 +8,64 @@
 
 namespace osteomill {
 
-/// A boundary, by density, at which one material of a scan ends and a denser one begins.
+/// Density boundary between one material of a scan and a denser one.
 struct Boundary {
-  /// The density at which the boundary is sharpest: an isovalue that bounds the denser material.
+  /// Density at which the boundary is sharpest: an isovalue for the denser material.
   double density = 0;
-  /// The densities of the materials on either side, taken at voxels that differ least from their neighbours.
+  /// Densities of the materials on either side, taken at voxels that differ least from their neighbours.
   double below = 0;
   double above = 0;
-  /// True if the suggested isovalue lies on this boundary (suggest_isovalue), though rarely at the density at
-  /// which it is sharpest.
+  /// True if the suggested isovalue belongs to this boundary (suggest_isovalue); it rarely equals `density`.
   bool is_suggested = false;
 };
 
-/// Returns the boundaries between materials, by density: the local maxima of the mean gradient along the
-/// isosurface, which is the contour spectrum of Bajaj, Pascucci and Schikore (1997). A maximum is left out if
-/// it is less than a tenth sharper than the dip beside it, or has less than a hundredth of the largest
-/// isosurface's area, or if no voxel lies on the step, as between the values of a made-up scan. Looks at some
-/// four million voxels at the most. Not for the tick.
+/// Returns the boundaries between materials in ascending density: the local maxima of the mean gradient along
+/// the isosurface (contour spectrum; Bajaj, Pascucci and Schikore 1997). Omits a maximum less than a tenth
+/// above the higher of its neighbouring minima, one with less than a hundredth of the largest isosurface's
+/// area, and a step on which no voxel lies, as between the values of a synthetic scan. Samples about four
+/// million voxels at most. Not for the tick.
 std::vector<Boundary> boundaries_in(const DensityGrid& grid);
 
-/// An isovalue, and in half a sentence where it came from, for people to read.
+/// Suggested isovalue, with a phrase for the user on how it was found.
 struct SuggestedIsovalue {
   double value = 0;
   std::string how;
-  /// The scan's boundaries. If there are several, `how` says that the isovalue is a guess among them.
+  /// The scan's boundaries. If any other than the isovalue's own was found, `how` calls the isovalue a guess.
   std::vector<Boundary> boundaries{};
 };
 
-/// The least value counted as bone, in Hounsfield units: between the 226 HU of InVesalius and Mimics and the
-/// 300 HU that are usual for compact bone.
+/// Lowest value counted as bone, in Hounsfield units: between the 226 HU of InVesalius and Mimics and the 300
+/// HU usual for compact bone.
 inline constexpr double kBone_HU = 260;
 
-/// Suggests the isovalue that bounds the bone, by what the densities are:
-/// - a scan of a body, which has its two commonest densities, air and soft tissue, 1000 apart: 260 HU, and
-///   if the file does not say that it is in Hounsfield units, 260 above water, which lies 40 below soft
-///   tissue;
-/// - else halfway between the commonest density of the bone and of what is around it (half-maximum height;
-///   Spoor et al. 1993), but in Hounsfield units never under 260.
-/// Commonest is counted where densities hardly change from voxel to voxel, so not in blurred edges (Panda and
-/// Rosenfeld 1978), on either side of the threshold of Otsu 1979. A guess, and said to be one, where the scan
-/// has another boundary than the one on which it lies, or is sharpest elsewhere than halfway. Always strictly
-/// between the grid's least and greatest density; where all are equal, that density. Looks at some four
-/// million voxels at the most. Not for the tick.
+/// Suggests an isovalue for the bone, depending on the densities:
+/// - for a scan of a body, whose two most common densities (air and soft tissue) are about 1000 apart: 260
+///   HU, or if the file does not state Hounsfield units, 260 above water, which is 40 below soft tissue;
+/// - otherwise halfway between the most common densities of the bone and its surroundings (half-maximum
+///   height; Spoor et al. 1993), but in Hounsfield units never below 260. The most common densities are found
+///   on either side of Otsu's threshold (1979), among voxels that differ little from their neighbours, so
+///   that blurred edges do not count (Panda and Rosenfeld 1978). `how` calls the result a guess if the scan
+///   has other boundaries, or if its boundary is sharpest far from halfway. The result is strictly between
+///   the grid's lowest and highest density, or equal to both if all densities are the same. Samples about
+///   four million voxels at most. Not for the tick.
 SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units = false);
 
-/// Returns whether there are both bone and something else at this isovalue. Goes through the grid; not for
-/// the tick.
+/// Returns whether the isovalue leaves some voxels inside and some outside the bone. Passes over the voxels;
+/// not for the tick.
 bool is_within(const DensityGrid& grid, double isovalue);
 
-/// Returns what a user of this isovalue should know, a sentence each: that it lies outside the grid's
-/// densities, so that there is no bone or nothing else; or that bone touches the border of the volume, where
-/// it is cut off and its inside lies open. One pass over the voxels.
+/// Returns warnings for the user of this isovalue, one sentence each: it is outside the range of the
+/// densities, so that none or all of the volume is bone; or bone touches the border of the volume, where it
+/// is cut off and its interior exposed. One pass over the voxels.
 std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isovalue);
 
-/// A histogram by which a user chooses the isovalue: logarithms of how often densities occur, over all
-/// densities but the rarest at both ends.
+/// Histogram for choosing the isovalue: log(1 + count) per bin, without the rarest densities at both ends.
 struct DensityHistogram {
   float min = 0;
   float max = 1;
   std::array<float, 128> log_counts{};
 };
-/// Returns the histogram of some million of the grid's voxels. Not for the tick.
+/// Returns the histogram of a sample of up to about a million of the grid's voxels. Not for the tick.
 DensityHistogram histogram_of(const DensityGrid& grid);
 
 }  // namespace osteomill

@@ -7,23 +7,27 @@
 
 namespace osteomill {
 
-/// For each voxel of a box, which voxel of a set is nearest to its centre: the exact Euclidean feature
-/// transform of Felzenszwalb and Huttenlocher (Theory of Computing 8, 2012), axis by axis.
+/// Nearest voxel of a set for each voxel of a box: the exact Euclidean feature transform of Felzenszwalb and
+/// Huttenlocher (Theory of Computing 8, 2012), axis by axis.
 class NearestVoxels {
  public:
-  /// The part of a voxel of the set to which the distance counts: its centre, or the nearest of its faces.
+  /// Point of a voxel of the set to which distances are measured: its centre, or the nearest point of its
+  /// faces.
   enum class To : unsigned char { centres, faces };
 
   NearestVoxels() = default;
-  /// Searches among the voxels of `set` that lie in `box`. Long work.
+  /// Uses only the voxels of `set` that are in `box`. Throws std::invalid_argument if the box has 2^31 voxels
+  /// or more. Long work.
   NearestVoxels(const VoxelSet& set, const VoxelBox& box, const Vec3& spacing_mm, To to = To::centres);
 
   const VoxelBox& box() const { return box_; }
-  /// Returns whether the box holds any voxel of the set.
+  /// Returns whether the box contains any voxel of the set.
   bool found() const { return found_; }
-  /// Returns the nearest one. `v` lies in the box, which holds one. Safe in the haptic tick.
+  /// Returns the voxel of the set nearest to `v`. `v` must be in the box, and found() true. Safe in the
+  /// haptic tick.
   VoxelIndex nearest_to(const VoxelIndex& v) const noexcept;
-  /// Returns the distance of their centres; infinite if there is none. Safe in the haptic tick.
+  /// Returns the distance from the centre of `v` to that of the nearest voxel; infinite if found() is false.
+  /// Safe in the haptic tick.
   double distance_mm(const VoxelIndex& v) const noexcept;
 
  private:
@@ -33,7 +37,7 @@ class NearestVoxels {
   std::array<int, 3> dims_{0, 0, 0};
   Vec3 spacing_mm_ = Vec3::Ones();
   bool found_ = false;
-  // By the place in the box: the place of the nearest voxel, or -1.
+  // Linear index in the box of the nearest voxel, per voxel of the box; -1 if there is none.
   std::vector<std::int32_t> nearest_;
 };
 

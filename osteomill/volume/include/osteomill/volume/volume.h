@@ -14,11 +14,10 @@
 
 namespace osteomill {
 
-/// The bone as every room sees it: densities, the isovalue that bounds the bone (bone where density >
-/// isovalue), and the range of densities brick by brick. Densities fall and never rise, and the isovalue
-/// stays: all that follows a bone from tick to tick rests on that. `EditableVolume` changes a bone that
-/// nothing follows. The haptic thread alone lowers densities; all others read copies, which take memory only
-/// for what is changed in them.
+/// The bone: densities, the isovalue (bone is density > isovalue), and the density range of each brick.
+/// Invariant: densities never rise and the isovalue is constant; code that updates its data from tick to tick
+/// relies on this. `EditableVolume` may break it while no session uses the bone. Only the haptic thread
+/// lowers densities; other threads read copies, which take memory only for their changes.
 class Volume {
  public:
   /// Throws std::invalid_argument if the isovalue is not finite.
@@ -30,24 +29,23 @@ class Volume {
   const GridGeometry& geometry() const { return grid_.geometry(); }
   const BlockRanges& ranges() const { return ranges_; }
   double isovalue() const { return isovalue_; }
-  /// Returns the map of the structures that the bone is made of; null if there is none. Copies of the bone
-  /// share it.
+  /// Returns the map of the bone's structures; null if there is none. Shared by copies of the bone.
   const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
-  /// Sets the map, which is of this grid. Not for the tick.
+  /// Sets the map, which must be on this grid. Not for the tick.
   void set_labels(std::shared_ptr<const LabelMap> labels) { labels_ = std::move(labels); }
-  /// Returns the structures whose distance is recorded in every tick; null if there are none. Copies of the
-  /// bone share them.
+  /// Returns the structures whose distance is recorded in every tick; null if there are none. Shared by
+  /// copies of the bone.
   const std::shared_ptr<const NoGoDistances>& no_go() const { return no_go_; }
   /// Sets them. Not for the tick.
   void set_no_go(std::shared_ptr<const NoGoDistances> structures) { no_go_ = std::move(structures); }
 
-  /// Returns whether voxel `v`, which lies in the grid, is bone.
+  /// Returns whether voxel `v`, which must be in the grid, is bone.
   bool is_bone(const VoxelIndex& v) const noexcept { return static_cast<double>(grid_[v]) > isovalue_; }
-  /// Returns whether any voxel `v` is bone; there is none beyond the border.
+  /// Returns whether voxel `v` is bone; false if it is not in the grid.
   bool is_bone_in_grid(const VoxelIndex& v) const noexcept { return grid_.contains(v) && is_bone(v); }
 
-  /// Lowers the densities of `count` voxels of one row, whose columns ascend. A density that is not below the
-  /// voxel's own changes nothing. Safe in the haptic tick.
+  /// Lowers the densities of `count` voxels of one row, columns ascending. Ignores densities that are not
+  /// below the current ones. Safe in the haptic tick.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) noexcept {
     for (std::size_t n = 0; n < count; ++n) {
       const VoxelIndex v{columns[n], j, k};
@@ -57,12 +55,11 @@ class Volume {
   }
   /// Lowers the density of one voxel. Safe in the haptic tick.
   void lower_density(const VoxelIndex& v, float density) noexcept { lower_row(v.j, v.k, &v.i, &density, 1); }
-  /// Prepares the memory for coming changes (DensityGrid::prefault_around). For another thread than the
-  /// one that lowers, if that one must not wait.
+  /// Pre-faults memory for upcoming changes (DensityGrid::prefault_around). To be called from another thread
+  /// than the one that lowers densities, if that one must not wait.
   void prefault_around(const VoxelBox& changed) { grid_.prefault_around(changed); }
-  /// Returns a hash of what differs from the densities the bone was made with: 0 if nothing does, and the
-  /// same for any two bones of one scan that are the same, in whatever order they were milled. Safe in the
-  /// haptic tick.
+  /// Returns a hash of the changes since construction: 0 if there are none, and equal for equal bones of one
+  /// scan, whatever the order in which they were milled. Safe in the haptic tick.
   std::uint64_t change_hash() const noexcept { return change_hash_; }
 
  private:
@@ -86,8 +83,7 @@ class Volume {
   std::shared_ptr<const NoGoDistances> no_go_;
 };
 
-/// Calls `visit` with every bone voxel, i running fastest; passes over bricks without bone. Long work
-/// (WorkProgress).
+/// Calls `visit` with every bone voxel, i fastest; skips bricks without bone. Long work (WorkProgress).
 template <typename Visit>
 void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   constexpr int kSide = BlockRanges::kBrickVoxels;
@@ -103,8 +99,8 @@ void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   });
 }
 
-/// The change that milling made in one step (BurrMill): every voxel whose density fell lies in `voxels`,
-/// which is empty if none fell.
+/// Change made by one milling step (BurrMill): a box that contains every voxel whose density fell; empty if
+/// none did.
 struct VolumeChange {
   VoxelBox voxels;
 };

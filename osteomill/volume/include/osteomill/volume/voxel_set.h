@@ -10,11 +10,11 @@
 
 namespace osteomill {
 
-/// Voxels of a scan, a bit each in the box that holds them.
+/// Set of voxels of a scan, one bit per voxel of a box.
 class VoxelSet {
  public:
   VoxelSet() = default;
-  /// Makes an empty set that takes voxels of this box.
+  /// Makes an empty set for voxels of this box.
   explicit VoxelSet(const VoxelBox& box) : box_(box) {
     if (box_.empty()) return;
     dims_ = box_.dims();
@@ -25,10 +25,10 @@ class VoxelSet {
   bool contains(const VoxelIndex& v) const { return box_.contains(v) && bits_[place_of(v)]; }
   std::size_t count() const { return static_cast<std::size_t>(std::ranges::count(bits_, true)); }
   bool empty() const { return std::ranges::find(bits_, true) == bits_.end(); }
-  /// `v` lies in the box.
+  /// `v` must be in the box.
   void insert(const VoxelIndex& v) { bits_[place_of(v)] = true; }
 
-  /// Calls `use` with every voxel of the set, along i fastest.
+  /// Calls `use` with every voxel of the set, i fastest.
   template <typename Use>
   void for_each(const Use& use) const {
     osteomill::for_each(box_, [&](const VoxelIndex& v) {
