@@ -94,7 +94,7 @@ cells = re.search(r"<tr><th>target_removed_percent</th><td>(.*?)</td><td>(.*?)</
 shown = [float(re.search(r"[0-9.]+", cell)[0]) for cell in cells]
 assert abs(shown[0] - value("both")) < 1e-3 * shown[0] and abs(shown[1] - value("alone")) < 1e-3 * shown[1] and shown[0] < shown[1], (shown, value("both"), value("alone"))
 CHECK
-[ "$(debrief ways/again.h5 --out lost)" = 1 ] && grep -q "^osteomill: ways/again.h5: goes on from first.h5, which is not beside it" error ||
+[ "$(debrief ways/again.h5 --out lost)" = 1 ] && grep -q "^osteomill: ways/again.h5: continues first.h5, which is missing" error ||
   fault "$(cat error)"
 
 # Against four attempts before.

@@ -36,7 +36,7 @@ cmp whole.ply whole2.ply || fault "the saved scan is another"
 "$osteomill" mesh --out held.stl --after runs/point-shell-holding.h5
 cmp milled.stl held.stl || fault "after holding the bone is another"
 cp runs/point-shell-holding.h5 alone.h5
-refused "^osteomill: alone.h5: goes on from .*point-shell-milling.h5" "$osteomill" mesh --out a.stl --after alone.h5
+refused "^osteomill: alone.h5: continues .*point-shell-milling.h5" "$osteomill" mesh --out a.stl --after alone.h5
 refused "^osteomill: $milling: was made with another scan" "$osteomill" save milled.nrrd --out a.nrrd --after "$milling"
 printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: ascii\n\n1 2 3 4 5 6 7 1000\n' >tiny.nrrd
 refused "^osteomill: $milling: was made with another scan \(built-in tooth\): 256 x 256 x 176" \

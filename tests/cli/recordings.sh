@@ -38,7 +38,7 @@ refused "recording's own" c/line-proxy-milling.h5 --burr-radius 2 --out x.csv
 refused "is no recording" other.csv --verify
 refused "nosuch.h5: no such file" nosuch.h5 --verify
 mv c/line-proxy-milling.h5 c/away.h5
-refused "line-proxy-milling.h5.*not beside it" c/line-proxy-holding.h5 --verify
+refused "line-proxy-milling.h5, which is missing" c/line-proxy-holding.h5 --verify
 
 # Killed at any moment.
 for ((n = 0; n < kills; ++n)); do

@@ -76,7 +76,7 @@ TEST(PlaceExercise, GivesGuardsToTheBoneWithoutWhichARecordingDoesNotReplay) {
     verify_recording(plain, recording, {});
     FAIL() << "it replays without its structures";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("held the burr off 1 structures"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("with 1 guarded structures"), std::string::npos);
   }
 }
 

@@ -27,12 +27,13 @@ void require_usable_keys(const std::vector<RunSetting>& settings) {
   std::set<std::string> seen;
   for (const RunSetting& setting : settings) {
     if (setting.key.empty() || setting.key.ends_with(kUnitSuffix) || !seen.insert(setting.key).second) {
-      throw std::invalid_argument("'" + setting.key + "' cannot be the key of a setting, or is one already");
+      throw std::invalid_argument("'" + setting.key +
+                                  "' is not a valid key of a setting, or is already used");
     }
   }
 }
 
-// Whose attributes are listed in the order in which they were made.
+// Creates a group that lists its attributes in order of creation.
 Hdf5Handle create_ordered_group(const fs::path& path, hid_t file, const char* name) {
   const Hdf5Handle order(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   H5Pset_attr_creation_order(order.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
@@ -100,7 +101,7 @@ std::vector<Label> read_labels(const fs::path& path, hid_t file) {
     unsigned rgb = 0;
     if (!number || labels.size() == LabelMap::kMaxLabels || colour.size() != 7 ||
         std::sscanf(colour.c_str(), "#%6x", &rgb) != 1) {
-      throw InputError(path.string(), "has a label that cannot be used: '" + name + "'");
+      throw InputError(path.string(), "has an invalid label '" + name + "'");
     }
     read.get(name, label.name);
     label.colour = {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8),
@@ -111,16 +112,16 @@ std::vector<Label> read_labels(const fs::path& path, hid_t file) {
   return labels;
 }
 
-// A scan that can be, milled with a tool that can be.
+// Throws InputError if grid, tick period or tool are invalid.
 void require_sound(const fs::path& path, const RunDescription& run) {
   constexpr double kMaxVoxels = 1e12;
   const auto refuse = [&](const std::string& reason) { throw InputError(path.string(), reason); };
   if (!is_positive(run.tick_period_s)) refuse("the attribute 'tick_period_s' is not a positive number");
   double voxels = 1;
   for (const int count : run.dims) voxels *= std::max(0, count);
-  if (!(voxels >= 1 && voxels <= kMaxVoxels)) refuse("the attribute 'dims' is no size of a scan");
+  if (!(voxels >= 1 && voxels <= kMaxVoxels)) refuse("the attribute 'dims' is not a valid scan size");
   if (!(run.spacing_mm.minCoeff() > 0)) refuse("the attribute 'spacing_mm' is not three positive numbers");
-  if (!run.direction.isUnitary(1e-3)) refuse("its axes are not unit vectors at right angles");
+  if (!run.direction.isUnitary(1e-3)) refuse("its axes are not orthonormal");
   try {
     require_valid(run.tool);
   } catch (const std::invalid_argument& error) {
@@ -134,7 +135,7 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
   require_usable_keys(description.settings);
   if (!is_usable(description.algorithm) || !is_plain_name(description.phase)) {
     throw std::invalid_argument("'" + description.algorithm.name + "', '" + description.phase +
-                                "': an algorithm or a phase that cannot be recorded by that name");
+                                "': invalid name of an algorithm or a phase");
   }
   const Attributes write(path, file);
   visit_attributes(description,
@@ -154,7 +155,7 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   RunDescription run;
   visit_attributes(run, [&](const RunAttribute& of, auto&& value) { read.get(of.name, value); });
   if (!is_usable(run.algorithm))
-    throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
+    throw InputError(path.string(), "has an invalid name, label or colour of its algorithm");
   if (!is_plain_name(run.phase)) throw InputError(path.string(), "the attribute 'phase' is not a plain name");
   require_sound(path, run);
   run.settings = read_settings(path, file);

@@ -19,10 +19,10 @@ std::mutex& hdf5_mutex() {
 
 constexpr std::size_t kMaxText = 60000;
 
-// A character of the private use area for each byte from 0x80 on.
+// Maps each byte from 0x80 on to a character of the private use area.
 constexpr std::uint32_t kByteAsCharacter = 0xF700;
 
-// The first character of a text, and how many bytes it takes; no bytes if it is no UTF-8.
+// Code point and length in bytes of a UTF-8 character; length 0 if it is invalid.
 struct Character {
   std::size_t bytes = 0;
   std::uint32_t code = 0;
@@ -85,8 +85,8 @@ std::string from_utf8(std::string_view text) {
 }  // namespace
 
 Hdf5Lock::Hdf5Lock() : lock_(hdf5_mutex()) {
-  // All that is open is closed by its handle. What the library would do at exit crashes on a file that a full
-  // disk left half-written. Before any other call, or it has no effect.
+  // Disables HDF5's exit handler, which crashes on files left half-written by a full disk; handles close
+  // everything. Has an effect only before any other HDF5 call.
   [[maybe_unused]] static const herr_t asked = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   errno = 0;
@@ -150,7 +150,7 @@ void Attributes::read(const std::string& name, H5T_class_t type_class, hid_t mem
   const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
   const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
   if (H5Tget_class(type.get()) != type_class || H5Sget_simple_extent_npoints(space.get()) != count) {
-    throw InputError(file_.string(), "the attribute '" + name + "' is of another type or length");
+    throw InputError(file_.string(), "the attribute '" + name + "' has the wrong type or length");
   }
   if (H5Aread(attribute.get(), memory_type, data) < 0) {
     throw InputError(file_.string(), "the attribute '" + name + "' cannot be read");
@@ -187,7 +187,7 @@ void Attributes::get(const std::string& name, std::uint64_t& value) const {
 void Attributes::get_reals(const std::string& name, std::span<double> values) const {
   read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, std::ssize(values), values.data());
   if (!std::ranges::all_of(values, [](double value) { return std::abs(value) <= kMaxReal; }))
-    throw InputError(file_.string(), "the attribute '" + name + "' is not finite, or beyond 1e12");
+    throw InputError(file_.string(), "the attribute '" + name + "' is not finite or exceeds 1e12");
 }
 
 void Attributes::get(const std::string& name, std::array<int, 3>& values) const {

@@ -35,7 +35,7 @@ bool holds_its_own_values(hid_t dataset) {
   return own;
 }
 
-// The system's reasons for which a file cannot be locked.
+// Errors that mean the file cannot be locked.
 bool is_of_a_lock(int error) {
   return error == ENOLCK || error == EAGAIN || error == ENOSYS || error == EOPNOTSUPP;
 }
@@ -53,11 +53,12 @@ void require_nothing_elsewhere(const Hdf5File& file) {
     return within ? 0 : 1;
   };
   if (H5Lvisit(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, check_link, &refused) != 0)
-    file.refuse("'" + refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
+    file.refuse("'" + refused +
+                "' is stored outside the file, or needs an HDF5 filter plugin; repack the file");
 }
 
-// Restores the default action of signals: the program's own is not for the child. The C library reports a
-// damaged heap.
+// Limits the child's CPU and wall time and its core dump, and restores the default signal handlers. Standard
+// error is discarded because the C library reports heap corruption there.
 void limit_child(std::uintmax_t bytes) {
   constexpr unsigned kMinLimit_s = 2, kWaitingShare = 20;
   constexpr std::uintmax_t kBytesPerSecond = 5'000'000;
@@ -71,8 +72,8 @@ void limit_child(std::uintmax_t bytes) {
   ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
 }
 
-// Nothing if the child put in all that it had to. Else the reason for which it refused the file, which is
-// empty if it broke off.
+// Returns nullopt if the child passed everything; otherwise its reason to refuse the file, empty if it ended
+// early.
 std::optional<std::string> taken(PipeEnd& pipe, const std::function<void(PipeEnd&)>& take) {
   try {
     bool is_read = false;
@@ -120,7 +121,8 @@ void require_readable(const fs::path& path) {
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw InputError(path.string(), "no such file");
   if (!fs::is_regular_file(status)) throw InputError(path.string(), "is not a file");
-  if (is_locked(path)) throw InputError(path.string(), "is still being written");
+  if (is_locked(path))
+    throw InputError(path.string(), "is still being written; wait until its program has ended");
 }
 
 Hdf5File open_hdf5(const fs::path& path) {
@@ -131,21 +133,21 @@ Hdf5File open_hdf5(const fs::path& path) {
   errno = 0;
   file.handle = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file.handle.valid() && is_of_a_lock(errno))
-    file.refuse(with_reason("cannot be locked, as HDF5_USE_FILE_LOCKING asks for"));
-  if (!file.handle.valid()) file.refuse("cannot be opened: it is cut short or damaged");
+    file.refuse(with_reason("cannot be locked; unset HDF5_USE_FILE_LOCKING"));
+  if (!file.handle.valid()) file.refuse("cannot be opened: it is truncated or damaged");
   require_nothing_elsewhere(file);
   return file;
 }
 
 void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& put,
                      const std::function<void(PipeEnd&)>& take) {
-  // Largest number of bytes that the child passes on, for each byte of the file, and that of a reason.
+  // Limits on what the child passes: bytes per byte of the file, and the length of a refusal.
   constexpr std::uintmax_t kMaxBytesPerByte = 10'000, kMaxReasonBytes = 1'000'000;
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(path, error), most = kMaxBytesPerByte * bytes + kMaxReasonBytes;
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw InputError(path.string(), "cannot be read: too many open files");
+    throw InputError(path.string(), "cannot be read: too many open files; raise the limit (ulimit -n)");
   const ::pid_t child = ::fork();
   if (child == 0) {
     limit_child(bytes);
@@ -160,17 +162,17 @@ void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& 
     fault = taken(pipe, take);
   }
   if (child < 0)
-    throw InputError(path.string(), "cannot be read: no process can be started for it (ulimit -u)");
+    throw InputError(path.string(), "cannot be read: no process can be started; raise the limit (ulimit -u)");
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   if (status != 0 || (fault && fault->empty()))
-    throw InputError(path.string(), "is damaged: it ends the program that reads it");
+    throw InputError(path.string(), "is damaged: HDF5 crashes or hangs when reading it");
   if (fault) throw InputError(path.string(), *fault);
 }
 
 Hdf5Column open_column(const Hdf5File& file, const std::string& place, hsize_t width) {
-  // A byte of the file for each row lets through what other programs have compressed; of wide rows, whatever
-  // deflate may save.
+  // Allows one row per byte of the file, which suffices for files compressed by other programs; for wide
+  // rows, allows deflate's maximum ratio.
   constexpr hsize_t kMaxDeflateRatio = 1100;
   Hdf5Column column{place, Hdf5Handle(H5Dopen2(file.id(), place.c_str(), H5P_DEFAULT), H5Dclose), width};
   if (!column.dataset.valid()) file.refuse("has no column '" + place + "'");

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 template <>
 inline constexpr bool kFlat<ViewSample> = true;
 
-// Members that the reading process passes on.
+// Members that the reading process passes through the pipe.
 static auto members_of(RunSetting& setting) {
   return std::tie(setting.key, setting.value, setting.unit);
 }
@@ -34,7 +34,7 @@ static auto members_of(Label& label) {
 }
 static void pass(PipeEnd& pipe, RunDescription& run) {
   visit_attributes(run, [&](const RunAttribute&, auto&& value) {
-    // A column of a matrix has no place of its own.
+    // A matrix column is a temporary and needs storage to pass from and to.
     std::conditional_t<std::is_lvalue_reference_v<decltype(value)>, decltype(value), Vec3> held = value;
     pass(pipe, held);
     value = held;
@@ -61,7 +61,8 @@ static auto members_of(Recording& recording) {
 namespace {
 
 void require_our_version(const Hdf5File& recording, const Attributes& root) {
-  if (!root.has("osteomill_recording_version")) recording.refuse("is HDF5, but no recording of osteomill");
+  if (!root.has("osteomill_recording_version"))
+    recording.refuse("is an HDF5 file but not an osteomill recording");
   const auto version = root.get<std::uint64_t>("osteomill_recording_version");
   if (version != kRecordingVersion && version != kPreviousRecordingVersion) {
     recording.refuse(fmt::format("is a recording of version {}; this program reads versions {} and {}",
@@ -69,7 +70,8 @@ void require_our_version(const Hdf5File& recording, const Attributes& root) {
   }
 }
 
-// Returns the rows of columns that belong together; their lengths may differ only in an unfinished recording.
+// Returns the common number of rows of related columns; throws InputError if they differ, unless the
+// recording is unfinished.
 std::size_t common_rows(const Hdf5File& recording, std::span<const Hdf5Column> columns, bool complete) {
   const Hdf5Column& first = columns.front();
   std::size_t rows = first.rows;
@@ -89,7 +91,7 @@ void require_in_range(const Hdf5File& recording, const FieldDescription& column,
     recording.refuse(fmt::format("the column '{}' holds {:g}", column.name, value));
 }
 
-// Reads a group that has a column for each field.
+// Reads a group with one column per field.
 template <typename Struct>
 std::vector<Struct> read_rows(const Hdf5File& recording, bool complete, const std::string& group) {
   std::vector<Hdf5Column> columns;
@@ -133,12 +135,12 @@ void put_cut(const Hdf5File& recording, const std::vector<Label>& labels, double
       std::ranges::find(labels, value, [](const Label& l) { return static_cast<double>(l.value); });
   const auto free = std::ranges::find(record.label_cuts, 0, &LabelCut::label);
   if (label == labels.end() || free == record.label_cuts.end()) {
-    recording.refuse("has a cut of a label that cannot be");
+    recording.refuse("has a cut of an invalid label");
   }
   *free = {static_cast<LabelMap::LabelIndex>(label - labels.begin() + 1), removed_mm3};
 }
 
-// Puts the cuts of labels into the records of their ticks.
+// Assigns the cuts by label to the records of their ticks.
 void read_cuts(const Hdf5File& recording, const std::vector<Label>& labels, bool complete,
                std::vector<TickRecord>& records) {
   if (labels.empty()) return;
@@ -148,7 +150,7 @@ void read_cuts(const Hdf5File& recording, const std::vector<Label>& labels, bool
     if (rows[n] >= 0 && rows[n] < static_cast<double>(records.size())) {
       put_cut(recording, labels, values[n], removed_mm3[n], records[static_cast<std::size_t>(rows[n])]);
     } else if (complete) {
-      recording.refuse("has a cut of a label in a row that is not there");
+      recording.refuse("has a cut of a label in a row that does not exist");
     }
   }
 }
@@ -159,7 +161,7 @@ std::vector<BoneHash> read_hashes(const Hdf5File& recording, bool complete, std:
   std::vector<BoneHash> hashes;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const bool there = rows[n] < records && (n == 0 || rows[n] > rows[n - 1]);
-    if (!there && complete) recording.refuse("has a hash of the bone in a row that is not there");
+    if (!there && complete) recording.refuse("has a hash of the bone in a row that does not exist");
     if (there) hashes.push_back({rows[n], values[n]});
   }
   return hashes;
@@ -184,7 +186,7 @@ std::vector<DensityBlock> read_bricks(const Hdf5File& recording, const std::stri
     bricks[n].first = {first[3 * n], first[3 * n + 1], first[3 * n + 2]};
     std::copy_n(densities.data() + n * kDensities, kDensities, bricks[n].densities.begin());
   }
-  if (!right) recording.refuse("has bricks of a bone that cannot be");
+  if (!right) recording.refuse("has invalid bricks of bone");
   return bricks;
 }
 
@@ -208,7 +210,7 @@ SessionStart read_session_start(const Hdf5File& recording, hid_t group, const st
   return start;
 }
 
-// Reads the sessions; of an unfinished recording only those with records.
+// Reads the sessions; from an unfinished recording, only those with records.
 std::vector<RecordedSession> read_sessions(const Hdf5File& open, const Recording& recording) {
   std::vector<RecordedSession> sessions;
   for (;;) {
@@ -229,7 +231,7 @@ std::vector<RecordedSession> read_sessions(const Hdf5File& open, const Recording
       read.get_reals("piece_drops", start.piece_drops);
     }
   }
-  if (sessions.empty() && !recording.records.empty()) open.refuse("has ticks of no session");
+  if (sessions.empty() && !recording.records.empty()) open.refuse("has ticks without a session");
   return sessions;
 }
 
@@ -288,7 +290,7 @@ Recording read_checked(const fs::path& path) {
   require_readable(path);
   const Checksum checksum = check_checksum(path);
   if (checksum == Checksum::broken)
-    throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
+    throw InputError(path.string(), "is damaged or truncated: wrong checksum; restore it from a backup");
   if (checksum == Checksum::our_own) {
     const Hdf5Lock lock;
     return read_open_file(open_hdf5(path));
@@ -308,13 +310,13 @@ Recording read_recording(const fs::path& path) {
 
 SessionStart read_start(const fs::path& path) {
   Recording recording = read_checked(path);
-  if (recording.sessions.empty()) throw InputError(path.string(), "holds nothing to go on from");
+  if (recording.sessions.empty()) throw InputError(path.string(), "holds no session to continue");
   return std::move(recording.sessions.front().start);
 }
 
 namespace {
 
-// Leaves of a recording its first ticks.
+// Truncates a recording to its first ticks.
 void keep_first_ticks(Recording& recording, std::size_t ticks) {
   recording.records.resize(ticks);
   std::erase_if(recording.sessions, [&](const RecordedSession& session) { return session.first >= ticks; });
@@ -324,26 +326,32 @@ void keep_first_ticks(Recording& recording, std::size_t ticks) {
   recording.complete = true;
 }
 
-// Reads a recording with all before it. `later` are those that go on from it, as they are on the disk.
+// Reads a recording and those that it continues. `later` holds the canonical paths of the recordings that
+// continue it.
 Recording read_chain(const fs::path& path, std::vector<fs::path> later) {
   constexpr std::size_t kMost = 64;
   Recording recording = read_recording(path);
   if (recording.sessions.empty() || recording.sessions.front().start.continues_from.empty()) return recording;
   const fs::path name = recording.sessions.front().start.continues_from;
-  if (name != name.filename()) throw InputError(path.string(), "goes on from a recording elsewhere");
+  if (name != name.filename())
+    throw InputError(path.string(),
+                     "continues a recording in another folder; only one in the same folder can be read");
   const fs::path before_it = path.parent_path() / name;
   if (std::error_code error; !fs::exists(before_it, error))
-    throw InputError(path.string(), "goes on from " + name.string() + ", which is not beside it");
+    throw InputError(path.string(),
+                     "continues " + name.string() + ", which is missing; copy it into the same folder");
   later.push_back(fs::canonical(path));
   if (later.size() > kMost || std::ranges::find(later, fs::canonical(before_it)) != later.end())
-    throw InputError(path.string(), "goes on from too many recordings, or from itself");
+    throw InputError(path.string(), "continues too many recordings, or itself");
   Recording whole = read_chain(before_it, std::move(later));
   if (whole.sessions.empty() || whole.description.scan_hash != recording.description.scan_hash ||
       whole.description.labels.size() != recording.description.labels.size())
-    throw InputError(path.string(), "goes on from " + name.string() + ", which is not what came before it");
+    throw InputError(path.string(),
+                     "continues " + name.string() +
+                         ", but that file is of another scan or has other labels; restore the original");
   if (const std::uint64_t ticks = recording.sessions.front().start.continues_after; ticks > 0) {
     if (ticks > whole.records.size())
-      throw InputError(path.string(), fmt::format("goes on from tick {} of {}, which has {}", ticks,
+      throw InputError(path.string(), fmt::format("continues tick {} of {}, which has only {} ticks", ticks,
                                                   name.string(), whole.records.size()));
     keep_first_ticks(whole, ticks);
   }
@@ -359,7 +367,7 @@ Recording read_chain(const fs::path& path, std::vector<fs::path> later) {
     whole.records.push_back(record);
   }
   whole.views.insert(whole.views.end(), recording.views.begin(), recording.views.end());
-  // The original of a branch is an attempt of its own.
+  // The recording that a branch starts from is an attempt of its own.
   const bool is_branch = recording.sessions.front().start.continues_after > 0;
   whole.continues = is_branch ? fs::path() : whole.path;
   whole.path = path;
@@ -386,7 +394,7 @@ namespace {
 bool is_run_alike(const RunDescription& a, const RunDescription& b) {
   const auto settings = [](const RunDescription& run) {
     std::vector<RunSetting> those = run.settings;
-    // Not what was set: how the program was called, and what the algorithm made of it.
+    // Ignores entries that are not settings: the command line and the resulting number of sample points.
     std::erase_if(those, [](const RunSetting& setting) {
       return setting.key == kCommandLineKey || setting.key == kSamplePointsKey;
     });

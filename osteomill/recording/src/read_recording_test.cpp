@@ -62,12 +62,12 @@ class ChangedRecording : public ::testing::Test {
     ASSERT_GE(H5Fclose(file), 0);
     remove_seal();
   }
-  // Removes the seal, as in a file that another program has written.
+  // Removes the checksum line, as in a file rewritten by another program.
   void remove_seal() {
     std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
     file << std::string(kUserBlockBytes, '\0');
   }
-  // Seals the file in another process.
+  // Writes the checksum in another process, so that the file does not count as our own.
   void seal_elsewhere() {
     const ::pid_t child = ::fork();
     if (child == 0) {
@@ -104,7 +104,7 @@ TEST_F(ChangedRecording, ASessionThatCannotBeIsRefused) {
   });
   expect_refused(path_, "'sessions/0' begins at a wrong row");
   change([](hid_t file) { H5Ldelete(file, "sessions/0", H5P_DEFAULT); });
-  expect_refused(path_, "has ticks of no session");
+  expect_refused(path_, "has ticks without a session");
 }
 
 TEST_F(ChangedRecording, AMissingColumnIsNamed) {
@@ -112,7 +112,7 @@ TEST_F(ChangedRecording, AMissingColumnIsNamed) {
   expect_refused(path_, "no column 'columns/torque_y_Nmm'");
 }
 
-// In those of programs that held no hand back every hand was driven.
+// In recordings of programs without held-back hands, every hand was driven.
 TEST_F(ChangedRecording, OneFromBeforeHandsWereHeldBackIsRead) {
   change([](hid_t file) {
     H5Ldelete(file, "columns/driven", H5P_DEFAULT);
@@ -153,7 +153,7 @@ TEST_F(ChangedRecording, AMissingOrMistypedAttributeIsNamed) {
   change([](hid_t file) { H5Adelete(file, "isovalue"); });
   expect_refused(path_, "no attribute 'isovalue'");
   change([](hid_t file) { H5Arename(file, "seed", "isovalue"); });
-  expect_refused(path_, "'isovalue' is of another type");
+  expect_refused(path_, "'isovalue' has the wrong type");
 }
 
 TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
@@ -180,7 +180,7 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
     H5Adelete(file, "dims");
     Attributes(path_, file).put("dims", std::array{16, 0, 16});
   });
-  expect_refused(path_, "'dims' is no size of a scan");
+  expect_refused(path_, "'dims' is not a valid scan size");
 }
 
 TEST_F(ChangedRecording, ANumberThatNobodyRecordsIsRefused) {
@@ -216,7 +216,7 @@ TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
       H5Ldelete(file, name, H5P_DEFAULT);
       how(file);
     });
-    expect_refused(path_, "leads elsewhere");
+    expect_refused(path_, "is stored outside the file");
     write_bytes(path_, sound);
   };
   const fs::path other = folder_ / "other.h5";
@@ -258,7 +258,7 @@ TEST_F(ChangedRecording, AColourThatIsNoneIsRefused) {
     H5Adelete(file, "algorithm_colour");
     Attributes(path_, file).put("algorithm_colour", "red'; system 'ls");
   });
-  expect_refused(path_, "colour that cannot be used");
+  expect_refused(path_, "label or colour of its algorithm");
 }
 
 TEST_F(ChangedRecording, AFaultThatDoesNotExistIsRefused) {
@@ -273,7 +273,7 @@ TEST_F(ChangedRecording, AFaultThatDoesNotExistIsRefused) {
 
 TEST_F(ChangedRecording, AnotherHdf5FileIsNoRecording) {
   change([](hid_t file) { H5Adelete(file, "osteomill_recording_version"); });
-  expect_refused(path_, "no recording of osteomill");
+  expect_refused(path_, "not an osteomill recording");
 }
 
 TEST_F(ChangedRecording, CutShortAnywhereItIsRefused) {
@@ -283,30 +283,30 @@ TEST_F(ChangedRecording, CutShortAnywhereItIsRefused) {
     for (const double part : {0.0, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.9999}) {
       write_bytes(path_, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
       expect_refused(path_, part == 0 ? "not an HDF5 file"
-                            : sealed  ? "damaged or cut short"
+                            : sealed  ? "damaged or truncated"
                                       : "cannot be opened");
     }
     write_bytes(path_, whole);
   }
 }
 
-// HDF5 itself crashes on some of these, so they must not come that far.
+// HDF5 itself crashes on some of these files, so they must be refused before it opens them.
 TEST_F(ChangedRecording, AnyDamagedByteIsNoticed) {
   const std::string whole = bytes_of(path_);
   std::uint64_t state = 12345;
   for (int round = 0; round < 500; ++round) {
     state = state * 6364136223846793005u + 1442695040888963407u;
-    // Every second one among the library's own structures, which lie at the beginning.
+    // Every second round damages HDF5's own structures, which are at the start of the file.
     const std::size_t span = (round % 2 == 0 ? 20000 : whole.size()) - kUserBlockBytes;
     const std::size_t at = kUserBlockBytes + (state >> 20) % span;
     std::string damaged = whole;
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << (state >> 61)));
     write_bytes(path_, damaged);
-    expect_refused(path_, "damaged or cut short");
+    expect_refused(path_, "damaged or truncated");
   }
 }
 
-// Without its checksum, or behind one that somebody made who wanted it to be read.
+// Damaged files without a checksum, or with a valid checksum computed after the damage.
 class DamagedRecording : public ChangedRecording, public ::testing::WithParamInterface<bool> {};
 INSTANTIATE_TEST_SUITE_P(, DamagedRecording, ::testing::Bool(),
                          [](const auto& sealed) { return sealed.param ? "Sealed" : "Unsealed"; });

@@ -48,7 +48,7 @@ void add_pose(Fields<Struct>& fields, const std::string& name, Place place, cons
               const char* turn_doc, unsigned flags) {
   add_vector(
       fields, name, "mm", [place](auto& r) -> auto& { return (r.*place).position_mm; }, position_doc, flags);
-  // In the order in which Eigen keeps them.
+  // w first; the indices follow Eigen's storage order x, y, z, w.
   constexpr int kW = 3;
   for (const int part : {kW, 0, 1, 2}) {
     fields.push_back(field<Struct>(
@@ -59,8 +59,9 @@ void add_pose(Fields<Struct>& fields, const std::string& name, Place place, cons
 
 FieldDescription fault_column() {
   constexpr int kLast = static_cast<int>(WrenchFault::held_back);
-  FieldDescription column{
-      .name = "fault", .range = NumberRange::count(0, kLast), .doc = "what was done to the wrench (codes)"};
+  FieldDescription column{.name = "fault",
+                          .range = NumberRange::count(0, kLast),
+                          .doc = "how the wrench was altered before it was sent (codes)"};
   for (int code = 0; code <= kLast; ++code)
     column.choices.emplace_back(name_of(static_cast<WrenchFault>(code)));
   return column;
@@ -69,9 +70,9 @@ FieldDescription fault_column() {
 Fields<TickRecord> record_fields() {
   using R = TickRecord;
   Fields<R> all;
-  add_real(all, "time_s", "s", &R::time_s, "when the tick began", kInLog);
+  add_real(all, "time_s", "s", &R::time_s, "start time of the tick", kInLog);
   add_pose(all, "device", &R::X_WD,
-           "device as read (X_WD), as the burr's centre, frame W; not finite without a pose",
+           "device pose as read (X_WD), the burr's centre, frame W; not finite without a pose",
            "device's orientation in W, unit quaternion", kInLog | kMayBeNotFinite);
   add_pose(all, "tool", &R::X_WT, "simulated tool (X_WT), the burr's centre, frame W",
            "simulated tool's orientation in W, unit quaternion; the shaft points along its +z", kInLog);
@@ -82,9 +83,9 @@ Fields<TickRecord> record_fields() {
       all, "torque", "N mm", [](auto& r) -> auto& { return r.wrench.torque_Nmm; },
       "torque sent to the hand, frame W, about the burr's centre", kInLog);
   all.push_back(
-      field<R>({"contacts", "", NumberRange::count(0), "sample points that touch", kInLog}, &R::contacts));
+      field<R>({"contacts", "", NumberRange::count(0), "sample points in contact", kInLog}, &R::contacts));
   add_real(all, "removed_mm3", "mm^3", &R::removed_mm3,
-           "bone removed since the beginning, as bone of the reference density", kInLog);
+           "bone removed since the start, counted as bone of the reference density", kInLog);
   add_real(all, "compute_us", "us", &R::compute_us, "time of the algorithm's step, by the clock",
            kInLog | kMeasuredTime);
   add_real(all, "milling_us", "us", &R::milling_us, "time of milling, by the clock", kMeasuredTime);
@@ -93,46 +94,46 @@ Fields<TickRecord> record_fields() {
   add_vector(
       all, "burr_force", "N", [](auto& r) -> auto& { return r.burr_force_W_N; },
       "force of the burr on the bone, frame W");
-  add_real(all, "dt_s", "s", &R::dt_s, "how long the tick was taken to be");
+  add_real(all, "dt_s", "s", &R::dt_s, "time step with which the tick was computed");
   add_switch(all, "spindle", &R::spindle_on, "1 if the burr could cut");
   all.push_back(field<R>(fault_column(), &R::fault));
   add_real(all, "energy_given_Nmm", "N mm", &R::energy_given_Nmm,
-           "energy given to the hand less what it gave, since the session began", kInLog);
+           "net energy given to the hand since the session began", kInLog);
   add_switch(all, "paused", &R::paused, "1 in a pause: zero is sent and nothing computed");
-  add_switch(all, "let_go", &R::fade_out, "1 if from this tick on nothing is felt until the tool is placed");
+  add_switch(all, "let_go", &R::fade_out,
+             "1 if the force fades out from this tick on, until the tool is placed");
   add_switch(all, "placed", &R::placed,
              "1 if the tool was placed at the device before the tick, contacts forgotten");
-  all.push_back(
-      field<R>({"owed_bricks", "", NumberRange::count(0),
-                "bricks of bone points that may have shown more bone than there was, left to later ticks"},
-               &R::pending_bricks));
+  all.push_back(field<R>(
+      {"owed_bricks", "", NumberRange::count(0),
+       "bricks of bone points that may still contain removed bone, because their update was deferred"},
+      &R::pending_bricks));
   add_real(all, "given_share", "", &R::delivered_fraction,
-           "how much of the force that was asked for the device had sent by then");
+           "fraction of the requested force that the device had delivered by then");
   add_vector(
       all, "cutting_torque", "N mm", [](auto& r) -> auto& { return r.cutting_torque_W_Nmm; },
-      "of the torque sent, what the cutting adds (--cutting-reaction), frame W");
-  add_switch(all, "driven", &R::driven, "1 if what was sent reached a hand", kMayBeAbsent);
+      "part of the sent torque that is due to cutting (--cutting-reaction), frame W");
+  add_switch(all, "driven", &R::driven, "1 if the sent wrench reached a hand", kMayBeAbsent);
   add_real(all, "spindle_rpm", "rpm", &R::spindle_rpm, "true speed of the spindle", kInLog | kMayBeAbsent);
-  add_real(all, "cutting_power_W", "W", &R::cutting_power_W, "power that went into what was removed",
+  add_real(all, "cutting_power_W", "W", &R::cutting_power_W, "power spent on removing bone",
            kInLog | kMayBeAbsent);
   add_real(all, "cut_density", "", &R::cut_density,
            "density before the burr relative to the reference; 0 without contact", kMayBeAbsent);
-  add_real(
-      all, "no_go_distance_mm", "mm", &R::no_go_distance_mm,
-      "distance of the burr's surface from the nearest structure of the exercise that it must not touch; "
-      "not a number without one",
-      kMayBeAbsent | kMayBeNotFinite);
+  add_real(all, "no_go_distance_mm", "mm", &R::no_go_distance_mm,
+           "distance from the burr's surface to the nearest no-go structure of the exercise; "
+           "NaN without one",
+           kMayBeAbsent | kMayBeNotFinite);
   return all;
 }
 
 Fields<ViewSample> view_fields() {
   using V = ViewSample;
   Fields<V> all;
-  add_real(all, "time_s", "s", &V::time_s, "time of the tick that was shown");
+  add_real(all, "time_s", "s", &V::time_s, "time of the tick shown");
   add_pose(all, "camera", &V::X_WC, "eye (X_WC), frame W",
            "its orientation in W, unit quaternion: x to the right, y up, z towards the viewer", 0);
-  add_real(all, "field_of_view_rad", "rad", &V::field_of_view_rad, "angle of view from bottom to top");
-  add_real(all, "aspect", "", &V::aspect, "width of the picture by its height");
+  add_real(all, "field_of_view_rad", "rad", &V::field_of_view_rad, "vertical field of view");
+  add_real(all, "aspect", "", &V::aspect, "aspect ratio, width / height");
   for (const std::size_t n : {0u, 1u, 2u, 3u}) {
     const std::string cut = fmt::format("cut_{}", n + 1);
     add_vector(
@@ -148,7 +149,7 @@ Fields<ViewSample> view_fields() {
   return all;
 }
 
-// A line of the log: of each column what `write` appends.
+// Appends a line of the log: the text that `write` returns for each column.
 template <typename Write>
 void append_line(fmt::memory_buffer& text, const Write& write) {
   const char* separator = "";

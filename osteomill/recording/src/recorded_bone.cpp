@@ -14,8 +14,7 @@ namespace osteomill {
 
 namespace {
 
-// Ticks from one checkpoint to the next, as long as there is memory: milled again in some hundredths of a
-// second.
+// Initial checkpoint interval, ticks; these are milled again in some hundredths of a second.
 constexpr std::size_t kEveryTicks = 1000;
 
 VoxelIndex voxel_at(const GridGeometry& geometry, std::size_t number) {
@@ -35,7 +34,7 @@ RecordedBone::RecordedBone(const Volume& scan, const Recording& recording, std::
       const std::size_t number =
           bone_.grid().linear_index(VoxelBox::of_brick(brick, DensityBlock::kVoxels).first);
       changed.insert(number);
-      // The next session puts it back, whether a checkpoint has it by then or not.
+      // Entered even without a checkpoint, because the next session resets all bricks listed here.
       bricks_[number];
     });
   };
@@ -78,7 +77,7 @@ void RecordedBone::add_checkpoint(const std::set<std::size_t>& changed) {
     const auto& before = versions.empty() ? DensityBlock(scan_.grid(), now->first).densities
                                           : versions.back().second->densities;
     if (now->densities == before) continue;
-    // One that was kept for a checkpoint that was dropped counts for this one.
+    // Replaces a version of a dropped checkpoint that was moved to this one.
     if (!versions.empty() && versions.back().first == ticks_) {
       versions.back().second = std::move(now);
     } else {
@@ -90,7 +89,7 @@ void RecordedBone::add_checkpoint(const std::set<std::size_t>& changed) {
   while (bytes() > max_bytes_ && checkpoints_.size() > 1) drop_every_second_checkpoint();
 }
 
-// A brick that was kept for one of them counts for the next, unless that has its own.
+// Bricks of a dropped checkpoint move to the next one, unless that has its own version.
 void RecordedBone::drop_every_second_checkpoint() {
   every_ticks_ *= 2;
   std::erase_if(checkpoints_, [&](const Checkpoint& one) { return one.ticks % every_ticks_ != 0; });
@@ -107,7 +106,7 @@ void RecordedBone::drop_every_second_checkpoint() {
   }
 }
 
-// The last checkpoint up to there, or else the scan.
+// Restores the last checkpoint at or before `ticks`, or the scan if there is none.
 void RecordedBone::restore(std::size_t ticks, const OnChange& changed) {
   const auto after = std::ranges::upper_bound(checkpoints_, ticks, {}, &Checkpoint::ticks);
   const Checkpoint* const from = after == checkpoints_.begin() ? nullptr : &*std::prev(after);
@@ -136,8 +135,8 @@ void RecordedBone::go_to(std::size_t ticks, const OnChange& changed) {
   try {
     while (ticks_ < ticks) mill_next(changed);
   } catch (const InputError&) {
-    // A burr that sees more than a step has time for may go another way from a checkpoint. It does not from
-    // the session's beginning.
+    // If the burr covers more voxels than a step's budget, milling depends on more than BurrMill::Memory and
+    // may differ from a checkpoint on. Replays from the start of the session instead.
     ticks_ = recording_.sessions[recording_.records[ticks - 1].session].first;
     while (ticks_ < ticks) mill_next(changed);
   }

@@ -29,19 +29,20 @@ using namespace std::chrono_literals;
 namespace {
 
 constexpr auto kFlushEvery = 400ms;
-// Pieces of the file are written whole, unless records come so slowly that they would wait for longer.
+// Chunks are written whole, unless records arrive so slowly that they would wait longer than this.
 constexpr auto kMaxWait = 800ms;
-// The pushing thread wakes no other (that would be a system call), so the writing thread looks by itself.
+// The pushing thread must not make system calls, so it does not notify the writing thread, which polls.
 constexpr auto kPollInterval = 2ms;
 constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
 
-// HDF5 writes here and there in a file, which then takes the place of what was there.
+// Resolves the output path. Refuses pipes and devices, because HDF5 needs random access and the file is
+// renamed at the end.
 fs::path file_behind(const fs::path& path) {
   fs::path file = output_path(path);
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    throw InputError(path.string(), "is no regular file, which a recording has to be");
+    throw InputError(path.string(), "is not a regular file; a recording needs one");
   return file;
 }
 
@@ -68,7 +69,8 @@ struct Recorder::Impl {
       writer = std::jthread([this](const std::stop_token& stop) { write_until(stop); });
     } catch (const std::system_error&) {
       remove();
-      throw InputError(path.string(), "cannot be recorded: no thread can be started for it (ulimit -u)");
+      throw InputError(path.string(),
+                       "cannot be recorded: no thread can be started; raise the limit (ulimit -u)");
     }
   }
   ~Impl() {
@@ -91,7 +93,7 @@ struct Recorder::Impl {
       auto flushed = Clock::now();
       std::uint64_t flushed_rows = 0;
       for (bool all_written = false; !all_written;) {
-        // Read before the queue: what was pushed before the stop is then still written.
+        // Read before the queue, so that records pushed before the stop are still written.
         const bool last = stop.stop_requested();
         const bool emptied = collect_queued_records();
         all_written = last && emptied;
@@ -112,8 +114,8 @@ struct Recorder::Impl {
     }
   }
 
-  // A bounded part of the queue, so that records which come as fast as they are written cannot put off the
-  // flush. False if there is more.
+  // Takes a bounded number of records, so that a fast producer cannot delay the flush. Returns false if more
+  // are queued.
   bool collect_queued_records() {
     while (rows.size() < kRowsAtOnce) {
       const TickRecord* record = queue.front();
@@ -134,7 +136,7 @@ struct Recorder::Impl {
     file.append_views(waiting);
   }
 
-  // Begins the session of a record; returns false if its initial state is not known yet.
+  // Starts the session of a record; returns false if its initial state is not known yet.
   bool begin_session_of(const TickRecord& record) {
     const std::lock_guard lock(starts_mutex);
     for (; !starts.empty() && starts.front().first <= record.session; starts.pop_front()) {
@@ -144,7 +146,7 @@ struct Recorder::Impl {
     return session == record.session;
   }
 
-  // Up to the end of a piece of the file, or all.
+  // Writes rows up to the end of a chunk, or all.
   void write_rows(bool all) {
     const std::size_t room = RecordingFile::kChunkRows - file.rows() % RecordingFile::kChunkRows;
     std::size_t count = rows.size();
@@ -159,12 +161,13 @@ struct Recorder::Impl {
   fs::path path;
   fs::path part;
   std::optional<fs::path> kept;
-  // Until it has its name.
+  // Held until the file has its final name.
   std::optional<FileLock> held;
   RecordingFile file;
   std::optional<SignalCleanup> signal_cleanup;
   SpscQueue<TickRecord> queue{kCapacity};
-  // The writing thread's: taken from the queue and not yet written, and of which session the last one is.
+  // Used by the writing thread only: records taken from the queue but not yet written, and the current
+  // session.
   std::vector<TickRecord> rows;
   Clock::time_point waiting_since;
   std::optional<std::uint32_t> session;
@@ -207,7 +210,7 @@ void Recorder::begin_session(std::uint32_t number, SessionStart start) {
 
 std::string Recorder::leftover_note() const {
   if (!impl_->kept) return {};
-  return impl_->part.string() + ": a recording that was not finished; it is kept as " + impl_->kept->string();
+  return impl_->part.string() + ": an unfinished recording, kept as " + impl_->kept->string();
 }
 
 std::uint64_t Recorder::dropped() const noexcept {
@@ -227,7 +230,7 @@ void Recorder::add_picture(const std::string& name, std::vector<unsigned char> p
   const auto same = [&](const RunPicture& picture) { return picture.name == name; };
   if (name.empty() || !is_plain_name(name) ||
       std::any_of(impl_->pictures.begin(), impl_->pictures.end(), same)) {
-    throw std::invalid_argument("'" + name + "' cannot be the name of a picture, or is one already");
+    throw std::invalid_argument("'" + name + "' is not a valid name of a picture, or is already used");
   }
   impl_->pictures.push_back({name, std::move(png)});
 }
@@ -237,7 +240,7 @@ void Recorder::add_setting(RunSetting setting) {
 }
 
 void Recorder::close() {
-  if (impl_->closed) throw std::logic_error("a recorder is closed once");
+  if (impl_->closed) throw std::logic_error("Recorder: close() was called twice");
   impl_->closed = true;
   impl_->stop();
   if (failed()) std::rethrow_exception(impl_->failure);

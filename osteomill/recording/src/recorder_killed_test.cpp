@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 using namespace testing_support;
 
-// Shared with the child, which writes here how many records it has pushed.
+// Number of records pushed, in memory shared with the child.
 class SharedCount {
  public:
   SharedCount()
@@ -56,7 +56,7 @@ TEST(KilledRecorder, LeavesARecordingThatReadsUpToShortlyBeforeItsEnd) {
     if (child == 0) record_forever(folder / "run.h5", *pushed);
     const bool records = comes_true([&] { return (*pushed).load() >= 200; });
     const int well_before = (*pushed).load();
-    // All but the last second is there; rounds end at different moments between two flushes.
+    // At most the last second is lost; the rounds kill at different times between two flushes.
     std::this_thread::sleep_for(1000ms + round * 37ms);
     ::kill(child, SIGKILL);
     int status = 0;

@@ -28,7 +28,7 @@
 namespace {
 thread_local long allocations_here = 0;
 }
-// Every allocation of this program comes by here (the sanitizers have their own).
+// Intercepts every allocation of this program (the sanitizers have their own hooks).
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -70,7 +70,7 @@ void expect_same(const RunDescription& a, const RunDescription& b) {
   EXPECT_EQ(a.settings, b.settings);
 }
 
-// An hour has some 3600 flushes.
+// An hour of recording has some 7000 flushes.
 TEST(RecordingFile, TakesNoMoreMemoryTheLongerItIs) {
   const TestFolder folder;
   RecordingFile file(folder.path() / "long.h5", sample_description());
@@ -148,7 +148,7 @@ TEST(Recorder, KeepsEveryFieldOfTheViewsBesideTheTicks) {
   }
 }
 
-// A path in Latin-1, and texts that are no UTF-8 for other reasons: in the file they are, and come back.
+// Paths in Latin-1 and other invalid UTF-8 are valid UTF-8 in the file and survive the round trip.
 TEST(Recorder, BytesThatAreNoUtf8AreStoredAsUtf8AndComeBack) {
   const TestFolder folder;
   for (const std::string name : {"Sch\xE4"
@@ -186,7 +186,7 @@ TEST(Recorder, AStartWithoutTicksReadsBackOrIsRefused) {
   SessionStart start{.run = sample_description(), .removed_mm3 = 1.0 / 3};
   start.run.dims = {21, 21, 21};
   start.run.labels = {{7, "nerve", {}, true}};
-  // The last reaches beyond the grid.
+  // The last one extends beyond the grid.
   for (const VoxelIndex& first : {VoxelIndex{8, 8, 8}, VoxelIndex{16, 0, 16}}) {
     start.bricks.emplace_back().first = first;
     for (float& density : start.bricks.back().densities) density = 0.1f * static_cast<float>(first.k);
@@ -271,8 +271,8 @@ TEST(Recorder, PushingAllocatesNothingEvenWhenFull) {
 #endif
 }
 
-// For -fsanitize=thread: one thread pushes, one watches, the recorder's own writes, another recorder runs
-// beside.
+// For -fsanitize=thread: one thread pushes, one polls, the recorder's own thread writes, and a second
+// recorder runs at the same time.
 TEST(Recorder, PushingWatchingAndWritingThreadsDoNotDisturbEachOther) {
   const TestFolder folder;
   Recorder recorder(folder / "a.h5", sample_description());
@@ -376,8 +376,8 @@ TEST(Recorder, KeysAndNamesThatCannotBeStoredAreRefused) {
   EXPECT_THROW(recorder.add_picture("../x", {1}), std::invalid_argument);
 }
 
-// Limits to the size of files stand in for full disks; in a child, since they cannot be lifted again. All
-// that was taken before the disk refused can be read.
+// File size limits simulate full disks; in a child process, because they cannot be lifted again. Everything
+// accepted before the disk was full must be readable.
 TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
   const TestFolder folder;
   std::size_t max_rows = 0;
@@ -408,7 +408,7 @@ TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
     ASSERT_EQ(::waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
     EXPECT_FALSE(fs::exists(folder / "run.h5"));
-    // There was no room for the first ticks.
+    // Not even the first ticks fitted.
     if (limit_bytes < 2'000'000 && !fs::exists(unfinished_recording_path(folder / "run.h5"))) continue;
     const Recording recording = read_recording(unfinished_recording_path(folder / "run.h5"));
     for (std::size_t row = 0; row < recording.records.size(); ++row)

@@ -25,13 +25,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Rows of a piece for rare data, which are written again with every flush until a piece is whole.
+// Chunk size for sparse data: a partial chunk is rewritten with every flush.
 constexpr hsize_t kSmallChunkRows = 64;
-// Higher levels take longer and save next to nothing: the last bits of poses and forces are noise.
+// Higher levels take longer and save next to nothing, because the low bits of poses and forces are noise.
 constexpr unsigned kDeflateLevel = 1;
-// Some ten seconds of pieces.
+// Flushes between two calls of forget_flushed_metadata(): some five seconds.
 constexpr std::uint64_t kFlushesRemembered = 10;
-// Room for HDF5's own data until the next flush, bytes: places of the pieces and names in a session.
+// Space for HDF5's metadata until the next flush, bytes: chunk addresses and the names in a session.
 constexpr std::uint64_t kRoomForMetadata = 256 * 1024;
 
 constexpr const char* kConventions =
@@ -56,9 +56,9 @@ hid_t file_type(const NumberRange& range) {
   return range.max <= std::numeric_limits<std::uint8_t>::max() ? H5T_STD_U8LE : H5T_STD_I32LE;
 }
 
-// The library's metadata reach the disk only when the file is flushed. Left to itself it also writes some of
-// them whenever its cache is full, and a program killed between the two leaves a file that cannot be opened.
-// So none leave the memory by themselves: `forget_flushed_metadata`.
+// Disables HDF5's metadata cache eviction. Otherwise HDF5 also writes part of the metadata between flushes,
+// whenever the cache is full, and a program killed then leaves a file that cannot be opened.
+// `forget_flushed_metadata` frees the cache instead.
 bool keep_metadata_until_flush(hid_t file) {
   H5AC_cache_config_t config;
   config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
@@ -72,7 +72,7 @@ bool keep_metadata_until_flush(hid_t file) {
 
 constexpr std::string_view kStart = "osteomill recording; HDF5 follows after 512 bytes, their crc32: ";
 
-// From where the stream stands to the end of the file.
+// Checksum from the stream's position to the end of the file.
 unsigned long crc32_of_rest(std::istream& in) {
   std::vector<char> buffer(1 << 20);
   unsigned long crc = ::crc32(0, nullptr, 0);
@@ -82,7 +82,7 @@ unsigned long crc32_of_rest(std::istream& in) {
   return crc;
 }
 
-// Guards the recordings that this process has finished.
+// Guards own_checksums, the checksums of recordings finished by this process.
 std::mutex own_mutex;
 std::set<unsigned long> own_checksums;
 
@@ -96,7 +96,8 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
   const Hdf5Lock lock;
   const Hdf5Handle layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_userblock(layout.get(), kUserBlockBytes);
-  // Rewritten data go to a new place: until the next flush the file on the disk refers to the old one.
+  // Never reuses freed space: until the next flush, the file on disk refers to the old location of rewritten
+  // data.
   H5Pset_file_space_strategy(layout.get(), H5F_FSPACE_STRATEGY_NONE, false, 1);
   const Hdf5Handle access = access_without_locks();
   H5Pset_evict_on_close(access.get(), true);
@@ -105,7 +106,7 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
     require(file_.valid(), "cannot be created");
     lay_out(description);
   } catch (...) {
-    // Here, since the members go when the lock has gone.
+    // Close here, because members are destroyed after the lock is released.
     close();
     std::error_code ignored;
     fs::remove(path, ignored);
@@ -160,8 +161,7 @@ std::uint64_t RecordingFile::end() const {
   return end;
 }
 
-// Reserves room on the disk first, because HDF5 leaves an undefined file if writing fails half-way. So
-// everything written before a refusal is whole.
+// Reserves disk space before writing, because HDF5 leaves a corrupt file if a write fails half-way.
 void RecordingFile::reserve(std::uint64_t bytes) {
   const std::uint64_t wanted = end() + bytes + kRoomForMetadata;
   if (wanted <= reserved_) return;
@@ -220,7 +220,7 @@ RecordingFile::Column RecordingFile::create_column(hid_t group, const char* name
   H5Pset_shuffle(pieces.get());
   H5Pset_deflate(pieces.get(), kDeflateLevel);
   const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-  // No more than the piece that is being written.
+  // Caches only the chunk being written.
   H5Pset_chunk_cache(access.get(), 3, 2 * chunk_rows * width * sizeof(double), 1);
   Column column{
       Hdf5Handle(H5Dcreate2(group, name, type, space.get(), H5P_DEFAULT, pieces.get(), access.get()),
@@ -257,7 +257,7 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   if (!start.piece_drops.empty()) write.put_reals("piece_drops", start.piece_drops);
   if (!start.bricks.empty()) write_bricks(group.get(), start.bricks);
   if (sessions_ > 0) {
-    // The labels are the recording's.
+    // Labels are stored once, for the whole recording.
     RunDescription run = start.run;
     run.labels.clear();
     write_description(path_, group.get(), run);
@@ -286,8 +286,8 @@ void RecordingFile::write_bricks(hid_t session, std::span<const DensityBlock> br
 void RecordingFile::append(std::span<const TickRecord> records) {
   if (records.empty()) return;
   const Hdf5Lock lock;
-  // Each column in whole pieces, of which one may be begun and one may be written again; those of cuts hold a
-  // few numbers a record at the most.
+  // Upper bound: whole chunks per column, plus one begun and one rewritten; columns of cuts have at most a
+  // few values per record.
   reserve((records.size() + 2 * kChunkRows) *
           (columns_.size() + 2 + 3 * std::tuple_size_v<LabelCuts>)*sizeof(double));
   append_fields(columns_, records);
@@ -344,7 +344,7 @@ void RecordingFile::append_hash(const BoneHash& hash) {
   append_to<std::uint64_t>(hash_columns_[1], {&hash.hash, 1});
 }
 
-// Whole rows, behind those that are there.
+// Appends whole rows.
 template <typename Value>
 void RecordingFile::append_to(Column& column, std::span<const Value> values) const {
   if (values.empty()) return;
@@ -371,7 +371,8 @@ void RecordingFile::flush(std::uint64_t dropped) {
   if (++flushes_ % kFlushesRemembered == 0) forget_flushed_metadata();
 }
 
-// Frees HDF5's record of the pieces' places, 100 MB an hour, by closing each dataset (H5Pset_evict_on_close).
+// Frees HDF5's index of chunk addresses, which grows by 100 MB per hour, by reopening each dataset
+// (H5Pset_evict_on_close).
 void RecordingFile::forget_flushed_metadata() {
   for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_, &view_columns_}) {
     for (Column& column : *columns) {
@@ -413,7 +414,7 @@ void RecordingFile::finish(std::uint64_t dropped) {
   const Attributes write(path_, file_.get());
   write.replace("dropped_records", dropped);
   write.replace("complete", 1);
-  require(close(), "cannot be written to its end");
+  require(close(), "cannot be written completely");
   write_checksum(path_);
 }
 
@@ -426,7 +427,7 @@ void write_checksum(const fs::path& path) {
   file.seekp(0);
   file << seal_line(crc);
   file.close();
-  if (!file) throw InputError(path.string(), with_reason("cannot be written to its end"));
+  if (!file) throw InputError(path.string(), with_reason("cannot be written completely"));
   const std::lock_guard lock(own_mutex);
   own_checksums.insert(crc);
 }

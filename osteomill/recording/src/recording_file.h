@@ -12,36 +12,35 @@
 
 namespace osteomill {
 
-/// The version of the layout, in the root's attribute `osteomill_recording_version`, and the one before,
-/// which is read too: it also has the attribute `mode`, of which nothing is left.
+/// Version of the layout, in the root's attribute `osteomill_recording_version`, and the previous one, which
+/// can still be read; that also has the attribute `mode`, which is ignored.
 inline constexpr std::uint64_t kRecordingVersion = 6;
 inline constexpr std::uint64_t kPreviousRecordingVersion = 5;
 
-/// A recording being written, from one thread at a time; docs/recordings.md describes it. Every failure is an
-/// InputError that names `path`; after one the file is closed with what it holds. Room on the disk is taken
-/// before anything is written: a full disk ends a recording and spoils nothing of it.
+/// Recording being written (format: docs/recordings.md). One thread at a time. Every failure throws an
+/// InputError that names `path`; the file then keeps what was written before. Disk space is reserved before
+/// each write, so that a full disk ends a recording but does not corrupt it.
 class RecordingFile {
  public:
-  /// Columns are compressed in pieces of this number of rows. A piece that is written once and whole costs
-  /// least.
+  /// Columns are compressed in chunks of this many rows. It is cheapest to write each chunk once, as a whole.
   static constexpr std::size_t kChunkRows = 512;
-  /// One row in this number has the bone's hash.
+  /// The bone's hash is stored once per this many rows.
   static constexpr std::uint64_t kHashRows = 100;
 
-  /// Creates the file, over one that is there.
+  /// Creates the file, overwriting an existing one.
   RecordingFile(const std::filesystem::path& path, const RunDescription& description);
-  /// Closes the file as it is: readable, and not marked complete unless `finish` came first.
+  /// Closes the file. It is readable, but marked complete only if `finish` was called.
   ~RecordingFile();
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
 
-  /// The rows from `row` on are of another session; the first one's description is the recording's own.
+  /// Starts a new session at `row`. The first session uses the recording's own description.
   void begin_session(const SessionStart& start, std::uint64_t row);
   void append(std::span<const TickRecord> records);
-  /// Adds views to the group /view, which is made for the first.
+  /// Appends views to the group /view, which is created for the first one.
   void append_views(std::span<const ViewSample> views);
   std::uint64_t rows() const { return rows_; }
-  /// Makes what was appended so far survive the end of this program, however it ends.
+  /// Writes everything appended so far to the file, so that it survives a crash of this program.
   void flush(std::uint64_t dropped);
   void add_picture(const std::string& name, std::span<const unsigned char> png);
   void add_setting(const RunSetting& setting);
@@ -49,7 +48,7 @@ class RecordingFile {
   void finish(std::uint64_t dropped);
 
  private:
-  /// A dataset of `width` numbers a row, and how many rows it has.
+  /// Dataset of `width` numbers per row and its current number of rows.
   struct Column {
     Hdf5Handle dataset;
     hsize_t width = 1;
@@ -60,9 +59,9 @@ class RecordingFile {
   void create_columns();
   bool close();
   int descriptor() const;
-  /// Returns the end of the file, in bytes, with what has not reached the disk yet.
+  /// Returns the size of the file, bytes, including data not yet written to disk.
   std::uint64_t end() const;
-  /// Room on the disk for so much more than there is.
+  /// Reserves disk space for `bytes` beyond the current end of the file.
   void reserve(std::uint64_t bytes);
   void forget_flushed_metadata();
   Hdf5Handle create_group(hid_t in, const std::string& name) const;
@@ -83,10 +82,10 @@ class RecordingFile {
   std::filesystem::path path_;
   Hdf5Handle file_;
   std::vector<Column> columns_;
-  // The columns of cuts by label: row, label, removed_mm3; empty if the bone has none.
+  // Columns of cuts by label: row, label, removed_mm3; empty if the bone has no labels.
   std::vector<Column> cut_columns_;
   std::vector<Column> hash_columns_;
-  // None before the first view.
+  // Empty before the first view.
   std::vector<Column> view_columns_;
   std::vector<Label> labels_;
   std::vector<double> values_;
@@ -94,32 +93,32 @@ class RecordingFile {
   std::uint64_t sessions_ = 0;
   BoneHash last_;
   std::uint64_t flushes_ = 0;
-  // The number of bytes of the file that have room on the disk.
+  // Disk space reserved for the file, bytes.
   std::uint64_t reserved_ = 0;
 };
 
-/// The bytes before the HDF5 part of a recording (HDF5's "user block"), which hold one line of text with the
-/// checksum (CRC-32) of all that follows. HDF5 crashes on some damaged files, so a damaged recording must be
-/// known before HDF5 sees it.
+/// Size of HDF5's "user block" at the start of a recording, which holds one line of text with the checksum
+/// (CRC-32) of everything after it. HDF5 crashes on some damaged files, so damage must be detected before
+/// HDF5 opens the file.
 inline constexpr std::size_t kUserBlockBytes = 512;
 
-/// Writes the line into a recording that is finished and closed. Throws InputError if that fails.
+/// Writes the checksum line into a finished and closed recording. Throws InputError if that fails.
 void write_checksum(const std::filesystem::path& path);
 
-/// `none`: an unfinished recording, or one that another program has rewritten. `our_own`: it is intact, and
-/// what this process has written.
+/// Result of check_checksum. `none`: unfinished, or rewritten by another program. `our_own`: intact and
+/// written by this process.
 enum class Checksum : unsigned char { none, intact, broken, our_own };
 
-/// Throws InputError if the file cannot be read.
+/// Verifies the checksum. Throws InputError if the file cannot be read.
 Checksum check_checksum(const std::filesystem::path& path);
 
-/// The description as attributes of the file's root, and its further settings as attributes of the group
-/// /settings, the unit of KEY in the attribute KEY.unit. Labels, if there are any, are three attributes of
-/// the group /labels each, VALUE.name, VALUE.colour ("#rrggbb") and VALUE.no_go (0 or 1). Failures are
-/// InputErrors that name the file; under Hdf5Lock. Throws std::invalid_argument for a key that is empty,
-/// stands twice or ends in ".unit".
+/// Writes the description as attributes of the file's root, and its further settings as attributes of the
+/// group /settings, with the unit of KEY in the attribute KEY.unit. Each label becomes three attributes of
+/// the group /labels: VALUE.name, VALUE.colour ("#rrggbb") and VALUE.no_go (0 or 1). Throws InputError,
+/// naming the file, on failure, and std::invalid_argument for a key that is empty, duplicate or ends in
+/// ".unit" and for an unusable name of algorithm or phase. Call under Hdf5Lock.
 void write_description(const std::filesystem::path& path, hid_t file, const RunDescription& description);
-/// One more setting, of a new key.
+/// Adds a setting under a new key.
 void add_setting(const std::filesystem::path& path, hid_t file, const RunSetting& setting);
 RunDescription read_description(const std::filesystem::path& path, hid_t file);
 

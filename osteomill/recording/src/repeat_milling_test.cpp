@@ -45,7 +45,7 @@ struct Milled {
   Volume bone;
 };
 
-// Presses down with the spindle on and off in turns, in ticks of two lengths, and records it to a file.
+// Records a burr pressing down with the spindle alternately on and off, in ticks of two lengths.
 Milled mill_and_record(const TestFolder& folder) {
   MillingSession session(std::make_shared<Volume>(fresh_bone()), kDensities, kSetup);
   Recorder recorder(folder / "run.h5", description_of(session.volume()));
@@ -99,7 +99,7 @@ TEST(RepeatMilling, RefusesWhatItCannotRepeat) {
   EXPECT_NE(refusal(fresh_bone(), other).find("lost 3 ticks"), std::string::npos);
   other = recording;
   other.records.erase(other.records.begin(), other.records.begin() + 800);
-  EXPECT_NE(refusal(fresh_bone(), other).find("goes on from other milling"), std::string::npos);
+  EXPECT_NE(refusal(fresh_bone(), other).find("continues other milling"), std::string::npos);
   other = recording;
   const auto removal_rate = [](RunDescription& run) {
     return std::ranges::find(run.settings, "milling.removal_rate", &RunSetting::key);
@@ -109,7 +109,7 @@ TEST(RepeatMilling, RefusesWhatItCannotRepeat) {
   EXPECT_NE(refusal(fresh_bone(), other).find("'milling.removal_rate'"), std::string::npos);
   other = recording;
   removal_rate(other.sessions[0].start.run)->value = -1.0;
-  EXPECT_NE(refusal(fresh_bone(), other).find("cannot be run again"), std::string::npos);
+  EXPECT_NE(refusal(fresh_bone(), other).find("cannot be replayed"), std::string::npos);
   EXPECT_EQ(refusal(fresh_bone(), recording), "");
 }
 

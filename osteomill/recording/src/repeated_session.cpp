@@ -10,11 +10,11 @@ void require_same_removal(const Recording& recording, std::size_t tick, double r
   const double recorded_mm3 = recording.records[tick].removed_mm3;
   if (removed_mm3 == recorded_mm3) return;
   if (tick == 0) {
-    refuse(recording, fmt::format("goes on from other milling: {:.6g} mm³ had been removed when it began",
-                                  recorded_mm3));
+    refuse(recording,
+           fmt::format("continues other milling: {:.6g} mm³ had been removed before it began", recorded_mm3));
   }
   refuse(recording, fmt::format("was made with another scan ({}) or version ({}): at tick {} it had removed "
-                                "{:.9g} mm³, where this one loses {:.9g}",
+                                "{:.9g} mm³, the replay {:.9g} mm³",
                                 recording.description.scan_name, recording.description.program_version, tick,
                                 recorded_mm3, removed_mm3));
 }
@@ -28,9 +28,9 @@ void refuse(const Recording& recording, const std::string& reason) {
 void require_whole(const Recording& recording) {
   if (recording.sessions.empty()) refuse(recording, "holds no ticks");
   if (recording.dropped > 0)
-    refuse(recording, fmt::format("lost {} ticks, so they cannot be run again", recording.dropped));
+    refuse(recording, fmt::format("lost {} ticks, so it cannot be replayed", recording.dropped));
   if (const std::string& before = recording.sessions.front().start.continues_from; !before.empty())
-    refuse(recording, "goes on from " + before + ", without which it cannot be run again");
+    refuse(recording, "continues " + before + ", without which it cannot be replayed");
 }
 
 std::size_t end_of(const Recording& recording, std::size_t session) {

@@ -14,33 +14,34 @@
 
 namespace osteomill {
 
-/// Throws InputError that names the recording.
+/// Throws an InputError that names the recording.
 [[noreturn]] void refuse(const Recording& recording, const std::string& reason);
-/// Throws InputError, naming the recording, if not all of its ticks from a scan on are there.
+/// Throws InputError, naming the recording, if it is empty, lost ticks or continues another recording.
 void require_whole(const Recording& recording);
-/// Returns the number of the tick after a session's last one.
+/// Returns the index of the tick after a session's last one.
 std::size_t end_of(const Recording& recording, std::size_t session);
 
-/// Makes an object from settings that may be out of range.
+/// Calls `make`, and turns its std::invalid_argument for settings out of range into an InputError.
 template <typename Make>
 auto made(const Recording& recording, const Make& make) {
   try {
     return make();
   } catch (const std::invalid_argument& error) {
-    refuse(recording, fmt::format("cannot be run again: {}", error.what()));
+    refuse(recording, fmt::format("cannot be replayed: {}", error.what()));
   }
 }
 
-/// Mills a bone as a session of a recording did, tick by tick, from the tool's recorded poses and forces.
+/// Repeats the milling of a recorded session tick by tick from the tool's recorded poses and forces.
 class RepeatedSession {
  public:
-  /// Begins at any tick of the session: `bone` is as it was before that tick, and `memory` as the session's
-  /// mill was then. Both outlive it. Throws InputError, naming the recording, if its settings are at fault.
+  /// Starts before any tick of the session, with `bone` and `memory`, the mill's internal state, as they were
+  /// then. `bone` and `recording` must outlive this object. Throws InputError, naming the recording, if its
+  /// settings are missing or out of range.
   RepeatedSession(Volume& bone, const Recording& recording, std::size_t session, std::size_t tick,
                   const BurrMill::Memory& memory = {});
 
-  /// Mills the next tick. Throws InputError, naming the recording and the tick, if it does not remove what
-  /// was recorded.
+  /// Mills the next tick. Throws InputError, naming the recording and the tick, if the removed volume differs
+  /// from the recorded one.
   VolumeChange mill_next();
   BurrMill::Memory memory() const { return mill_.memory(); }
 

@@ -25,17 +25,18 @@ std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
                      spacing_mm.x(), spacing_mm.y(), spacing_mm.z());
 }
 
-// Throws if the burr was held off structures that the scan does not have.
+// Throws if the number of guarded structures differs from the recorded one.
 void require_guards(const Volume& scan, const Recording& recording) {
   const auto* recorded = find_setting<double>(recording.description, kGuardsKey);
   const double had = recorded != nullptr ? *recorded : 0;
   const int guards = scan.no_go() ? guard_count(*scan.no_go()) : 0;
   if (had != guards)
-    refuse(recording, fmt::format("held the burr off {:g} structures of its exercise, of which {} are here",
-                                  had, guards));
+    refuse(recording,
+           fmt::format("was recorded with {:g} guarded structures, not {}; open it with the same exercise",
+                       had, guards));
 }
 
-// From the scan.
+// Applies the session's initial bone state to the scan.
 void begin_at(const SessionStart& start, Volume& bone) {
   EditableVolume edited(bone);
   edited.set_isovalue(start.run.isovalue);
@@ -46,7 +47,9 @@ std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStar
                                            const Recording& recording, const ReplayHooks& hooks) {
   const RunDescription& run = start.run;
   const AlgorithmDescription* algorithm = hooks.find_algorithm(run.algorithm.name);
-  if (algorithm == nullptr) refuse(recording, "its algorithm " + run.algorithm.name + " is not known here");
+  if (algorithm == nullptr)
+    refuse(recording,
+           "its algorithm " + run.algorithm.name + " is not known; replay it with the program that made it");
   auto [setup, densities] = session_settings(run, recording.path);
   setup.algorithm = *algorithm;
   auto bone = std::make_shared<Volume>(scan);
@@ -75,12 +78,12 @@ std::optional<std::string> difference_of(const TickRecord& recorded, const TickR
     if (column.has(kMeasuredTime)) continue;
     const double then = column.get(recorded);
     const double again = column.get(now);
-    // A replay has no exercise's structures, and an earlier program no such column.
+    // A replay may lack the exercise's structures, and recordings of earlier programs may lack the column.
     if (column.has(kMayBeAbsent) &&
         (then == TickRecord::kNotRecorded || std::isnan(then) || std::isnan(again)))
       continue;
     if (std::bit_cast<std::uint64_t>(then) == std::bit_cast<std::uint64_t>(again)) continue;
-    return fmt::format("{} is {} where {} was recorded (by {:.3g})", column.name, again, then, again - then);
+    return fmt::format("{} is {}, recorded {} (difference {:.3g})", column.name, again, then, again - then);
   }
   return std::nullopt;
 }
@@ -97,7 +100,8 @@ void repeat_session(Volume& volume, const Recording& recording, std::size_t numb
   }
 }
 
-// Runs the ticks from `row` on, first in `session` if one goes on there. Returns the last tick's session.
+// Runs the ticks from `row` on, starting in `session` if `row` is not a session's first tick. Returns the
+// last session.
 std::unique_ptr<MillingSession> run_from(std::size_t row, std::unique_ptr<MillingSession> session,
                                          const Volume& scan, const Recording& recording,
                                          const ReplayHooks& hooks) {
@@ -119,7 +123,7 @@ std::unique_ptr<MillingSession> run_from(std::size_t row, std::unique_ptr<Millin
   return session;
 }
 
-// Holds the ticks of a replay against the recording, until one differs or `max_ticks` were the same.
+// Compares the ticks of a replay with the recording until one differs or `max_ticks` were equal.
 class Comparison {
  public:
   Comparison(const Recording& recording, std::size_t max_ticks,
@@ -129,11 +133,11 @@ class Comparison {
         on_progress_(on_progress),
         hash_(recording.bone_hashes.begin()) {}
 
-  // Returns whether to go on.
+  // Returns whether to continue.
   bool add(const TickRecord& recorded, const TickRecord& now) {
     auto what = difference_of(recorded, now);
     const bool has_hash = hash_ != recording_.bone_hashes.end() && hash_->record == verified_.ticks;
-    if (!what && has_hash && hash_->hash != now.bone_hash) what = "the bone is another";
+    if (!what && has_hash && hash_->hash != now.bone_hash) what = "the bone differs";
     if (what) {
       verified_.difference = {verified_.ticks, recorded.time_s, *std::move(what)};
       return false;
@@ -198,16 +202,16 @@ Verification verify_recording(const Volume& scan, const Recording& recording,
 }
 
 std::size_t ticks_until(const Recording& recording, double time_s) {
-  // People name times with six digits at the most.
+  // Tolerance for times entered by users, who give at most six decimals.
   constexpr double kRounding_s = 1e-6;
   const std::vector<TickRecord>& records = recording.records;
   if (records.empty()) refuse(recording, "holds no ticks");
   const double begin_s = records.front().time_s, end_s = records.back().time_s + records.back().dt_s;
   if (!(time_s >= begin_s - kRounding_s && time_s <= end_s + kRounding_s))
-    refuse(recording,
-           fmt::format("has no tick at {:g} s: it goes from {:.3f} to {:.3f} s", time_s, begin_s, end_s));
+    refuse(recording, fmt::format("has no tick at {:g} s; choose a time from {:.3f} to {:.3f} s", time_s,
+                                  begin_s, end_s));
   const auto after = std::ranges::upper_bound(records, time_s + kRounding_s, {}, &TickRecord::time_s);
-  // At least 1, also if a file's times are in no order.
+  // At least 1, even if the times in the file are not sorted.
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - records.begin(), 1));
 }
 

@@ -30,7 +30,7 @@ Volume fresh_bone(double radius_mm = 5) {
                                        testing_support::ball(Vec3::Zero(), radius_mm));
 }
 
-// Returns all settings of a session, none at its default.
+// Returns session settings of which none has its default value.
 SessionSettings settings_of_all(const AlgorithmDescription& algorithm) {
   return {{.algorithm = algorithm,
            .cutting = {.spindle_speed_rpm = 30000, .tangential_share = 0.2},
@@ -50,7 +50,7 @@ std::unique_ptr<MillingSession> make(std::shared_ptr<Volume> bone, const Algorit
   return std::make_unique<MillingSession>(std::move(bone), densities, setup);
 }
 
-// Moves like a hand on a ball of bone: presses and slides, rests, jumps, vanishes, is placed elsewhere.
+// Simulated hand on a ball of bone: presses and slides, rests, jumps, loses its pose, is placed elsewhere.
 class Hand {
  public:
   TickRecord tick(MillingSession& session) {
@@ -62,7 +62,7 @@ class Hand {
     pose.orientation = quaternion_from_rotation_vector({0.3 * std::sin(0.01 * n), 0.2, 0.1});
     if (n == 300) pose.position_mm.x() += 20;
     if (n == 320) pose.position_mm.y() = std::numeric_limits<double>::quiet_NaN();
-    // Now and then it gives the hand less.
+    // The device sometimes delivers only part of the force.
     device_.put(pose, n % 50 < 40 ? 1 : 0.4, n < 560 || n > 565);
     if (n == 450) session.fade_out();
     if (n == 500) {
@@ -116,7 +116,8 @@ TEST(ReplayRecording, EveryAlgorithmComesOutTheSameWhateverTheHandDoes) {
   }
 }
 
-// It begins when a first session has milled, goes on over another algorithm, a reset and another isovalue.
+// Recording starts after a first session has milled and continues across changes of algorithm, a reset and
+// another isovalue.
 TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
   const TestFolder folder;
   const Volume scan = fresh_bone();
@@ -201,7 +202,8 @@ TEST_F(OneRecording, WhatDiffersIsToldFromTheFirstTickOn) {
   EXPECT_EQ(verified.difference->record, 200u);
   EXPECT_EQ(verified.difference->time_s, other.records[200].time_s);
   EXPECT_NE(verified.difference->what.find("force_y_N"), std::string::npos) << verified.difference->what;
-  EXPECT_NE(verified.difference->what.find("by -0.25"), std::string::npos) << verified.difference->what;
+  EXPECT_NE(verified.difference->what.find("difference -0.25"), std::string::npos)
+      << verified.difference->what;
 
   other = recording;
   other.bone_hashes[1].hash += 1;
@@ -219,7 +221,7 @@ TEST_F(OneRecording, WhatDiffersIsToldFromTheFirstTickOn) {
 
 TEST_F(OneRecording, GoesOnFromTheOneBeforeIt) {
   const Recording rest = read_recording(folder_ / "b.h5");
-  EXPECT_NE(refusal(scan_, rest).find("goes on from a.h5"), std::string::npos);
+  EXPECT_NE(refusal(scan_, rest).find("continues a.h5"), std::string::npos);
   const Recording whole = read_recording_chain(folder_ / "b.h5");
   EXPECT_EQ(whole.records.size(), 400u);
   const Verification verified = verify_recording(scan_, whole);
@@ -242,7 +244,7 @@ TEST_F(OneRecording, WhatCannotBeReplayedIsRefused) {
   EXPECT_NE(refusal(scan_, other).find("somebody-s is not known"), std::string::npos);
   other = recording;
   other.sessions[0].start.run.tool.burr_radius_mm = -1;
-  EXPECT_NE(refusal(scan_, other).find("cannot be run again"), std::string::npos);
+  EXPECT_NE(refusal(scan_, other).find("cannot be replayed"), std::string::npos);
 }
 
 TEST_F(OneRecording, TheSameMotionGoesThroughAnotherAlgorithm) {

@@ -34,7 +34,7 @@ Volume fresh_ball() {
 struct Stretch {
   const char* algorithm;
   double burr_radius_mm;
-  // The session of these whose beginning the bone goes back to; -1 for none.
+  // Index of the session to whose initial bone this one resets; -1 for none.
   int back_to = -1;
 };
 
@@ -51,7 +51,7 @@ SessionSettings settings_of(const Stretch& stretch) {
   return session;
 }
 
-// A hand that presses, slides and rests, with ticks of two lengths.
+// Simulated hand that presses, slides and rests, with ticks of two lengths.
 TickRecord tick(MillingSession& session, int n) {
   PosedDevice device;
   Pose pose;
@@ -66,7 +66,7 @@ TickRecord tick(MillingSession& session, int n) {
                                .paused = n % 1000 > 970});
 }
 
-// A recording of several sessions: with undo and reset, other algorithms and burrs.
+// Recording of several sessions with undo, reset, and changes of algorithm and burr.
 class SeveralSessions : public ::testing::Test {
  protected:
   void record(const std::vector<Stretch>& stretches, int ticks_each) {
@@ -108,7 +108,7 @@ class SeveralSessions : public ::testing::Test {
   TestFolder folder_;
   Volume scan_ = fresh_ball();
   Recording recording_;
-  // Those that were run, which have the bone's hash after each of them.
+  // Ticks as run, each with the bone's hash after it.
   std::vector<TickRecord> ticks_;
 };
 
@@ -121,7 +121,7 @@ std::string refusal(const std::function<void()>& act) {
   return "";
 }
 
-// The columns in which a tick is not what was run, bit for bit.
+// Returns the columns in which two ticks are not bit-identical.
 std::string differing(const TickRecord& run, const TickRecord& again) {
   std::string names;
   for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
@@ -149,13 +149,13 @@ TEST_F(SeveralSessions, GoOnToTheBitFromTwentyRandomTicks) {
     ASSERT_EQ(resumed.ticks, at + 1);
     EXPECT_EQ(resumed.session->volume().change_hash(), ticks_[at].bone_hash);
     std::size_t next = at + 1;
-    // Moves the hand as at first, in the session that was resumed.
+    // Repeats the original motion in the resumed session.
     for (; next < ticks_.size() && ticks_[next].session == ticks_[at].session && next < at + 50; ++next) {
       TickRecord now = tick(*resumed.session, static_cast<int>(next));
       now.session = ticks_[next].session;
       ASSERT_EQ(differing(ticks_[next], now), "") << "resumed at " << at << ", differs at " << next;
     }
-    // And all that is left of the recording.
+    // Also replays the rest of the recording.
     next = at + 1;
     ReplayHooks hooks;
     hooks.on_tick = [&](const TickRecord&, const TickRecord& now) {
@@ -174,7 +174,7 @@ TEST_F(SeveralSessions, WhatCannotBeResumedIsRefused) {
   const auto refused = [&](const Recording& recording, double time_s) {
     return refusal([&] { resume_recording(scan_, recording, time_s); });
   };
-  EXPECT_NE(refused(recording_, 0.5).find("has no tick at 0.5 s: it goes from 0.000 to 0.300 s"),
+  EXPECT_NE(refused(recording_, 0.5).find("has no tick at 0.5 s; choose a time from 0.000 to 0.300 s"),
             std::string::npos);
   EXPECT_NE(refused(recording_, -0.1).find("has no tick at -0.1 s"), std::string::npos);
   EXPECT_NE(refused(recording_, std::nan("")).find("has no tick"), std::string::npos);
@@ -216,17 +216,18 @@ TEST_F(SeveralSessions, ABranchNamesItsTickAndReplaysWithWhatCameBefore) {
     EXPECT_FALSE(verified.difference) << name << ": " << verified.difference->sentence();
     EXPECT_EQ(verified.ticks, ticks);
   }
-  EXPECT_NE(
-      refusal([&] { read_recording_chain(folder_ / "lost.h5"); }).find("tick 401 of a.h5, which has 400"),
-      std::string::npos);
+  EXPECT_NE(refusal([&] {
+              read_recording_chain(folder_ / "lost.h5");
+            }).find("tick 401 of a.h5, which has only 400"),
+            std::string::npos);
   for (const char* round : {"round.h5", "there.h5"})
-    EXPECT_NE(refusal([&] { read_recording_chain(folder_ / round); }).find("from itself"), std::string::npos);
+    EXPECT_NE(refusal([&] { read_recording_chain(folder_ / round); }).find("or itself"), std::string::npos);
 }
 
 TEST_F(SeveralSessions, TheBoneOfAnyTickIsFoundWithinTheMemory) {
   record({{"point-shell", 1.5}, {"point-shell", 2.0}, {"point-shell", 1.0, 1}, {"point-shell", 1.5}}, 2600);
   const std::size_t all = RecordedBone(scan_, recording_).bytes();
-  // Each bound leaves fewer checkpoints.
+  // Each lower limit leaves fewer checkpoints.
   std::size_t before = 1000;
   for (const std::size_t max_bytes : {all, all / 2, all / 3}) {
     RecordedBone bone(scan_, recording_, max_bytes);
@@ -254,7 +255,7 @@ TEST_F(SeveralSessions, TheBoneOfAnyTickIsFoundWithinTheMemory) {
   }
 }
 
-// A reset after a cut that no checkpoint has seen; its session lists no bricks.
+// Resets after a cut that no checkpoint contains; the new session lists no bricks.
 TEST_F(SeveralSessions, TheBoneOfASessionAfterAnEarlyResetIsTheScan) {
   record({{"point-shell", 1.5}, {"point-shell", 1.0, 0}, {"point-shell", 1.0}}, 400);
   ASSERT_GT(ticks_[399].removed_mm3, 0);

@@ -32,7 +32,7 @@ void set_algorithm(RunDescription& run, const MillingSetup& setup, int sample_po
   const auto is_of_algorithm = [](const RunSetting& setting) {
     return setting.key == kSamplePointsKey || setting.key.starts_with(kAlgorithmPrefix);
   };
-  // In the place of those of the algorithm before.
+  // Replaces the previous algorithm's settings at the same position.
   const auto place = std::ranges::find_if(run.settings, is_of_algorithm) - run.settings.begin();
   std::erase_if(run.settings, is_of_algorithm);
   std::vector<RunSetting> settings{{std::string(kSamplePointsKey), static_cast<double>(sample_points), ""}};
@@ -41,7 +41,7 @@ void set_algorithm(RunDescription& run, const MillingSetup& setup, int sample_po
   run.settings.insert(run.settings.begin() + place, settings.begin(), settings.end());
 }
 
-// The first line of /proc/cpuinfo that names it.
+// Returns the first model name in /proc/cpuinfo.
 std::string processor_name() {
   std::ifstream in("/proc/cpuinfo");
   for (std::string line; std::getline(in, line);) {
@@ -79,10 +79,12 @@ const std::vector<Field<SessionSettings>>& fields_of<SessionSettings>() {
   static const std::vector<Field<SessionSettings>> all = [] {
     auto fields = fields_within<SessionSettings>(&SessionSettings::setup, fields_of<MillingSetup>());
     fields.push_back(field<SessionSettings>(
-        {"milling.surroundings_density", "", NumberRange::finite(), "Density of the surroundings of bone"},
+        {"milling.surroundings_density", "", NumberRange::finite(),
+         "Density of the material around the bone"},
         [](auto& s) -> auto& { return s.densities.surroundings; }));
     fields.push_back(field<SessionSettings>(
-        {"milling.reference_density", "", NumberRange::finite(), "Density of whole bone"},
+        {"milling.reference_density", "", NumberRange::finite(),
+         "Density of bone whose removed volume counts fully"},
         [](auto& s) -> auto& { return s.densities.reference; }));
     return fields;
   }();
@@ -102,7 +104,7 @@ std::optional<double> taken_setting(const RunDescription& run, const FieldDescri
                                     const std::filesystem::path& path) {
   if (const double* number = find_setting<double>(run, field.name)) return *number;
   if (field.has(kMayBeAbsent)) return std::nullopt;
-  throw InputError(path.string(), "has no setting '" + field.name + "', so its milling cannot be repeated");
+  throw InputError(path.string(), "has no setting '" + field.name + "', so its milling cannot be replayed");
 }
 
 void put_branch_point(RunDescription& run, const BranchPoint& from) {

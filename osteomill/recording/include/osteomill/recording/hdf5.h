@@ -16,8 +16,8 @@
 
 namespace osteomill {
 
-/// To be held while HDF5 is called: the library is not safe in two threads at once. Also switches off its
-/// printing of errors, which are thrown as InputError instead, and clears errno, which tells their reason.
+/// Hold this while calling HDF5, which is not thread-safe. The constructor also switches off HDF5's own error
+/// output, because errors are thrown as InputError, and clears errno, which gives their reason.
 class Hdf5Lock {
  public:
   Hdf5Lock();
@@ -26,7 +26,7 @@ class Hdf5Lock {
   std::lock_guard<std::mutex> lock_;
 };
 
-/// An identifier of HDF5's that is closed when it goes. To be destroyed under Hdf5Lock.
+/// Owns an HDF5 identifier and closes it on destruction, which must happen under Hdf5Lock.
 class Hdf5Handle {
  public:
   using Closer = herr_t (*)(hid_t);
@@ -49,7 +49,7 @@ class Hdf5Handle {
 
   hid_t get() const { return id_; }
   bool valid() const { return id_ >= 0; }
-  /// False if HDF5 could not close it in order.
+  /// Closes the identifier. Returns false if HDF5 reports an error.
   bool close() {
     const hid_t id = std::exchange(id_, H5I_INVALID_HID);
     return id < 0 || closer_(id) >= 0;
@@ -60,15 +60,15 @@ class Hdf5Handle {
   Closer closer_ = nullptr;
 };
 
-/// Returns how a file is opened or created without a lock of HDF5's, which some file systems (NFS, Lustre) do
-/// not have: what is read is whole, since files appear by being renamed, and what is written is held by a
-/// FileLock or has a name of its own until it is whole.
+/// Returns a file access property list that switches off HDF5's file locks, which some file systems (NFS,
+/// Lustre) lack. They are not needed: files to read are complete, because they appear by renaming, and files
+/// being written are held by a FileLock or have a temporary name.
 Hdf5Handle access_without_locks();
 
-/// Greater numbers overflow in sums of squares, and are refused where they are read.
+/// Largest magnitude accepted when reading; greater numbers could overflow in sums of squares.
 inline constexpr double kMaxReal = 1e12;
 
-/// HDF5's name for what stands in memory.
+/// Returns HDF5's type identifier for values in memory.
 template <typename Value>
 hid_t memory_type() {
   if constexpr (std::is_same_v<Value, double>)
@@ -85,31 +85,31 @@ hid_t memory_type() {
   }
 }
 
-/// The attributes of one object. Every failure, also of one that is missing, of another type or length, is an
-/// InputError that names the file and the attribute. Under Hdf5Lock.
+/// Attributes of one HDF5 object. All members throw InputError, naming the file and the attribute, on failure
+/// and if an attribute to read is missing or has another type or length. Call under Hdf5Lock.
 class Attributes {
  public:
   Attributes(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
 
-  /// Writes a text as UTF-8. Bytes that are none, as those of some paths, become characters of their own
-  /// (U+F780 to U+F7FF), of which `get` makes the same bytes again. Throws std::invalid_argument for a text
-  /// of more than 60000 bytes, which HDF5 would not store.
+  /// Writes a text as UTF-8. Bytes that are not valid UTF-8, as in some paths, are mapped to U+F780 to
+  /// U+F7FF, and back by `get`. Throws std::invalid_argument for a text of more than 60000 bytes, which HDF5
+  /// would not store.
   void put(const std::string& name, const std::string& text) const;
   void put(const std::string& name, double value) const { put_reals(name, {&value, 1}); }
   void put(const std::string& name, std::uint64_t value) const;
   void put(const std::string& name, const Vec3& value) const { put_reals(name, {value.data(), 3}); }
   void put(const std::string& name, const std::array<int, 3>& values) const;
   void put_reals(const std::string& name, std::span<const double> values) const;
-  /// Writes over the value of an attribute that is there.
+  /// Overwrites the value of an existing attribute.
   void replace(const std::string& name, std::uint64_t value) const;
 
   void get(const std::string& name, std::string& text) const;
-  /// Finite and up to kMaxReal, as all reals.
+  /// Reads a real; like all reals here it must be finite, its magnitude at most kMaxReal.
   void get(const std::string& name, double& value) const { get_reals(name, {&value, 1}); }
   void get(const std::string& name, std::uint64_t& value) const;
   void get(const std::string& name, Eigen::Ref<Vec3> value) const { get_reals(name, {value.data(), 3}); }
   void get(const std::string& name, std::array<int, 3>& values) const;
-  /// Reads as many as there is room for.
+  /// Reads `values.size()` reals.
   void get_reals(const std::string& name, std::span<double> values) const;
   template <typename Value>
   Value get(const std::string& name) const {
@@ -117,11 +117,11 @@ class Attributes {
     get(name, value);
     return value;
   }
-  /// A real that may be infinite, but not NaN.
+  /// Reads a real that may be infinite but not NaN.
   double real_or_infinite(const std::string& name) const;
   bool has(const std::string& name) const;
   bool is_text(const std::string& name) const;
-  /// In the order in which they were written.
+  /// Returns the names of all attributes in the order in which they were written.
   std::vector<std::string> names() const;
 
  private:

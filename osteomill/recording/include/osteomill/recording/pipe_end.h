@@ -17,24 +17,26 @@
 
 namespace osteomill {
 
-/// One end of a pipe between this process and a child of its own. What the child puts in the parent takes out
-/// by the same calls of `pass` in the same order.
+/// One end of a pipe between this process and its child. The child writes and the parent reads by the same
+/// calls of `pass` in the same order.
 class PipeEnd {
  public:
   enum class Direction : unsigned char { write, read };
 
-  /// Owns the descriptor. No text or list of more bytes is taken.
+  /// Takes ownership of the descriptor. `max_bytes` limits the size of any text or list. Throws
+  /// std::runtime_error if the descriptor cannot be opened as a stream.
   PipeEnd(int descriptor, Direction direction, std::uintmax_t max_bytes);
   ~PipeEnd();
   PipeEnd(const PipeEnd&) = delete;
   PipeEnd& operator=(const PipeEnd&) = delete;
 
   bool is_reading() const { return direction_ == Direction::read; }
-  /// Throws std::runtime_error if the other end has gone.
+  /// Writes or reads `count` bytes. Throws std::runtime_error if the other end is closed.
   void pass_bytes(void* data, std::size_t count);
-  /// Passes how many there are of things of this size. Throws std::runtime_error for too many.
+  /// Writes or reads an element count; `size` is the size of an element in bytes. Throws std::runtime_error
+  /// if the elements exceed `max_bytes`.
   std::size_t pass_count(std::size_t count, std::size_t size);
-  /// Throws std::runtime_error if not all that was put in could be written.
+  /// Flushes buffered output. Throws std::runtime_error if it could not all be written.
   void flush();
 
  private:
@@ -43,7 +45,7 @@ class PipeEnd {
   std::uintmax_t max_bytes_;
 };
 
-/// True for types whose values are passed as the bytes that they have in memory.
+/// True for types that are passed as their bytes in memory.
 template <typename T>
 inline constexpr bool kFlat = std::is_trivially_copyable_v<T>;
 template <>
@@ -57,7 +59,7 @@ inline constexpr bool kFlat<Wrench> = true;
 template <>
 inline constexpr bool kFlat<TickRecord> = true;
 
-/// Passes a value. Any other type is a struct whose `members_of` ties what is passed of it.
+/// Writes or reads a value: flat types as bytes, other structs member by member as tied by `members_of`.
 template <typename T>
 void pass(PipeEnd& pipe, T& value) {
   if constexpr (kFlat<T>) {

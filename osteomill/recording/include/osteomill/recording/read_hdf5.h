@@ -12,31 +12,31 @@
 
 namespace osteomill {
 
-/// A file that is open for reading.
+/// HDF5 file opened for reading.
 struct Hdf5File {
   std::filesystem::path path;
   std::uintmax_t bytes = 0;
   Hdf5Handle handle;
 
   hid_t id() const { return handle.get(); }
-  /// Throws InputError that names the file.
+  /// Throws an InputError that names the file.
   [[noreturn]] void refuse(const std::string& reason) const;
 };
 
-/// Throws InputError if the path leads to no regular file, or to one that another program is writing.
+/// Throws InputError if the path is not a regular file or another program is still writing it.
 void require_readable(const std::filesystem::path& path);
-/// Opens the file, without a lock of HDF5's. Throws InputError if it is not HDF5, or holds what leads out
-/// of it: links, values in other files, filters that are not HDF5's own. Under Hdf5Lock.
+/// Opens the file without HDF5's file lock. Throws InputError if it is not HDF5, or contains links, data
+/// stored in other files, or filters not built into HDF5. Call under Hdf5Lock.
 Hdf5File open_hdf5(const std::filesystem::path& path);
-/// Lets a child process `put` something into a pipe, and this one `take` it. Throws InputError, naming the
-/// file, with the reason for which the child refused it, or if the child ended otherwise, did not end, or
-/// cannot be started.
+/// Runs `put` in a child process and `take` in this one, at the two ends of a pipe. Throws InputError, naming
+/// the file, with the child's reason if it refused the file, or if the child crashed, hung or cannot be
+/// started.
 void pass_from_child(const std::filesystem::path& path, const std::function<void(PipeEnd&)>& put,
                      const std::function<void(PipeEnd&)>& take);
 
-/// Returns what `read` makes of the file, an Hdf5File. HDF5 ends the program on some files, never comes back,
-/// or writes beyond its memory without a sign, so it is a child process that reads, and what it read is
-/// passed on (pipe_end.h). This is how every file of HDF5 is read whose content somebody else may have made.
+/// Returns `read(file)`, `file` being an Hdf5File. On some damaged files HDF5 crashes, hangs or silently
+/// corrupts memory, so a child process reads the file and passes the result on (pipe_end.h). Use this for
+/// every HDF5 file that may come from somebody else.
 template <typename Read>
 auto read_hdf5(const std::filesystem::path& path, const Read& read) {
   const Hdf5Lock lock;
@@ -54,7 +54,7 @@ auto read_hdf5(const std::filesystem::path& path, const Read& read) {
   return content;
 }
 
-/// A dataset of `width` numbers a row.
+/// Dataset of `width` numbers per row.
 struct Hdf5Column {
   std::string place;
   Hdf5Handle dataset;
@@ -62,7 +62,8 @@ struct Hdf5Column {
   std::size_t rows = 0;
 };
 
-/// Throws InputError if there is no such column, or it claims more rows than the file could hold.
+/// Opens a column. Throws InputError if it is missing, does not have numbers of this width, or claims more
+/// rows than the file can hold.
 Hdf5Column open_column(const Hdf5File& file, const std::string& place, hsize_t width = 1);
 
 /// Returns all values of a column. Throws InputError if they cannot be read.

@@ -9,20 +9,20 @@
 
 namespace osteomill {
 
-/// A flag of the fields of a TickRecord: the CSV log has it (recordings have all).
+/// Flag of a TickRecord field: included in the CSV log (recordings have all fields).
 inline constexpr unsigned kInLog = 1;
-/// A flag of the fields of a TickRecord: a clock measured it, so that it differs from run to run.
+/// Flag of a TickRecord field: measured by a clock, so that it differs from run to run.
 inline constexpr unsigned kMeasuredTime = 2;
-/// A flag of the fields of a TickRecord: it is not finite if the device gave no pose.
+/// Flag of a TickRecord field: may be NaN or infinite, such as a pose that the device did not deliver.
 inline constexpr unsigned kMayBeNotFinite = 4;
 
-/// Returns the columns of recordings and logs, those of the CSV log in its order.
+/// Returns the columns of recordings; those of the CSV log are in its order.
 template <>
 const std::vector<Field<TickRecord>>& fields_of<TickRecord>();
 
-/// Writes the CSV log: a header and a row a tick, of the columns that have kInLog, in their order
-/// (docs/recordings.md). Numbers are the shortest that read back to the same double, with a point whatever
-/// the locale. Appears whole or not at all; throws InputError, naming the file, if it cannot be written.
+/// Writes the CSV log: a header and one row per tick with the columns that have kInLog, in order
+/// (docs/recordings.md). Writes the shortest text that reads back to the same double, with a decimal point in
+/// any locale. Writes the file atomically; throws InputError, naming it, if it cannot be written.
 void write_csv(const std::filesystem::path& path, std::span<const TickRecord> records);
 
 }  // namespace osteomill

@@ -17,30 +17,31 @@ namespace osteomill {
 
 class RepeatedSession;
 
-/// The bone of a recording after any of its ticks, density by density: milled again from the nearest of its
-/// checkpoints, which keep the bricks that changed. Each tick that is milled is held against the recording.
-/// For one thread at a time.
+/// Bone of a recording after any of its ticks, bit for bit: milled again from the nearest checkpoint before
+/// it. Checkpoints store the bricks that changed. Compares each milled tick with the recording. For one
+/// thread at a time.
 class RecordedBone {
  public:
-  /// The most memory for bricks at checkpoints. If more would be needed, every second checkpoint is given up;
-  /// only if each milled brick was kept once, and that is more, is it exceeded.
+  /// Memory limit for bricks at checkpoints. If more would be needed, every second checkpoint is dropped.
+  /// Exceeded only if storing each milled brick once takes more.
   static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
-  /// Is told of voxels that may have changed.
+  /// Called with a box of voxels that may have changed.
   using OnChange = std::function<void(const VoxelBox&)>;
 
-  /// Mills the whole recording; the bone is then as at its end. `scan` is as it was read; `recording`
-  /// outlives this object. Throws InputError as `repeat_milling` does. Long work.
+  /// Mills the whole recording, so that the bone is in its final state. `scan` is the scan as read;
+  /// `recording` must outlive this object. Throws InputError as `repeat_milling` does. Long work.
   RecordedBone(const Volume& scan, const Recording& recording, std::size_t max_bytes = kMaxBytes);
   ~RecordedBone();
 
   const Volume& bone() const { return bone_; }
-  /// Returns after how many of the recording's ticks the bone is as it was.
+  /// Returns the number of ticks after which the recording's bone was in the current state.
   std::size_t ticks() const { return ticks_; }
-  /// Makes the bone as it was after the first `ticks` (0: as scanned). The isovalue is that of the session.
+  /// Sets the bone to its state after the first `ticks` ticks (0: as scanned), with the isovalue of that
+  /// tick's session. `changed` may be empty.
   void go_to(std::size_t ticks, const OnChange& changed = {});
 
   std::size_t checkpoints() const { return checkpoints_.size(); }
-  /// Returns the memory of the bricks at the checkpoints.
+  /// Returns the memory of the bricks at the checkpoints, bytes.
   std::size_t bytes() const { return kept_bricks_ * sizeof(DensityBlock); }
 
  private:
@@ -48,7 +49,7 @@ class RecordedBone {
     std::size_t ticks;
     BurrMill::Memory mill;
   };
-  // Bricks after these numbers of ticks.
+  // Versions of a brick, each with the tick count after which it was stored.
   using Versions = std::vector<std::pair<std::size_t, std::unique_ptr<DensityBlock>>>;
 
   void mill_next(const OnChange& changed);
@@ -62,7 +63,7 @@ class RecordedBone {
   Volume bone_;
   const Recording& recording_;
   std::size_t max_bytes_;
-  // By their first voxels.
+  // Key: linear index of the brick's first voxel.
   std::map<std::size_t, Versions> bricks_;
   std::size_t kept_bricks_ = 0;
   std::size_t every_ticks_;

@@ -12,34 +12,33 @@
 
 namespace osteomill {
 
-/// Writes one record a tick to an HDF5 file (the layout: recording_file.h) from a thread of its own.
+/// Writes one record per tick to an HDF5 file (layout: recording_file.h) from a thread of its own.
 ///
-/// While it runs the file is called NAME.part.h5 if NAME.h5 was asked for; `close` gives it its name, so a
-/// file of the final name is always whole. Twice a second what was recorded so far is made safe: a program
-/// that is killed leaves a NAME.part.h5 that read_recording opens, less the last second at the most, and that
-/// other HDF5 programs open too (hence the extension stays last). A recorder destroyed without `close`, as
-/// when an exception passes, leaves the same, with nothing missing. The next recording of that name renames
-/// it to NAME.part-1.h5, or the first number that is free (`leftover_note`); one that is still being written
-/// by another program is left alone, and the recorder cannot be made.
+/// While recording NAME.h5, the file is called NAME.part.h5; `close` renames it, so that a file with the
+/// final name is always complete. The file is flushed about twice a second: a killed program leaves a
+/// NAME.part.h5, without at most the last second, that read_recording and other HDF5 programs can open (the
+/// extension stays last for them). A recorder destroyed without `close`, as during stack unwinding, leaves
+/// the same, with all records. The next recording of the same name renames the leftover to NAME.part-1.h5, or
+/// the first free number (`leftover_note`). If another program is still writing it, the constructor throws.
 ///
-/// If several sessions follow each other on a bone (HapticThread::replace), `begin_session` is told of each;
-/// the number in a record names its session.
+/// If several sessions follow each other on a bone (HapticThread::replace), announce each with
+/// `begin_session`; TickRecord::session refers to its number.
 ///
 /// One thread pushes; another (or the same) makes, closes and destroys the recorder, after the last push.
 class Recorder {
  public:
-  /// Number of records (16 s at 1000 Hz) that can wait to be written before any is lost.
+  /// Queue capacity, records (16 s at 1000 Hz). If the queue is full, records are lost.
   static constexpr std::size_t kCapacity = 16384;
 
-  /// The time from which the first session's records are written: at once, for a session that begins with the
-  /// recording, or from when `begin_session` says what it began from.
+  /// When the first session's records are written: at once, if the session begins with the recording, or
+  /// after `begin_session` has given its initial state.
   enum class FirstSession : unsigned char { begins_at_once, begins_when_announced };
 
-  /// The fate of the file if the recorder is destroyed without `close`. It is removed in any case if nothing
-  /// was recorded yet; `remove` is for runs that can simply be run again.
+  /// Fate of the file if the recorder is destroyed without `close`. A file without records is always removed;
+  /// `remove` is for runs that can simply be repeated.
   enum class UnfinishedFile : unsigned char { keep, remove };
 
-  /// Throws InputError, naming the file, if it cannot be created or another program writes it, and
+  /// Throws InputError, naming the file, if it cannot be created or another program is writing it, and
   /// std::invalid_argument if the description cannot be stored (write_description).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
            FirstSession first_session = FirstSession::begins_at_once,
@@ -48,39 +47,41 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Hands a record to the writing thread. Safe in the haptic tick: never waits, allocates or throws. If the
-  /// queue is full the record is lost and counted, and false is returned.
+  /// Queues a record for the writing thread. If the queue is full, drops and counts the record and returns
+  /// false. Safe in the haptic tick: never waits, allocates or throws.
   bool push(const TickRecord& record) noexcept;
-  /// Takes a record of a run in simulated time, outside the tick: waits while the queue is full. Throws the
-  /// InputError with which writing failed, if it did.
+  /// Like `push`, but waits while the queue is full: for runs in simulated time, not for the haptic tick. If
+  /// writing has failed, throws its InputError.
   void push_waiting(const TickRecord& record);
 
-  /// Says what the session of this number began from, which belongs to the first record of that number; that
-  /// may have been pushed before. To be called in the order of the numbers. The first session's description
-  /// is the recording's own.
+  /// Sets the initial state of session `number`, which applies from the first record with that number;
+  /// records may already have been pushed. Call in the order of the numbers. The first session uses the
+  /// recording's own description.
   void begin_session(std::uint32_t number, SessionStart start);
 
-  /// Returns a line on the unfinished recording that was there and where it is kept; empty if there was none.
+  /// Returns a message on the unfinished recording that was found and its new name; empty if there was none.
   std::string leftover_note() const;
 
-  /// Returns how many records were lost. From any thread.
+  /// Returns the number of lost records. Callable from any thread.
   std::uint64_t dropped() const noexcept;
-  /// Returns whether writing has failed (a full disk); the reason comes from `close`. From any thread.
+  /// Returns whether writing has failed, as on a full disk; `close` throws the reason. Callable from any
+  /// thread.
   bool failed() const noexcept;
 
-  /// Adds a view to those of the recording. Call it from the thread that closes the recorder.
+  /// Adds a view to the recording. Call it from the thread that closes the recorder.
   void add_view(const ViewSample& view);
 
-  /// Adds a picture to be stored at closing. `png` are the bytes of a PNG file; the name must be new and hold
-  /// only letters, digits, '-' and '_' (else std::invalid_argument).
+  /// Adds a picture, to be stored by `close`. `png` holds the bytes of a PNG file. Throws
+  /// std::invalid_argument if the name is already used or has characters other than letters, digits, '-' and
+  /// '_'.
   void add_picture(const std::string& name, std::vector<unsigned char> png);
 
-  /// Adds a setting of the run that is known only at its end, under a key that the description does not have;
-  /// it is stored at closing.
+  /// Adds a setting that is known only at the end of the run, to be stored by `close`. The description must
+  /// not have its key.
   void add_setting(RunSetting setting);
 
-  /// Writes what is left, the pictures and settings, and gives the file its name. Throws InputError if any of
-  /// it fails, or writing failed before. To be called once.
+  /// Writes the remaining records, the pictures and the settings, and gives the file its final name. Throws
+  /// InputError if that fails or writing failed before. Call once.
   void close();
 
  private:
@@ -88,11 +89,11 @@ class Recorder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Writes a recording of no ticks: what a session may go on from. The file appears whole or not at all.
+/// Writes a recording without ticks that holds the initial state of a session. Writes the file atomically.
 /// Throws InputError if it cannot be written.
 void write_start(const std::filesystem::path& path, const SessionStart& start);
 
-/// Returns the name under which a recording that is to become `path` is written.
+/// Returns the name under which a recording is written before it is renamed to `path`.
 std::filesystem::path unfinished_recording_path(const std::filesystem::path& path);
 
 }  // namespace osteomill

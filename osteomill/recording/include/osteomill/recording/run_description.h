@@ -18,7 +18,7 @@
 
 namespace osteomill {
 
-/// One further setting of a run. `unit` is empty for a pure number, a choice or a name.
+/// Further setting of a run. `unit` is empty for a dimensionless number, a choice or a name.
 struct RunSetting {
   std::string key;
   std::variant<double, std::string> value;
@@ -26,30 +26,29 @@ struct RunSetting {
   friend bool operator==(const RunSetting&, const RunSetting&) = default;
 };
 
-/// The key of the further setting that holds the command by which the run can be repeated (reports show it).
+/// Key of the further setting with the command line that repeats the run (shown in reports).
 inline constexpr std::string_view kCommandLineKey = "command_line";
 
-/// The key of the further setting that names, in words, the parts of its plan that a run did not reach; a
-/// recording that reached all has none.
+/// Key of the further setting that describes the parts of its plan that a run did not reach; absent if it
+/// reached all.
 inline constexpr std::string_view kNotReachedKey = "not_reached";
 
-/// The key of the further setting that names the comparison by which a recording was made: the same text in
-/// all of its recordings, and in no others. Recordings that are not part of a comparison have none.
+/// Key of the further setting that identifies the comparison a recording belongs to: the same text in all of
+/// its recordings and in no others. Absent if the recording is not part of a comparison.
 inline constexpr std::string_view kComparisonKey = "comparison";
 
-/// The key of the number of structures off which the burr was held (WatchedStructure::guard_mm); a recording
-/// without any has none.
+/// Key of the number of guarded structures (WatchedStructure::guard_mm); absent if there were none.
 inline constexpr std::string_view kGuardsKey = "exercise.guards";
 
-/// The key of the burr's name (NamedBurr), for people; a recording of a burr without a name has none.
+/// Key of the burr's display name (NamedBurr); absent if the burr has none.
 inline constexpr std::string_view kBurrNameKey = "burr_name";
 
-/// The key of the stiffness of a simulated hand, in N/mm.
+/// Key of the stiffness of a simulated hand, N/mm.
 inline constexpr std::string_view kHandStiffnessKey = "hand.stiffness";
-/// The key of the damping of a simulated hand, in N s/mm.
+/// Key of the damping of a simulated hand, N s/mm.
 inline constexpr std::string_view kHandDampingKey = "hand.damping";
 
-/// The place and time at which a recording was made. Holds nothing about a patient.
+/// Time, machine and build with which a recording was made. Contains no patient data.
 struct Origin {
   /// "2026-11-22T13:45:00Z".
   std::string date_utc;
@@ -62,46 +61,45 @@ struct Origin {
   friend bool operator==(const Origin&, const Origin&) = default;
 };
 
-/// The description that a recording carries: enough to know what was run and to run it again.
+/// Description stored in a recording, sufficient to identify the run and to repeat it.
 struct RunDescription {
   std::string program_version;
   Origin made;
-  /// The scan as the user named it, or what the built-in tooth is called.
+  /// Scan as the user named it, or the name of the built-in scan.
   std::string scan_name;
   std::array<int, 3> dims{0, 0, 0};
   Vec3 spacing_mm = Vec3::Ones();
-  /// The place of the grid (GridGeometry).
+  /// Position of the grid (GridGeometry).
   Vec3 origin_mm = Vec3::Zero();
   Mat3 direction = Mat3::Identity();
-  /// The fingerprints of the densities as they were read (fingerprint_of), against which alone a recording
-  /// can be verified, and of the label map. 0 if not known, or if there is no map.
+  /// Fingerprints of the densities as read (fingerprint_of), required to verify the recording, and of the
+  /// label map. 0 if unknown, or if there is no map.
   std::uint64_t scan_hash = 0;
   std::uint64_t label_map_hash = 0;
-  /// In the scan's own unit of density.
+  /// In the scan's density unit.
   double isovalue = 0;
   MillingTool tool;
   AlgorithmId algorithm;
-  /// The part of a longer run that this is, in the words of the program that recorded it; empty for the
-  /// whole.
+  /// Name, given by the recording program, of the part of a longer run; empty for a whole run.
   std::string phase;
   std::uint64_t seed = 0;
   double tick_period_s = 0.001;
-  /// Everything else that was set, in the order in which people should read it; every key once.
+  /// All other settings in reading order; keys are unique.
   std::vector<RunSetting> settings;
-  /// The labels of the bone's label map, by their places in it; empty if it has none. Every value once.
+  /// Labels of the bone's label map in its order; empty if it has none. Values are unique.
   std::vector<Label> labels;
 };
 
-/// The name that a recording has for a part of a run's description (visit_attributes()).
+/// Name of a member of RunDescription in recordings (visit_attributes()).
 struct RunAttribute {
   std::string name;
-  /// True if it is part of what was run, by which runs can be compared; false if it says when, where or which
-  /// of them it was.
+  /// True if it determines the run, so that it serves to compare runs; false if it identifies when, where or
+  /// which run it was.
   bool is_setting = true;
 };
 
-/// Calls `visit(RunAttribute, value)` for all that a description has except its settings and labels, in the
-/// order in which recordings have it.
+/// Calls `visit(RunAttribute, value)` for every member of a description except settings and labels, in the
+/// order of recordings.
 template <typename Run, typename Visit>
 void visit_attributes(Run& run, const Visit& visit) {
   visit(RunAttribute{"program_version"}, run.program_version);
@@ -132,7 +130,7 @@ void visit_attributes(Run& run, const Visit& visit) {
   visit(RunAttribute{"tick_period_s"}, run.tick_period_s);
 }
 
-/// Returns the value of a further setting; null if there is none of this key, or it has another type.
+/// Returns the value of a further setting; null if the key is missing or the value has another type.
 template <typename Value>
 const Value* find_setting(const RunDescription& run, std::string_view key) {
   for (const RunSetting& setting : run.settings) {
@@ -141,36 +139,36 @@ const Value* find_setting(const RunDescription& run, std::string_view key) {
   return nullptr;
 }
 
-/// The tick of another recording from which a run goes on.
+/// Tick of another recording that a run continues from.
 struct BranchPoint {
-  /// The recording as the user named it.
+  /// Recording as the user named it.
   std::string recording;
-  /// The number of its ticks until then, and the time of the last of them.
+  /// Number of its ticks up to that point, and the time of the last of them.
   std::uint64_t ticks = 0;
   double time_s = 0;
 };
-/// Puts it among the run's settings, in the place of another.
+/// Stores the branch point in the run's settings, replacing an existing one.
 void put_branch_point(RunDescription& run, const BranchPoint& from);
-/// Returns what the run says; nothing if it goes on from no other.
+/// Returns the run's branch point; nullopt if it does not continue another recording.
 std::optional<BranchPoint> branch_point(const RunDescription& run);
 
-/// The key of the number of sample points that the algorithm works with.
+/// Key of the number of sample points used by the algorithm.
 inline constexpr std::string_view kSamplePointsKey = "sample_points";
 
-/// Puts a number among a run's settings, in the place of one of this name.
+/// Stores a number in a run's settings, replacing an existing one of the same name.
 void put_setting(RunDescription& run, const FieldDescription& field, double value);
-/// Returns a number of a run's settings; nothing if it has none and `field` may be absent. Throws InputError,
-/// naming the recording's `path`, if it should have one.
+/// Returns a number from a run's settings; nullopt if it is missing and `field` may be absent. Throws
+/// InputError, naming the recording's `path`, if a required one is missing.
 std::optional<double> taken_setting(const RunDescription& run, const FieldDescription& field,
                                     const std::filesystem::path& path);
 
-/// Puts every field that files have (FieldDescription::name) among a run's settings.
+/// Stores every field that has a name in files (FieldDescription::name) in a run's settings.
 template <typename Struct>
 void put_fields(RunDescription& run, const Struct& s) {
   for (const Field<Struct>& setting : fields_of<Struct>())
     if (!setting.name.empty()) put_setting(run, setting, setting.get(s));
 }
-/// Takes every field that files have back from a run's settings. Throws as `taken_setting`.
+/// Reads every field that has a name in files from a run's settings. Throws as `taken_setting`.
 template <typename Struct>
 void take_fields(const RunDescription& run, const std::filesystem::path& path, Struct& s) {
   for (const Field<Struct>& setting : fields_of<Struct>()) {
@@ -179,36 +177,35 @@ void take_fields(const RunDescription& run, const std::filesystem::path& path, S
   }
 }
 
-/// The settings that a session works by.
+/// Settings of a session.
 struct SessionSettings {
   MillingSetup setup;
   BoneDensities densities;
 };
-/// Returns every number of a session's settings, except those of its algorithm.
+/// Returns the fields of all numeric session settings except those of the algorithm.
 template <>
 const std::vector<Field<SessionSettings>>& fields_of<SessionSettings>();
 
-/// Puts all settings of a session into a run's description, in the place of those that it has.
-/// `sample_points` is the number that the algorithm works with.
+/// Stores all settings of a session in a run's description, replacing existing ones. `sample_points` is the
+/// number of points the algorithm uses.
 void set_session_settings(RunDescription& run, const SessionSettings& session, int sample_points);
 
-/// Returns a session's settings as the run's description has them, without the algorithm: the run has only
-/// its name, and the caller knows which one is meant. Throws InputError, naming the recording's `path`, if a
-/// setting is missing.
+/// Returns the session settings in a run's description, without `setup.algorithm`: the run has only its name,
+/// which the caller must resolve. Throws InputError, naming the recording's `path`, if a setting is missing.
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path);
 
-/// The scan of a bone as it was read, by which a recording can be verified.
+/// Identifies the scan as read, against which a recording can be verified.
 struct ScanIdentity {
-  /// The scan as the user named it (RunDescription::scan_name).
+  /// Scan as the user named it (RunDescription::scan_name).
   std::string name;
-  /// The fingerprint of its densities before any was milled (fingerprint_of). 0 if it is not known: then no
-  /// recording of the run can be verified.
+  /// Fingerprint of its unmilled densities (fingerprint_of). If it is 0 (unknown), recordings of the run
+  /// cannot be verified.
   std::uint64_t fingerprint;
 };
 
-/// Returns all that a recording says about a session on this bone, without what the caller alone knows and
-/// may add: a seed, and settings of its own (a script, a hand). `sample_points` is the number that the
-/// algorithm works with as it stands; `command_line`, how the program was called, may be empty.
+/// Returns the description of a session on this bone. The caller may add a seed and settings of its own (a
+/// script, a hand). `sample_points` is the number of points the algorithm currently uses; `command_line` is
+/// the program's command line and may be empty.
 RunDescription describe_run(const Volume& bone, const ScanIdentity& scan, const SessionSettings& session,
                             int sample_points, const std::string& command_line = {});
 
