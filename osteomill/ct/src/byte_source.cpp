@@ -18,10 +18,10 @@ namespace {
 constexpr int kRawDeflate = -15;
 constexpr int kGzipOrZlib = 15 + 32;
 
-// Deflate packs nothing tighter (zlib's manual, "Maximum Compression Factor").
+// Deflate's maximum compression ratio (zlib manual, "Maximum Compression Factor").
 constexpr std::uint64_t kMaxRatio = 1032;
 
-// The first byte of a gzip member.
+// First byte of a gzip member.
 constexpr Bytef kGzipMagic = 0x1F;
 
 }  // namespace

@@ -12,31 +12,33 @@ struct z_stream_s;
 
 namespace osteomill {
 
-/// The ways in which the bytes of a file are packed. zlib finds out itself which of the first two it is.
+/// Compression of a file's bytes. zlib detects itself whether data are gzip or zlib.
 enum class Packing { none, gzip_or_zlib, deflate };
 
-/// A file's bytes in order, unpacked while they are read.
+/// Sequential reader of a file's bytes that decompresses on the fly.
 class ByteSource {
  public:
-  /// From where `in` stands to the end of its file.
+  /// Reads from the current position of `in` to the end of the file.
   ByteSource(std::ifstream in, Packing packing);
 
-  /// Fills `bytes` as far as there are any left; returns how many.
+  /// Reads up to `bytes.size()` bytes; returns the number read, which is less only at the end or if data are
+  /// damaged.
   std::size_t read(std::span<char> bytes);
-  /// Reads past some bytes; false if there are not as many.
+  /// Skips `count` bytes. Returns false if a compressed source has fewer.
   bool skip(std::uint64_t count);
 
   bool is_packed() const { return stream_ != nullptr; }
-  /// Returns how many bytes the file holds from where the source began, packed as they are.
+  /// Returns the number of bytes of the file from the source's start on, still compressed.
   std::uint64_t bytes_in_file() const { return in_file_; }
-  /// Returns how many bytes of the file, packed as they are, have been read so far.
+  /// Returns the number of bytes of the file read so far, still compressed.
   std::uint64_t bytes_used() const;
-  /// An upper bound on the bytes still to be read: of a packed file what the best packing could hold.
+  /// Returns an upper bound on the bytes still to be read; for a compressed file, by the maximum compression
+  /// ratio.
   std::uint64_t max_bytes() const;
-  /// Exactly how many bytes there are to be read. For a packed file this unpacks all of it once, and nothing
-  /// may have been read before.
+  /// Returns the exact number of bytes still to be read. Decompresses a compressed file once, of which
+  /// nothing may have been read before.
   std::uint64_t bytes_to_come();
-  /// Returns whether the packed data were read to their proper end, with the right checksums.
+  /// Returns whether the compressed data were read to their end and their checksums match.
   bool ended_well() const { return ended_; }
 
  private:
@@ -55,8 +57,8 @@ class ByteSource {
   bool damaged_ = false;
 };
 
-/// Opens a file for reading. Throws InputError naming `subject` if `file` is not there, no regular file (a
-/// pipe would wait for ever) or cannot be read.
+/// Opens a file for reading. Throws InputError, naming `subject`, if `file` is missing, not a regular file (a
+/// pipe could block forever) or unreadable.
 std::ifstream open_regular_file(const std::string& subject, const std::filesystem::path& file);
 
 }  // namespace osteomill

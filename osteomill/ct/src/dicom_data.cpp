@@ -37,16 +37,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A level of nesting takes an item, which has 16 bytes at the least in the file, and 1.5 KB of stack (as
-// measured). An Enhanced CT has about ten items a frame.
+// A level of nesting takes one item, which has at least 16 bytes in the file, and 1.5 KB of stack (measured).
+// An Enhanced CT has about ten items per frame.
 constexpr std::uint64_t kMaxItems = 1 << 17;
 constexpr std::uint64_t kMinItemBytes = 16;
 constexpr std::size_t kStackBytes = kMaxItems * 4096;
-// Images come down to a tenth or so; what would grow more than this is damaged or meant to fill the memory.
+// Images compress to about a tenth; a file that would inflate by more than this is damaged or malicious.
 constexpr std::uint64_t kMaxInflation = 100;
-// Longer values stay in the file. None that is wanted is longer.
+// Longer values stay in the file; no value used here is longer.
 constexpr Uint32 kMaxValueBytes = 1024;
-// Largest size of a file beside its pixels, bytes.
+// Maximum size of a file without its pixels, bytes.
 constexpr std::uint64_t kMaxHeadBytes = 1 << 26;
 
 thread_local bool jpeg_complained = false;
@@ -65,7 +65,7 @@ class ComplaintAppender : public dcmtk::log4cplus::Appender {
   }
 };
 
-// Nothing of DCMTK's reaches standard error, and its JPEG decoders' warnings come to us.
+// Keeps DCMTK's log off standard error and intercepts the warnings of its JPEG decoders.
 void set_up_dcmtk() {
   static const bool once = [] {
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
@@ -75,16 +75,17 @@ void set_up_dcmtk() {
     jpeg.addAppender(dcmtk::log4cplus::SharedAppenderPtr(new ComplaintAppender));
     DJDecoderRegistration::registerCodecs();
     DJLSDecoderRegistration::registerCodecs();
-    // Writers may say one of the plain syntaxes and use another.
+    // Files may state one uncompressed syntax and use another.
     dcmAutoDetectDatasetXfer.set(OFTrue);
-    // Elements of an unknown kind (UN) that the dictionary knows.
+    // Converts elements of unknown type (UN) that are in the dictionary.
     dcmEnableUnknownVRConversion.set(OFTrue);
     return true;
   }();
   static_cast<void>(once);
 }
 
-// Behind a preamble and "DICM" comes an element. Old files have neither, and begin with one of group 2 or 8.
+// After a preamble and "DICM" comes an element. Old files have neither and start with an element of group 2
+// or 8.
 bool looks_like_dicom(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path.string(), "cannot be read");
@@ -100,7 +101,8 @@ bool are_zeros(const std::vector<char>& block) {
   return block.front() == 0 && std::memcmp(block.data(), block.data() + 1, block.size() - 1) == 0;
 }
 
-// How many items there can be: every one begins with its tag, in either order of bytes. Reads it all.
+// Upper bound on the number of items, each of which starts with its tag in either byte order. Reads the whole
+// source.
 std::uint64_t count_items(ByteSource& source, std::uint64_t& bytes, std::uint64_t max_bytes) {
   std::uint64_t items = 0;
   std::uint32_t last_four = 0;
@@ -108,7 +110,7 @@ std::uint64_t count_items(ByteSource& source, std::uint64_t& bytes, std::uint64_
   for (std::size_t count = block.size(); count == block.size() && bytes <= max_bytes; bytes += count) {
     count = source.read(block);
     WorkProgress::done(0);
-    // A sparse file has gigabytes of them.
+    // Sparse files may have gigabytes of zeros.
     if (are_zeros(block)) {
       last_four = 0;
       continue;
@@ -121,9 +123,9 @@ std::uint64_t count_items(ByteSource& source, std::uint64_t& bytes, std::uint64_
   return items;
 }
 
-// Holds what the file says ahead of its data set.
+// Meta group of a file, before its data set.
 struct MetaGroup {
-  // The UID; empty if the file says none.
+  // UID; empty if the file has none.
   std::string syntax;
   std::streamoff end = 0;
 };
@@ -139,7 +141,8 @@ MetaGroup read_meta_group(const fs::path& path) {
   return {syntax.c_str(), static_cast<std::streamoff>(stream.tell())};
 }
 
-// Syntaxes that came after DCMTK 3.6.7. HTJ2K is read as the JPEG 2000 of which it is a part.
+// Syntaxes newer than DCMTK 3.6.7. HTJ2K, with an empty name here, is read as JPEG 2000, of which it is a
+// part.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kLaterSyntaxes{
     {{"1.2.840.10008.1.2.4.110", "JPEG XL lossless"},
      {"1.2.840.10008.1.2.4.111", "JPEG XL of a JPEG"},
@@ -157,7 +160,7 @@ bool is_htj2k(std::string_view uid) {
          kLaterSyntaxes.end();
 }
 
-// Whether there is a decoder.
+// Returns whether a decoder supports the syntax.
 bool is_decoded(E_TransferSyntax syntax) {
   static constexpr std::array kDecoded{EXS_LittleEndianImplicit,
                                        EXS_LittleEndianExplicit,
@@ -177,7 +180,7 @@ bool is_decoded(E_TransferSyntax syntax) {
   return std::find(kDecoded.begin(), kDecoded.end(), syntax) != kDecoded.end();
 }
 
-// Its name and UID; empty if there is a decoder for it, or none is named.
+// Returns name and UID of a syntax without a decoder; empty if it has one or `uid` is empty.
 std::string undecodable(const std::string& uid) {
   const DcmXfer syntax(uid.c_str());
   if (uid.empty() || is_htj2k(uid) || is_decoded(syntax.getXfer())) return {};
@@ -188,7 +191,7 @@ std::string undecodable(const std::string& uid) {
   return fmt::format("{} ({})", name, without_controls(is_utf8(uid) ? uid : utf8_of_latin1(uid), '?'));
 }
 
-// Whether a file ends in zeros, as many as would take long to be parsed.
+// Returns whether a file ends in at least 64 KiB of zeros, which would take long to parse.
 bool ends_in_zeros(const fs::path& path) {
   std::vector<char> end(1 << 16);
   std::ifstream in(path, std::ios::binary);
@@ -196,9 +199,9 @@ bool ends_in_zeros(const fs::path& path) {
   return in.read(end.data(), static_cast<std::streamsize>(end.size())) && are_zeros(end);
 }
 
-// The element that holds the pixels of a file: of floats if one of theirs seems to begin in its head. DCMTK
-// could look for it only by `readUntilTag`, which ends the program on some damaged files. If it is another,
-// DCMTK reads further than it need.
+// Returns the element with the pixels of a file: a float element if its tag occurs in the head of the file.
+// DCMTK could find it only by `readUntilTag`, which crashes on some damaged files. A wrong guess only makes
+// DCMTK read further than necessary.
 DcmTagKey pixel_element(const fs::path& path) {
   constexpr std::size_t kHead = 1 << 19;
   std::string head(kHead, '\0');
@@ -214,8 +217,8 @@ DcmTagKey pixel_element(const fs::path& path) {
   return DCM_PixelData;
 }
 
-// Fills `file` up to the element `last`; false if it is damaged. `syntax`: the UID of the transfer syntax in
-// which it is read; empty for what it says.
+// Reads the file up to the element `last`; returns false if it is damaged. `syntax` is the UID of the
+// transfer syntax to use; if empty, the one the file states.
 bool parse(const fs::path& path, const std::string& syntax, const DcmTagKey& last, DcmFileFormat& file) {
   dcmStopParsingAfterElement.set(last);
   if (syntax.empty()) return file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).good();
@@ -229,7 +232,8 @@ bool parse(const fs::path& path, const std::string& syntax, const DcmTagKey& las
   return read;
 }
 
-// Whether the elements of compressed pixels' data set are without their kinds, which no such syntax is.
+// Returns whether a file with compressed pixels has implicit value representations, which the standard does
+// not allow.
 bool is_compressed_and_implicit(const fs::path& path, const MetaGroup& meta) {
   if (!is_htj2k(meta.syntax) && !DcmXfer(meta.syntax.c_str()).isEncapsulated()) return false;
   std::ifstream in(path, std::ios::binary);
@@ -240,9 +244,9 @@ bool is_compressed_and_implicit(const fs::path& path, const MetaGroup& meta) {
   return in && !is_letter(first[4]) && !is_letter(first[5]);
 }
 
-// Fills the file and the syntax of `data`; false if it is damaged.
+// Sets `data.file` and `data.syntax`; returns false if the file is damaged.
 bool load(const fs::path& path, const MetaGroup& meta, DicomData& data) {
-  // The element after which DCMTK stops is that of all threads.
+  // The element after which DCMTK stops is a global variable.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   const bool is_implicit = is_compressed_and_implicit(path, meta);
@@ -250,14 +254,15 @@ bool load(const fs::path& path, const MetaGroup& meta, DicomData& data) {
   const std::string syntax = is_implicit             ? UID_LittleEndianImplicitTransferSyntax
                              : is_htj2k(meta.syntax) ? of_pixels
                                                      : "";
-  // Float pixels come before the usual ones, and DCMTK would take what follows them for elements too.
+  // Float pixels precede integer ones, so stopping at PixelData would make DCMTK parse the data after them as
+  // elements.
   const bool read = (!ends_in_zeros(path) && parse(path, syntax, DCM_PixelData, *data.file)) ||
                     parse(path, syntax, pixel_element(path), *data.file);
   data.syntax = is_implicit ? of_pixels : DcmXfer(data.file->getDataset()->getOriginalXfer()).getXferID();
   return read;
 }
 
-// Returns the offset of the hole with which a sparse file ends: nothing but zeros follow.
+// Returns the offset of the hole at the end of a sparse file, from which on there are only zeros.
 std::uint64_t end_of_data(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   off_t end = 0;
@@ -270,7 +275,7 @@ std::uint64_t end_of_data(const fs::path& path) {
 void check_bounds(const fs::path& path, const MetaGroup& meta) {
   const std::string subject = path.string();
   std::ifstream in = open_regular_file(subject, path);
-  // A deflated data set begins behind the meta group.
+  // A deflated data set starts after the meta group.
   std::optional<std::streamoff> deflated;
   if (meta.syntax == UID_DeflatedExplicitVRLittleEndianTransferSyntax) deflated = meta.end;
   if (!deflated && fs::file_size(path) / kMinItemBytes <= kMaxItems) return;

@@ -10,30 +10,28 @@ class DcmFileFormat;
 
 namespace osteomill {
 
-/// A DICOM file as DCMTK reads it: its elements, with long values (the pixels) left in the file until they
-/// are asked for.
+/// DICOM file as read by DCMTK. Long values (the pixels) stay in the file until they are requested.
 struct DicomData {
   std::shared_ptr<DcmFileFormat> file;
-  /// The file is cut short or damaged; elements read before that stand.
+  /// True if the file is cut short or damaged; the elements before the damage are valid.
   bool damaged = false;
-  /// The UID of the transfer syntax in which its pixels are, whatever the file says.
+  /// UID of the actual transfer syntax of the pixels, which may differ from the one stated in the file.
   std::string syntax{};
-  /// The transfer syntax if it is one that nothing here decodes; else empty.
+  /// Transfer syntax if no decoder supports it; otherwise empty.
   std::string undecodable{};
 };
 
-/// Reads a DICOM file; nothing if it is not DICOM at all. Throws InputError naming the file if it
-/// cannot be opened, is far longer than `max_bytes` (the memory that its densities may take), or would take
-/// more memory or deeper recursion than any scan does. To be called only within `with_dicom_stack`.
+/// Reads a DICOM file; returns nullopt if it is not DICOM. Throws InputError, naming the file, if it cannot
+/// be opened, is far longer than `max_bytes` (the memory limit of its densities), or would need more memory
+/// or deeper recursion than any scan. Call only within `with_dicom_stack`.
 std::optional<DicomData> load_dicom(const std::filesystem::path& path, std::uint64_t max_bytes);
 
-/// Runs `work` on a thread of its own, waits for it, and hands on what it throws. DCMTK goes down into
-/// sequences, and clears them away again, by recursion; its stack here is enough for any file that
-/// `load_dicom` lets through.
+/// Runs `work` on a separate thread, waits for it, and passes its exceptions on. DCMTK parses and destroys
+/// nested sequences recursively; the thread's stack is large enough for any file that `load_dicom` accepts.
 void with_dicom_stack(const std::function<void()>& work);
 
-/// Returns whether a JPEG decoder has found damaged data in this thread since this was last called. (Such a
-/// decoder goes on with what it has, and says so only in DCMTK's log.)
+/// Returns whether a JPEG decoder has found damaged data in this thread since the last call. (Decoders
+/// continue with damaged data and report it only in DCMTK's log.)
 bool take_jpeg_complaint();
 
 }  // namespace osteomill

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Compressed pixels may claim this much, and this many times their own length; a blank slice comes down a
-// lot.
+// Limit on the size that compressed pixels may claim: this constant plus kMaxCompression times their stored
+// size. Blank slices compress strongly.
 constexpr std::uint64_t kAlwaysAllowed_bytes = 1 << 26;
 constexpr std::uint64_t kMaxCompression = 2000;
 
@@ -41,13 +41,13 @@ std::optional<int> short_of(DcmItem& data, const DcmTagKey& tag) {
   return number;
 }
 
-// An element by which slices are marked, and the functional group that has it for a frame.
+// Element with a mark of a slice, and the functional group that contains it for a frame.
 struct MarkTag {
   DcmTagKey group;
   DcmTagKey tag;
 };
 
-// In the order of kMarkKinds; several elements may hold a mark.
+// In the order of kMarkKinds; a mark may be in one of several elements.
 const std::array<std::vector<MarkTag>, kMarkKinds.size()>& mark_tags() {
   const DcmTagKey none = DCM_UndefinedTagKey;
   static const std::array<std::vector<MarkTag>, kMarkKinds.size()> tags{
@@ -85,7 +85,7 @@ const std::array<std::vector<MarkTag>, kMarkKinds.size()>& mark_tags() {
   return tags;
 }
 
-// How many digits stand behind the point of each of three numbers.
+// Returns the number of decimals of each of three numbers.
 std::array<int, 3> decimals_of(std::string_view text) {
   std::array<int, 3> decimals{};
   for (int& of : decimals) {
@@ -102,7 +102,7 @@ std::array<int, 3> decimals_of(std::string_view text) {
   return decimals;
 }
 
-// Returns the items of a sequence; none if there is no such sequence.
+// Returns the items of a sequence; empty if the sequence is missing.
 std::vector<DcmItem*> items_of(DcmItem& data, const DcmTagKey& tag) {
   std::vector<DcmItem*> items;
   DcmSequenceOfItems* sequence = nullptr;
@@ -113,7 +113,7 @@ std::vector<DcmItem*> items_of(DcmItem& data, const DcmTagKey& tag) {
   return items;
 }
 
-// One file on its way to a header.
+// Reads the header of one file.
 class FileReader {
  public:
   FileReader(DcmDataset& data, DicomHeader& header)
@@ -129,15 +129,15 @@ class FileReader {
 
   std::optional<std::vector<double>> numbers(DcmItem& data, const DcmTagKey& tag, std::size_t count,
                                              const char* name) const;
-  // Returns the items in which a value of the frame is looked for: its own functional group, the shared one,
-  // the data set.
+  // Returns the items that may contain a value of the frame, in order: its own functional group, the shared
+  // one, the data set.
   std::vector<DcmItem*> groups_of(std::size_t frame, const DcmTagKey& group) const;
   std::optional<std::vector<double>> frame_numbers(std::size_t frame, const DcmTagKey& group,
                                                    const DcmTagKey& tag, std::size_t count,
                                                    const char* name) const;
   std::string frame_text(std::size_t frame, const DcmTagKey& group, const DcmTagKey& tag) const;
   SliceMarks marks_of(std::size_t frame) const;
-  // Why the picture is no slice of a scan; empty if it may be one.
+  // Returns why the picture is not a slice of a scan; empty if it may be one.
   std::string no_slice() const;
   StoredPixels stored_pixels() const;
   std::optional<Padding> padding_of(const StoredPixels& pixels) const;
@@ -145,7 +145,8 @@ class FileReader {
   DicomSlice slice_of(std::size_t frame) const;
   void describe_segments();
   bool has_frame_places() const;
-  // Old multi-frame images, as of cone-beam CT, say where the first frame lies and how far apart they are.
+  // Handles old multi-frame images, as from cone-beam CT, which give the position of the first frame and the
+  // distance between frames.
   void place_frames();
   void check_byte_count() const;
 
@@ -153,7 +154,7 @@ class FileReader {
   DicomHeader& header_;
   std::vector<DcmItem*> shared_;
   std::vector<DcmItem*> own_;
-  // How far each frame lies along the normal from the first; empty if each has a place of its own.
+  // Distance of each frame from the first along the normal; empty if each has a position of its own.
   std::vector<double> offsets_mm_;
 };
 
@@ -218,14 +219,15 @@ std::string FileReader::no_slice() const {
   return has_place || header_.frames > 1 ? "" : "a picture without a place";
 }
 
-// The value of an element that has the sign of the pixels, whatever sign its own representation has.
+// Returns the lowest `bits_allocated` bits of an element's number, so that it does not matter whether the
+// file declares it signed.
 std::optional<std::uint32_t> word_of(DcmItem& data, const DcmTagKey& tag, int bits_allocated) {
   const auto value = parsed_number<long long>(text_of(data, tag));
   if (!value) return std::nullopt;
   return static_cast<std::uint32_t>(*value) & 0xFFFFFFFFU >> (32 - bits_allocated);
 }
 
-// A word as a pixel of its form, if it can be one.
+// Returns the value of a word stored as a pixel; nullopt if no pixel can have it.
 std::optional<double> stored_value_of(std::uint32_t word, const StoredPixels& pixels) {
   const double value = value_of(word, pixels);
   const std::uint32_t stored = word & 0xFFFFFFFFU >> (32 - pixels.bits_stored);
@@ -262,7 +264,7 @@ std::optional<Padding> FileReader::padding_of(const StoredPixels& pixels) const 
   return padding;
 }
 
-// CIELab as DICOM has it (Part 3, C.10.7.1.1), white being D50, as sRGB.
+// Converts CIELab as encoded in DICOM (Part 3, C.10.7.1.1; white point D50) to sRGB.
 std::array<std::uint8_t, 3> colour_of(const std::array<double, 3>& lab) {
   const double lightness = (100 * lab[0] / 65535 + 16) / 116;
   const auto part = [](double f) { return f > 6.0 / 29 ? f * f * f : (f - 16.0 / 116) * 108 / 841; };
@@ -359,7 +361,7 @@ SlicePlane FileReader::plane_of(std::size_t frame) const {
   SlicePlane plane;
   plane.columns = header_.columns;
   plane.rows = header_.rows;
-  // PixelSpacing: first from row to row, then from column to column (Part 3, 10.7.1.3).
+  // PixelSpacing is the row distance, then the column distance (Part 3, 10.7.1.3).
   plane.row_distance_mm = (*spacing)[0];
   plane.column_distance_mm = (*spacing)[1];
   plane.i_direction = Vec3(orientation->data());
@@ -403,7 +405,7 @@ bool FileReader::has_frame_places() const {
 void FileReader::place_frames() {
   DcmElement* pointer = nullptr;
   DcmTagKey along;
-  // Frames of a film follow each other in time.
+  // Frames of a film are ordered by time.
   if (data_.findAndGetElement(DCM_FrameIncrementPointer, pointer).good() &&
       pointer->getTagVal(along, 0).good() && along != DCM_SliceLocationVector) {
     throw fault(fmt::format("has several frames, which follow each other by {}, not by known places",
@@ -483,8 +485,8 @@ std::uint64_t bytes_of_pixels(DcmDataset& data, bool is_compressed) {
   return bytes;
 }
 
-// The images that a DICOMDIR names. A part of a name is of capitals, digits and underscores (Part 10, 8.2),
-// so that none leads out of the folder.
+// Returns the images that a DICOMDIR lists. Valid names have only capitals, digits and underscores (Part 10,
+// 8.2); ignores names that would lead out of the folder.
 std::vector<fs::path> listed_files(DcmDataset& data) {
   std::vector<fs::path> files;
   for (DcmItem* record : items_of(data, DCM_DirectoryRecordSequence)) {
@@ -508,7 +510,7 @@ void describe(DcmDataset& data, DicomHeader& header) {
   header.rows = short_of(data, DCM_Rows).value_or(0);
   header.listed_files = listed_files(data);
   const std::string kind = text_of(data, DCM_SOPClassUID);
-  // Segments, and label maps, which DCMTK 3.6.7 does not know.
+  // Segmentation and label map storage; DCMTK 3.6.7 has no name for the latter.
   header.is_segmentation = kind == UID_SegmentationStorage || kind == "1.2.840.10008.5.1.4.1.1.66.7";
   if (const std::string uid = text_of(data, DCM_ConcatenationUID); !uid.empty()) {
     header.concatenation = {uid, short_of(data, DCM_InConcatenationNumber).value_or(0),
@@ -549,7 +551,7 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t
     header.undecodable = std::move(loaded->undecodable);
     DcmDataset& data = *header.data->getDataset();
     describe(data, header);
-    // A file that is encoded in an unknown way may look damaged.
+    // A file in an unknown encoding may look damaged.
     const bool is_known = header.undecodable.empty();
     header.lost = loaded->damaged && header.pixel_bytes == 0 && (is_known || !header.is_image());
     if (loaded->damaged) {

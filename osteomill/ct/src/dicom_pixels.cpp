@@ -58,16 +58,17 @@ void rescale_frame(std::span<const char> values, const StoredPixels& pixels, flo
   }
 }
 
-// The frames of one file, decoded one after the other.
+// Decodes the frames of one file one after the other.
 class FrameReader {
  public:
   explicit FrameReader(const DicomHeader& header);
 
-  // Stays until the next one is read.
+  // Returns the decoded frame, valid until the next call.
   std::span<const char> read(std::size_t frame);
-  // The form of the values that were read last: as the header says, unless the compressed data know better.
+  // Returns the format of the values read last: the header's, unless the compressed data are signed and the
+  // header is not.
   StoredPixels form(std::size_t frame);
-  // Whether that mattered.
+  // Returns whether that changed any value.
   bool was_signed_after_all() const { return signed_after_all_; }
 
  private:
@@ -91,7 +92,7 @@ class FrameReader {
   FrameSize size_;
   std::vector<DcmPixelItem*> items_;
   DcmFileCache cache_;
-  // DCMTK wants an even number of bytes.
+  // Size is even, as DCMTK requires.
   std::vector<char> values_;
   bool stream_is_signed_ = false;
   bool signed_after_all_ = false;
@@ -111,8 +112,8 @@ std::span<const unsigned char> FrameReader::bytes_of(DcmPixelItem* item) const {
   return {bytes, item->getLength()};
 }
 
-// The item with which a frame begins: there is one frame, there are as many fragments as frames, or the table
-// says how many bytes lie before it, 8 of them before each fragment (Part 5, A.4).
+// Returns the index of a frame's first item. There is one frame, one fragment per frame, or an offset table
+// with the number of bytes before each frame, including 8 per fragment (Part 5, A.4).
 std::size_t FrameReader::first_fragment(std::size_t frame) const {
   if (frame == 0 || items_.size() == header_.frames + 1) return frame + 1;
   if (frame == header_.frames) return items_.size();
@@ -152,7 +153,7 @@ void FrameReader::read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCach
   if (read.bad() || is_damaged) throw damaged();
 }
 
-// In a data set of its own that holds nothing else, so that no table of offsets leads elsewhere.
+// Decodes in a separate data set that contains nothing else, so that a wrong offset table does no harm.
 void FrameReader::decode_jpeg(std::span<const unsigned char> stream) {
   const bool is_jpeg_ls = syntax_ == EXS_JPEGLSLossless || syntax_ == EXS_JPEGLSLossy;
   if (!jpeg_fits(stream, is_jpeg_ls ? JpegKind::jpeg_ls : JpegKind::jpeg, size_))
@@ -176,7 +177,7 @@ void FrameReader::decode_jpeg(std::span<const unsigned char> stream) {
 
 void FrameReader::read_uncompressed(std::size_t frame) {
   read_by_dcmtk(data_, frame, &cache_);
-  // To DCMTK pixels are words of 16 bits, of which the higher comes first here.
+  // DCMTK swaps only within 16-bit words, so the two words of each value are still in big-endian order.
   if (syntax_ == EXS_BigEndianExplicit && size_.bytes_a_value == 4) {
     for (std::size_t n = 0; n < size_.bytes(); n += 4)
       std::swap_ranges(&values_[n], &values_[n] + 2, &values_[n] + 2);
@@ -201,7 +202,7 @@ void FrameReader::read_floats(std::size_t frame) {
   }
 }
 
-// Frames follow each other without filling bits between them; the first pixel is the lowest bit.
+// Frames follow each other without padding bits; the first pixel is the lowest bit.
 void FrameReader::read_bits(std::size_t frame) {
   const Uint8* bytes = nullptr;
   unsigned long count = 0;
@@ -246,7 +247,7 @@ std::span<const char> FrameReader::read(std::size_t frame) {
 StoredPixels FrameReader::form(std::size_t frame) {
   StoredPixels pixels = header_.slices[frame].pixels;
   if (!stream_is_signed_ || pixels.is_signed) return pixels;
-  // The decoder has put the sign into all bits.
+  // The decoder has sign-extended the values.
   const auto value_bytes = static_cast<std::size_t>(size_.bytes_a_value);
   for (std::size_t n = value_bytes - 1; n < size_.bytes(); n += value_bytes)
     signed_after_all_ = signed_after_all_ || values_[n] < 0;

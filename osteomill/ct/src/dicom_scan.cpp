@@ -26,24 +26,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Pictures that were found together, in the order of their files' names.
+// Pictures found together, in order of their file names.
 struct DicomImages {
   std::vector<DicomHeader> headers;
-  // Files that are no DICOM pictures.
+  // Number of files that are not DICOM pictures.
   std::size_t other_files = 0;
 };
 
-// A frame of one of a series' files.
+// Frame of one of a series' files.
 struct SliceOf {
   std::size_t header;
   std::size_t frame;
 };
 
-// One series: pictures that were taken together, in the order of their files.
+// One series, its pictures in order of their files.
 struct DicomSeries {
   std::string uid;
   std::vector<DicomHeader> headers;
-  // Pictures that are no slices of it, with the reasons.
+  // Pictures that are not slices of the series, with the reasons.
   std::vector<std::string> left_out = {};
 
   bool is_ct() const { return headers.front().modality == "CT"; }
@@ -54,7 +54,7 @@ struct DicomSeries {
   const DicomSlice& operator[](const SliceOf& slice) const {
     return headers[slice.header].slices[slice.frame];
   }
-  // Every slice, file by file.
+  // Returns all slices, file by file.
   std::vector<SliceOf> slices() const {
     std::vector<SliceOf> all;
     for (std::size_t n = 0; n < headers.size(); ++n) {
@@ -73,16 +73,16 @@ std::vector<float> densities_of(const DicomSeries& series, const SliceOf& slice)
   return densities;
 }
 
-// A series, or a part of one.
+// A series or a part of one.
 struct DicomPart {
   const DicomSeries* series;
-  // Its number in the list that users see: 3, or 3.1 if the series has several parts.
+  // Number shown to users: 3, or 3.1 if the series has several parts.
   std::string number;
   // See SeriesPart.
   std::string told_by;
   std::vector<SliceOf> slices;
 
-  // Throws the first fault of a file.
+  // Returns the planes of the slices. Throws the first fault among the series' files.
   std::vector<SlicePlane> planes() const {
     for (const DicomHeader& header : series->headers) {
       if (header.fault) throw *header.fault;
@@ -97,7 +97,7 @@ struct DicomPart {
       if (apart_mm.norm() > kSamePlace_mm) return false;
       const std::vector<float> one = densities_of(*series, slices[a]),
                                other = densities_of(*series, slices[b]);
-      // By their bits, since padding equals nothing.
+      // Compares bits, because padding is NaN.
       return std::memcmp(one.data(), other.data(), one.size() * sizeof(float)) == 0;
     };
   }
@@ -124,10 +124,10 @@ struct DicomPart {
   }
 };
 
-// A study has some thousands.
+// Studies have some thousands of files.
 constexpr std::size_t kMaxFiles = 1 << 16;
 
-// Throws InputError naming the folder if it cannot be read or holds too many files.
+// Throws InputError, naming the folder, if it cannot be read or contains too many files.
 template <typename Iterator>
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::error_code error;
@@ -158,7 +158,7 @@ DicomImages images_of(const std::vector<fs::path>& files, std::uint64_t max_byte
   return images;
 }
 
-// Names on a disc are in capitals, and become small letters on some systems.
+// Names on a disc are upper case, but some systems show them in lower case.
 std::optional<fs::path> file_named(const fs::path& folder, const fs::path& name) {
   std::error_code ignored;
   for (const std::string& spelling : {name.string(), lower(name.string())}) {
@@ -167,7 +167,7 @@ std::optional<fs::path> file_named(const fs::path& folder, const fs::path& name)
   return std::nullopt;
 }
 
-// Size and spacing as they would be read.
+// Returns size and spacing of the volume that would be read.
 std::string size_and_spacing(const DicomPart& part) {
   try {
     const GridGeometry grid = stack_slices("", part.planes(), part.same_pixels()).geometry;
@@ -178,8 +178,8 @@ std::string size_and_spacing(const DicomPart& part) {
   }
 }
 
-// Returns the images of the files that a DICOMDIR names, which lie beside and below it. Throws InputError
-// naming it if it names one that is not there.
+// Returns the images of the files that a DICOMDIR lists, in its folder and below. Throws InputError, naming
+// the DICOMDIR, if one is missing.
 DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_bytes) {
   const std::string subject = dicomdir.file.string();
   std::vector<fs::path> files;
@@ -193,8 +193,7 @@ DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_b
   return images_of(files, max_bytes);
 }
 
-// Sorts pictures by their series; if no series is named, by their folder. In the order of their first
-// files.
+// Groups pictures by series, or by folder if they name no series. Series are ordered by their first files.
 std::vector<DicomSeries> sort_into_series(std::vector<DicomHeader> images) {
   std::vector<DicomSeries> all;
   for (DicomHeader& header : images) {
@@ -211,7 +210,7 @@ std::string counted(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-// Pictures in a series of slices that are meant to be no slices.
+// Excludes pictures of a series that are not slices, unless it has no others.
 void set_aside_pictures(DicomSeries& series) {
   const auto first = std::stable_partition(
       series.headers.begin(), series.headers.end(),
@@ -222,7 +221,8 @@ void set_aside_pictures(DicomSeries& series) {
   series.headers.erase(first, series.headers.end());
 }
 
-// Single slices that fit none of the others, unless there are as many of them.
+// Excludes single slices that fit no others, unless there are at least as many as the largest part has
+// slices.
 void set_aside_slices(DicomSeries& series, std::vector<DicomPart>& parts) {
   const auto largest = std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
     return a.slices.size() < b.slices.size();
@@ -241,7 +241,7 @@ void set_aside_slices(DicomSeries& series, std::vector<DicomPart>& parts) {
   std::erase_if(parts, is_single);
 }
 
-// Returns what one can choose from in a series: all of it or, if that is not one volume, its parts.
+// Returns the choices in a series: all of it or, if that is not one volume, its parts.
 std::vector<DicomPart> parts_of(DicomSeries& series, std::size_t number) {
   set_aside_pictures(series);
   const DicomPart whole{&series, fmt::format("{}", number), "", series.slices()};
@@ -274,13 +274,13 @@ SeriesSummary summary_of(const DicomPart& part) {
   try {
     summary.thickness_mm = stack_slices("", part.planes(), part.same_pixels()).geometry.spacing_mm.z();
   } catch (const InputError&) {
-    // Then it is no volume.
+    // Not a volume.
   }
   return summary;
 }
 
-// Describes a series in a line: number, modality, description, what tells it from other parts,
-// size, spacing, where it lies, UID.
+// Describes a series in one line: number, modality, description, distinguishing mark, size, spacing, first
+// file, UID.
 std::string describe(const DicomPart& part) {
   const DicomHeader& first = part.series->headers[part.slices.empty() ? 0 : part.slices.front().header];
   return fmt::format("{}: {} \"{}\", {}{}{}, from {}, {}", part.number, first.modality,
@@ -288,7 +288,8 @@ std::string describe(const DicomPart& part) {
                      size_and_spacing(part), first.file.filename().string(), in_one_line(part.series->uid));
 }
 
-// The one with the most pixels; CT before others, and of one series volumes before what is none.
+// Returns the part with the most pixels; prefers CT to other modalities and, within a series, parts that form
+// a volume.
 const DicomPart& largest_of(const std::vector<DicomPart>& all) {
   const auto has_parts = [](const DicomPart& part) { return part.number.find('.') != std::string::npos; };
   std::vector<std::pair<bool, std::uint64_t>> sizes;
@@ -299,8 +300,9 @@ const DicomPart& largest_of(const std::vector<DicomPart>& all) {
   return all[static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin())];
 }
 
-// Which of `all` is `wanted`: a number in their list, a UID or the beginning of one. Empty: the one of
-// `file`, or the largest. Throws InputError naming `subject` if none, or more than one series, is.
+// Returns the part that matches `wanted`: its number, a UID or a prefix of one. If empty, returns the part
+// with `file`, or the largest. Throws InputError, naming `subject`, if no part matches, or parts of several
+// series do.
 const DicomPart& pick_part(const std::string& subject, const std::vector<DicomPart>& all,
                            const std::string& wanted, const fs::path& file) {
   std::vector<DicomPart> found;
@@ -332,7 +334,7 @@ const DicomPart& pick_part(const std::string& subject, const std::vector<DicomPa
       subject, fmt::format("{} series {}, of: {}", found.empty() ? "has no" : "has several", wanted, list));
 }
 
-// Scout views are no part of a series, even if they carry its number.
+// Scout views are not part of a series, even if they have its UID.
 void drop_localizers(std::vector<DicomHeader>& images, std::vector<std::string>& warnings) {
   const auto first = std::stable_partition(images.begin(), images.end(),
                                            [](const DicomHeader& header) { return !header.is_localizer; });
@@ -353,7 +355,7 @@ void add_notes(const DicomHeader& first, std::vector<std::string>& warnings) {
   }
 }
 
-// Slice after slice, as the stack has them.
+// Reads the densities, slice by slice in the order of the stack.
 std::vector<float> read_densities(const DicomPart& part, const SliceStack& stack,
                                   std::vector<DicomHeader>& headers, std::vector<std::string>& warnings) {
   const std::size_t slice_size =
@@ -382,7 +384,7 @@ std::vector<float> read_densities(const DicomPart& part, const SliceStack& stack
   return densities;
 }
 
-// Files over which one image was parted, if some of them are not there.
+// Warns if some of the files of a split image are missing.
 void check_concatenation(const DicomPart& part, std::vector<std::string>& warnings) {
   std::set<std::pair<std::string, int>> found;
   int total = 0;
@@ -398,8 +400,8 @@ void check_concatenation(const DicomPart& part, std::vector<std::string>& warnin
   }
 }
 
-// Numbers that do not run along the stack are a sign of several scans that nothing else tells apart, unless
-// all are the same.
+// Warns if slice numbers are not monotonic along the stack, unless all are equal: the slices may be of
+// several scans that nothing else distinguishes.
 void check_numbers(const DicomPart& part, const SliceStack& stack, std::vector<std::string>& warnings) {
   std::vector<const SlicePlane*> planes;
   for (const std::size_t n : stack.order) {
@@ -420,8 +422,8 @@ void check_numbers(const DicomPart& part, const SliceStack& stack, std::vector<s
   }
 }
 
-// Densities that no CT has are a sign of a header that is wrong about the numbers' sign or order of bytes.
-// Fields of view are filled with -3024 and less; metal may have 30 000 in the widest of scales.
+// Warns of densities that no CT has, which indicate a wrong sign or byte order in the header. Padding is
+// about -3024 or less; metal may reach 30 000 on extended scales.
 void check_hounsfield_units(const std::vector<float>& densities, std::vector<std::string>& warnings) {
   constexpr float kLeast = -10'000, kMost = 32'767;
   float least = 0, most = 0;
@@ -462,7 +464,7 @@ Scan build_scan(const std::string& subject, const DicomPart& part, std::vector<D
           in_hounsfield_units};
 }
 
-// Warns of what was chosen for the user, and what else there is.
+// Warns which series was chosen automatically, and lists the others.
 void add_choice(const DicomPart& picked, const std::vector<DicomPart>& all, std::size_t series_count,
                 const std::string& wanted, std::vector<std::string>& warnings) {
   if (series_count > 1 && wanted.empty()) {
@@ -482,7 +484,7 @@ void add_choice(const DicomPart& picked, const std::vector<DicomPart>& all, std:
   }
 }
 
-// Segmentations beside other pictures are left to --labels.
+// Excludes segmentations next to other pictures; --labels reads them.
 void drop_segmentations(std::vector<DicomHeader>& images, std::vector<std::string>& warnings) {
   const auto first = std::stable_partition(images.begin(), images.end(),
                                            [](const DicomHeader& header) { return !header.is_segmentation; });
@@ -493,7 +495,7 @@ void drop_segmentations(std::vector<DicomHeader>& images, std::vector<std::strin
   images.erase(first, images.end());
 }
 
-// One of what may be several series; of the one to which `file` belongs, if one is named.
+// Reads one of possibly several series; that of `file`, if given.
 Scan read_images(const std::string& subject, DicomImages images, const ReadOptions& options,
                  const fs::path& file = {}) {
   std::vector<std::string> warnings;
@@ -565,7 +567,7 @@ std::optional<Scan> read_folder(const fs::path& folder, const ReadOptions& optio
   return read_images(folder.string(), std::move(images), options);
 }
 
-// The others of its series are beside it.
+// Collects the files of a series from the folder of one of them.
 DicomImages series_of(DicomHeader header, std::uint64_t max_bytes) {
   const fs::path file = header.file;
   const std::string uid = header.series_uid;

@@ -16,7 +16,7 @@ class DicomSeries : public testing_support::FolderTest {
     ASSERT_TRUE(save(*made_up_slice(slice), folder_ / slice.file, slice.syntax));
   }
 
-  // Names run against the positions.
+  // File names are in reverse order of the positions.
   void write_series(E_TransferSyntax syntax = EXS_LittleEndianExplicit) const {
     for (int k = 0; k < 4; ++k) write_slice({.file = "f" + std::to_string(9 - k), .k = k, .syntax = syntax});
   }
@@ -69,7 +69,7 @@ TEST_F(DicomSeries, SeriesAreOfferedBeforeAnyPixelIsRead) {
   struct GivenUp {};
   options.choose_series = [](const auto&) -> std::string { throw GivenUp(); };
   EXPECT_THROW(read_scan(folder_, options), GivenUp);
-  // A file says which series is meant, and so does its number.
+  // A file selects its series, and so does the number of the series.
   expect_series(read_scan(folder_ / "f7", options));
   options.series = "1";
   expect_series(read_scan(folder_, options));
@@ -85,7 +85,7 @@ TEST_F(DicomSeries, EveryEncodingGivesTheSame) {
   }
 }
 
-// Every fragment becomes two; the table of offsets says where each frame begins.
+// Splits every fragment in two; the offset table gives the start of each frame.
 void split_fragments(const fs::path& path, bool with_table = true) {
   DcmFileFormat file;
   ASSERT_TRUE(file.loadFile(path.c_str()).good());
@@ -126,7 +126,7 @@ TEST_F(DicomSeries, AFrameMayLieInSeveralFragments) {
   }
 }
 
-// The decoder goes on with what it has, and would hand over what it made of it.
+// The decoder continues with damaged data and would return its result.
 TEST_F(DicomSeries, CompressedPixelsThatAreDamagedAreRefused) {
   write_series(EXS_JPEGProcess14SV1);
   std::ifstream in(folder_ / "f7", std::ios::binary);
@@ -144,7 +144,7 @@ TEST_F(DicomSeries, CompressedPixelsThatAreDamagedAreRefused) {
   other.replace(other.find(size), 4, {"\x00\x07\x00\x05", 4});
   write("f7", other);
   EXPECT_TRUE(contains(refusal(folder_), "not what its header says"));
-  // DCMTK would look for the image behind this marker for ever.
+  // DCMTK would search endlessly for the image after this marker.
   std::string endless = bytes;
   endless.replace(endless.rfind("\xFF\xD8"), 2, "\xFF\x01");
   write("f7", endless);
@@ -155,7 +155,7 @@ TEST_F(DicomSeries, CompressedPixelsThatAreDamagedAreRefused) {
   EXPECT_TRUE(contains(refusal(folder_), "not what its header says"));
 }
 
-// An element of a sequence that holds a sequence, and so on.
+// Returns a file with sequences nested `depth` levels deep.
 std::string nested(int depth) {
   std::string bytes = std::string(128, '\0') + "DICM";
   for (int n = 0; n < depth; ++n) {
@@ -189,8 +189,7 @@ TEST_F(DicomSeries, EveryLengthToWhichASliceCanBeCutIsNoticed) {
     const auto size = fs::file_size(folder_ / "f9");
     for (auto length = size - 1; length > 0; --length) {
       fs::resize_file(folder_ / "f9", length);
-      // A file cut to nothing that looks like DICOM is left out, with a warning: it cannot be told from other
-      // files.
+      // A file too short to be recognised as DICOM is left out with a warning, like any other file.
       std::string said = refusal(folder_);
       if (said.empty()) said = read_scan(folder_).warnings.empty() ? "" : read_scan(folder_).warnings.front();
       ASSERT_FALSE(said.empty()) << length << " of " << size;
@@ -240,7 +239,7 @@ TEST_F(DicomSeries, TheLargestCtOfSeveralSeriesIsReadAndAnyCanBeChosen) {
   for (const char* wanted : {"4", "0", "1.2", "9.9"}) {
     EXPECT_THROW(read_series(folder_, wanted), InputError) << wanted;
   }
-  // The series of a file is its own.
+  // The path of a file selects its own series.
   EXPECT_EQ(read_scan(folder_ / "more/deep/a1").grid.geometry().dims[2], 3);
   EXPECT_THROW(read_series(folder_ / "more/deep/a1", "1.2.5"), InputError);
 }
@@ -265,7 +264,7 @@ TEST_F(DicomSeries, TwoTimePointsOfASeriesAreTwoToChooseFrom) {
   expect_series(read_series(folder_, "1"));
   expect_series(read_scan(folder_ / "f8"));
   EXPECT_THROW(read_series(folder_, "1.3"), InputError);
-  // A series that is no volume is passed over.
+  // A series that is not a volume is skipped.
   for (const int k : {4, 7, 8}) {
     const auto slice = made_up_slice({.k = k, .instance = "1.2.9." + std::to_string(k)});
     slice->getDataset()->putAndInsertString(DCM_TemporalPositionIdentifier, "2");
@@ -284,7 +283,7 @@ TEST_F(DicomSeries, AnOddPictureIsLeftOutByNameAndAWarning) {
   expect_series(read_scan(folder_));
   EXPECT_EQ(read_scan(folder_).warnings.at(0), "1 picture left out: turned, of another orientation");
   EXPECT_TRUE(contains(refusal(folder_ / "turned"), "turned: is a picture of its own"));
-  // Nor a report in colour, or without a place.
+  // Reports in colour or without a position are left out too.
   file.getDataset()->putAndInsertString(DCM_PhotometricInterpretation, "RGB");
   ASSERT_TRUE(save(file, folder_ / "turned", EXS_LittleEndianExplicit));
   expect_series(read_scan(folder_));
@@ -295,13 +294,13 @@ TEST_F(DicomSeries, AnOddPictureIsLeftOutByNameAndAWarning) {
   ASSERT_TRUE(save(file, folder_ / "turned", EXS_LittleEndianExplicit));
   expect_series(read_scan(folder_));
   EXPECT_EQ(read_scan(folder_).warnings.at(0), "1 picture left out: turned, a picture without a place");
-  // Without it a slice is missing.
+  // Without that file, a slice is missing.
   fs::remove(folder_ / "turned");
   write_slice({.file = "f7", .k = 2, .image_type = "ORIGINAL\\PRIMARY\\LOCALIZER"});
   EXPECT_TRUE(contains(refusal(folder_), "a slice is missing"));
 }
 
-// A disc's folder: names in capitals, each record with what lies under it.
+// Folder of a disc: upper-case names, nested directory records.
 TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
   fs::create_directories(folder_ / "IMAGES" / "S1");
   fs::create_directories(folder_ / "images2");
@@ -318,7 +317,7 @@ TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
     write_slice({.file = "IMAGES/S1/I" + std::to_string(k), .k = k});
     add("IMAGE", "IMAGES\\S1\\I" + std::to_string(k));
   }
-  // Not named, so not looked for; and one that some systems show in small letters.
+  // One file that is not listed and must be ignored; others in lower case, as some systems show them.
   write_slice({.file = "IMAGES/S1/OTHER", .k = 9});
   for (int k = 0; k < 2; ++k) {
     write_slice({.file = "images2/i" + std::to_string(k), .k = k, .series = "1.2.9"});
@@ -336,7 +335,7 @@ TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
   EXPECT_TRUE(contains(refusal(dicomdir), "DICOMDIR: names IMAGES/S1/I2, which is not there"));
 }
 
-// Enhanced CT: all frames in one file, each with a place and a meaning of its own.
+// Enhanced CT: all frames in one file, each with its own position and rescaling.
 TEST_F(DicomSeries, FramesOfAnEnhancedFileLieWhereTheirGroupsSay) {
   DcmFileFormat file;
   DcmDataset& data = *file.getDataset();
@@ -359,7 +358,7 @@ TEST_F(DicomSeries, FramesOfAnEnhancedFileLieWhereTheirGroupsSay) {
   put(DCM_PixelMeasuresSequence, -1, DCM_PixelSpacing, "0.25\\0.5");
   put(DCM_PlaneOrientationSequence, -1, DCM_ImageOrientationPatient, "1\\0\\0\\0\\1\\0");
   std::vector<Uint16> pixels;
-  // The frames are not in the order of their places, and the slope of one is another.
+  // The frames are not in order of position, and one has another slope.
   const std::array<int, 4> place_of_frame{2, 0, 3, 1};
   for (int frame = 0; frame < 4; ++frame) {
     const int k = place_of_frame[static_cast<std::size_t>(frame)];
@@ -386,7 +385,7 @@ TEST_F(DicomSeries, FramesOfAnEnhancedFileLieWhereTheirGroupsSay) {
     split_fragments(folder_ / "many", false);
     EXPECT_TRUE(contains(refusal(folder_ / "many"), "which of its fragments"));
   }
-  // The first file of two over which the image is parted.
+  // First of two files of a split image.
   data.putAndInsertString(DCM_ConcatenationUID, "1.2.3.9");
   data.putAndInsertUint16(DCM_InConcatenationNumber, 1);
   data.putAndInsertUint16(DCM_InConcatenationTotalNumber, 2);
@@ -407,7 +406,7 @@ TEST_F(DicomSeries, MoreMemoryThanAllowedIsRefusedBeforeItIsTaken) {
   } catch (const InputError& error) {
     EXPECT_TRUE(contains(error.what(), "for its voxels, over the")) << error.what();
   }
-  // Nor is a file read that is longer than that.
+  // A file longer than the limit is refused too.
   fs::resize_file(folder_ / "f7", 10'000'000'000);
   try {
     read_scan(folder_, {.series = "", .max_memory_bytes = 1'000'000'000});
@@ -422,7 +421,7 @@ TEST_F(DicomSeries, TwoImagesAtOnePlaceAreRefusedAndACopyIsNot) {
   fs::copy_file(folder_ / "f7", folder_ / "copy");
   expect_series(read_scan(folder_));
   EXPECT_TRUE(contains(read_scan(folder_).warnings.front(), "copy"));
-  // Another name does not make it another image.
+  // A copy under another name is not another image.
   write_slice({.file = "other", .k = 2, .instance = "1.2.3.98"});
   expect_series(read_scan(folder_));
   write_slice({.file = "other", .k = 2, .instance = "1.2.3.98", .slope = "3"});
@@ -437,7 +436,7 @@ TEST_F(DicomSeries, ATiltedGantryIsPutStraight) {
   const Scan scan = read_scan(folder_);
   EXPECT_TRUE(contains(scan.warnings.front(), "tilted by 18.4 degrees"));
   ASSERT_EQ(scan.grid.geometry().dims, (std::array<int, 3>{kColumns, kRows + 3, 4}));
-  // The drift is one pixel a slice, so that nothing is smoothed.
+  // The drift is one pixel per slice, so that interpolation is exact.
   const VoxelIndex moved{3, 1 + 2, 2};
   EXPECT_NEAR(static_cast<double>(scan.grid[moved]), 2 * stored_value(3, 1, 2) - 100, 1e-3);
 }
@@ -448,11 +447,11 @@ TEST_F(DicomSeries, PaddingIsNoDensity) {
     int bits;
     int padding;
     int limit;
-    // In both corners of every slice.
+    // Padding values in the two corners of every slice.
     int first;
     int last;
   };
-  // A value beyond the bits that are stored; a negative one, however it is written; and a range, either way.
+  // A value beyond the stored bits; a negative one, signed or unsigned; and a range in either direction.
   for (const Case& of : {Case{0, 16, 63536, 0, 63536, 63536}, Case{0, 12, 63536, 0, 63536, 63536},
                          Case{1, 16, 63536, 0, -2000, -2000}, Case{1, 12, -2000, 0, -2000, 2096},
                          Case{0, 16, 65000, 65010, 65000, 65010}, Case{0, 16, 65010, 65000, 65005, 65010},
@@ -508,7 +507,7 @@ TEST_F(DicomSeries, PixelsMayBeFloats) {
   }
 }
 
-// A file's own word for its transfer syntax, which is not the one that it has.
+// Makes a file state a transfer syntax that it does not have.
 void say_syntax(const fs::path& path, const std::string& said) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), {});
@@ -533,7 +532,7 @@ TEST_F(DicomSeries, AnotherPlainSyntaxThanIsSaidIsNoticed) {
   }
 }
 
-// Makes the data set of slice k, a file with compressed pixels, implicit.
+// Rewrites the data set of slice k, which has compressed pixels, with implicit value representations.
 void make_implicit(const fs::path& path, int k) {
   DcmFileFormat file;
   ASSERT_TRUE(file.loadFile(path.c_str()).good());
@@ -562,7 +561,7 @@ void make_implicit(const fs::path& path, int k) {
   std::string uid = syntax.getXferID();
   if (uid.size() % 2 != 0) uid += '\0';
   bytes.replace(at, plain.size() + 1, std::string{static_cast<char>(uid.size()), '\0'} + uid);
-  // The length of the meta group.
+  // Length of the meta group.
   const std::size_t group = bytes.find(std::string("\x02\0\0\0UL\x04\0", 8)) + 8;
   bytes[group] = static_cast<char>(bytes[group] + static_cast<char>(uid.size()) - 18);
   std::ofstream(path, std::ios::binary) << bytes;
@@ -578,7 +577,7 @@ TEST_F(DicomSeries, CompressedPixelsAreReadInAnImplicitDataSet) {
 }
 
 TEST_F(DicomSeries, ASyntaxThatIsNotDecodedIsNamed) {
-  // None longer than what the slice says before.
+  // None is longer than the UID in the file.
   for (const auto& [uid, name] :
        {std::pair{"1.2.840.10008.1.2.4.92", "(1.2.840.10008.1.2.4.92), which is not"},
         {"1.2.840.113619.5.2", "a private syntax of GE (1.2.840.113619.5.2)"},
@@ -642,10 +641,10 @@ TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
     EXPECT_TRUE(scan.grid.geometry().direction.col(2).isApprox(Vec3::UnitX()));
     EXPECT_EQ((scan.grid[{3, 2, 2}]), 2 * stored_value(3, 2, 2) - 100);
     EXPECT_TRUE(contains(scan.warnings.at(0), "the second 0.75 mm from the first"));
-    // Functional groups need not say it either.
+    // Functional groups need not contain the position either.
     with_groups = tag == DCM_SliceLocationVector;
   }
-  // Against the normal the last lies lowest.
+  // With a negative spacing, the last slice is lowest.
   write(DCM_SpacingBetweenSlices, "-0.75", "1\\0\\0\\0\\1\\0");
   EXPECT_EQ((read_scan(folder_ / "many").grid[{3, 2, 0}]), 2 * stored_value(3, 2, 2) - 100);
   write(DCM_SpacingBetweenSlices, "0", "1\\0\\0\\0\\1\\0");
@@ -658,12 +657,12 @@ TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
 
 TEST_F(DicomSeries, WhatFollowsThePixelsIsNotRead) {
   write_series();
-  // Sparse: only reading all of it would take its time.
+  // Sparse file: only reading all of it would take long.
   fs::resize_file(folder_ / "f7", 1'000'000'000);
   expect_series(read_scan(folder_));
 }
 
-// Returns how many bytes this process has read from files so far.
+// Returns the number of bytes this process has read from files.
 std::uint64_t bytes_read() {
   std::ifstream io("/proc/self/io");
   std::string word;
@@ -679,13 +678,13 @@ TEST_F(DicomSeries, WhatFollowsFloatPixelsIsNotRead) {
       const auto slice = made_up_float_slice(k, stored_floats(k), is_double);
       ASSERT_TRUE(save(*slice, folder_ / ("f" + std::to_string(k)), EXS_LittleEndianExplicit));
     }
-    // Few enough that no items are counted in them.
+    // Too short for items to be counted.
     const std::string zeros(2'000'000, '\0');
     std::ofstream(folder_ / "f2", std::ios::binary | std::ios::app) << zeros;
     const std::uint64_t before = bytes_read();
     expect_series(read_scan(folder_));
     EXPECT_LT(bytes_read() - before, zeros.size() / 2);
-    // Nor what is no zero, and would be taken for elements that are damaged.
+    // Trailing data other than zeros, which would be taken for damaged elements.
     std::ofstream(folder_ / "f2", std::ios::binary | std::ios::app) << "no element";
     expect_series(read_scan(folder_));
   }

@@ -19,16 +19,16 @@ namespace osteomill {
 
 namespace {
 
-// Positions and spacings are rounded.
+// Tolerance for rounded positions, as a fraction of the spacing.
 constexpr double kOffShare = 0.1;
 
-// The grid on which the frames lie, and the slice of each.
+// Grid of the frames, and the slice index of each frame.
 struct FrameGrid {
   GridGeometry geometry;
   std::vector<int> slices;
 };
 
-// The least distance of two heights, which ascend.
+// Returns the smallest distance between ascending heights that do not coincide; infinite if there is none.
 double least_distance_mm(const std::vector<double>& heights_mm) {
   double least_mm = std::numeric_limits<double>::infinity();
   for (std::size_t n = 1; n < heights_mm.size(); ++n) {

@@ -8,10 +8,10 @@
 
 namespace osteomill {
 
-/// Makes a scan of labels of a DICOM segmentation, whose header has no fault: each voxel has the number of
-/// its segment, 0 if it has none. Only slices that hold something are stored; the others are put between
-/// them. If segments overlap the one of the higher number is kept, with a warning. Throws InputError naming
-/// `subject` if the frames lie on no straight, even grid. Only within `with_dicom_stack`.
+/// Converts a DICOM segmentation, whose header must have no fault, to a scan of labels: each voxel has the
+/// number of its segment, or 0. Adds the empty slices, which segmentations may omit. If segments overlap,
+/// keeps the higher number and adds a warning. Throws InputError, naming `subject`, if the frames do not lie
+/// on a straight, even grid. Call only within `with_dicom_stack`.
 Scan read_segmentation(const std::string& subject, const DicomHeader& header, const ReadOptions& options);
 
 }  // namespace osteomill

@@ -38,7 +38,7 @@ TEST_F(DicomSegmentation, IsALabelMapWithItsNames) {
   EXPECT_EQ(scan.labels[1].name,
             "Sch\xC3\xA4"
             "del");
-  // White, as DICOM has it.
+  // White as CIELab in DICOM.
   EXPECT_EQ(scan.labels[1].colour, (std::array<std::uint8_t, 3>{255, 255, 255}));
 }
 

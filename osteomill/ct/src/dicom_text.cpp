@@ -19,8 +19,8 @@ namespace osteomill {
 
 namespace {
 
-// The set of bytes from 0x80 on that a term of SpecificCharacterSet, or an escape sequence, names (Part 3,
-// C.12.1.1.2).
+// Character set of the bytes from 0x80 on, as named by a term of SpecificCharacterSet or an escape sequence
+// (Part 3, C.12.1.1.2).
 struct HighBytes {
   std::string_view term;
   std::string_view escape;
@@ -61,25 +61,25 @@ std::optional<std::string> convert(const char* charset, std::string text) {
   return utf8;
 }
 
-// Text between two escape sequences, of which the first begins it without its ESC.
+// Text up to the next escape sequence, with the escape sequence before it (without ESC).
 struct Piece {
   std::string_view escape;
   std::string_view text;
 };
 Piece piece_of(std::string_view text, bool has_escape) {
-  // ISO 2022: intermediate bytes, then a final one.
+  // ISO 2022: intermediate bytes, then a final byte.
   std::size_t length = 0;
   while (has_escape && length < text.size() && text[length] >= ' ' && text[length] < '0') ++length;
   if (has_escape && length < text.size()) ++length;
   return {text.substr(0, length), text.substr(length)};
 }
 
-// Decodes texts that change their sets by escape sequences. DCMTK leaves some of them if the library that it
-// is built with lacks a set, as Debian's lacks those of Japanese.
+// Decodes texts that switch character sets by escape sequences. DCMTK fails on some of them if its conversion
+// library lacks a set, as Debian's lacks the Japanese ones.
 std::optional<std::string> from_iso2022(std::string_view first_set, std::string_view text) {
   std::string_view two_bytes;
   const char* high = "ASCII";
-  // "IR 100" of both "ISO_IR 100" and "ISO 2022 IR 100".
+  // Offset of "IR 100" in "ISO 2022 IR 100", to match "ISO_IR 100" too.
   constexpr std::size_t kNumber = 9;
   for (const HighBytes& set : kHighBytes) {
     if (first_set.starts_with("ISO") && first_set.ends_with(set.term.substr(kNumber))) high = set.charset;

@@ -7,9 +7,9 @@ class DcmTagKey;
 
 namespace osteomill {
 
-/// Returns the text of an element for people to read: in UTF-8, out of the character sets that `data` names
-/// (else UTF-8 or, if it is none, Latin 1), with a question mark for every control character. Empty if there
-/// is no such element.
+/// Returns the text of an element for display, converted to UTF-8 from the character sets that `data` names
+/// (if none: UTF-8 or, if invalid, Latin 1). Replaces control characters by question marks. Empty if the
+/// element is missing.
 std::string shown_text(DcmItem& data, const DcmTagKey& tag);
 
 }  // namespace osteomill

@@ -16,8 +16,8 @@ namespace {
 
 using Bytes = std::span<const unsigned char>;
 
-// PackBits (Part 5, G.3.1): every `step`th of `values` from `first` on, and behind them at most a byte that
-// makes the length even.
+// Decodes PackBits (Part 5, G.3.1) into every `step`th of `values` from `first` on. Accepts one trailing
+// byte, which makes the length even.
 bool unpack_segment(Bytes segment, std::span<char> values, std::size_t first, std::size_t step) {
   std::size_t at = first;
   std::size_t here = 0;
@@ -36,7 +36,7 @@ bool unpack_segment(Bytes segment, std::span<char> values, std::size_t first, st
   return segment.size() - here <= 1;
 }
 
-// OpenJPEG reads through functions.
+// Input callbacks for OpenJPEG.
 struct Stream {
   Bytes bytes;
   std::size_t here = 0;
@@ -82,7 +82,7 @@ bool is_frame_marker(JpegKind kind, int marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-// Those that have a length: not TEM, RST, SOI, EOI and what is reserved; nor the other kind's image.
+// Markers with a length: not TEM, RST, SOI, EOI or reserved ones, nor the frame marker of the other kind.
 bool is_segment_marker(JpegKind kind, int marker) {
   const JpegKind other = kind == JpegKind::jpeg ? JpegKind::jpeg_ls : JpegKind::jpeg;
   return marker >= 0xC0 && marker < 0xFF && !(marker >= 0xD0 && marker <= 0xD9) &&
@@ -92,8 +92,8 @@ bool is_segment_marker(JpegKind kind, int marker) {
 }  // namespace
 
 bool decode_rle(Bytes stream, const FrameSize& size, std::span<char> values) {
-  // The header (Part 5, G.5): how many segments, and where each begins. Each holds one byte of every value,
-  // the highest first.
+  // Header (Part 5, G.5): number of segments and their offsets. Each segment holds one byte of every value,
+  // the most significant first.
   constexpr std::size_t kHeader = 64;
   const auto number = [&](std::size_t n) {
     return static_cast<std::size_t>(stream[4 * n]) | static_cast<std::size_t>(stream[4 * n + 1]) << 8 |
@@ -114,7 +114,7 @@ bool decode_rle(Bytes stream, const FrameSize& size, std::span<char> values) {
 }
 
 bool decode_jpeg2000(Bytes bytes, const FrameSize& size, std::span<char> values) {
-  // A bare code stream, as DICOM wants it, or one in boxes.
+  // A bare code stream, as DICOM requires, or one in JP2 boxes.
   constexpr std::array<unsigned char, 4> kBoxes{'j', 'P', ' ', ' '};
   const bool boxed = bytes.size() > 8 && std::equal(kBoxes.begin(), kBoxes.end(), bytes.begin() + 4);
   Stream source{bytes};
@@ -145,8 +145,8 @@ bool decode_jpeg2000(Bytes bytes, const FrameSize& size, std::span<char> values)
 }
 
 bool is_signed_jpeg2000(Bytes bytes) {
-  // The code stream begins with two markers, start and sizes; the first component's precision, and its sign
-  // in the highest bit, come behind the sizes and the number of components.
+  // The code stream starts with two markers, start and size. The first component's precision, with the sign
+  // in the highest bit, follows the sizes and the number of components.
   constexpr std::array<unsigned char, 4> kStart{0xFF, 0x4F, 0xFF, 0x51};
   constexpr std::ptrdiff_t kPrecision = 42;
   const auto start = std::search(bytes.begin(), bytes.end(), kStart.begin(), kStart.end());
@@ -157,7 +157,7 @@ bool jpeg_fits(Bytes bytes, JpegKind kind, const FrameSize& size) {
   const auto number = [&](std::size_t n) { return bytes[n] << 8 | bytes[n + 1]; };
   if (bytes.size() < 2 || number(0) != 0xFFD8) return false;
   std::size_t here = 2;
-  // A segment: FF, marker, length of what follows.
+  // Segment: FF, marker, length of the rest.
   while (here + 10 <= bytes.size() && bytes[here] == 0xFF) {
     const int marker = bytes[here + 1];
     if (is_frame_marker(kind, marker)) {

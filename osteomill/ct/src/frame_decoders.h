@@ -4,7 +4,7 @@
 
 namespace osteomill {
 
-/// The size of grey frames, as a DICOM header gives it.
+/// Size of grey frames according to a DICOM header.
 struct FrameSize {
   int columns = 0;
   int rows = 0;
@@ -15,19 +15,19 @@ struct FrameSize {
   std::size_t bytes() const { return values() * static_cast<std::size_t>(bytes_a_value); }
 };
 
-/// These decode what DCMTK does not decode, or not safely: its RLE decoder reads and writes where a damaged
-/// header tells it to. One frame each, into `values` with room for `size.bytes()`; false if the stream is
-/// damaged, cut short, or of another size.
+/// Decoders that DCMTK lacks or whose DCMTK version is unsafe: its RLE decoder accesses memory out of bounds
+/// if the header is damaged. Each decodes one frame into `values`, which must have room for `size.bytes()`;
+/// returns false if the stream is damaged, cut short or of another size.
 bool decode_rle(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 bool decode_jpeg2000(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 
-/// Returns whether a JPEG 2000 stream says that its values have a sign.
+/// Returns whether the header of a JPEG 2000 stream declares signed values.
 bool is_signed_jpeg2000(std::span<const unsigned char> stream);
 
 enum class JpegKind { jpeg, jpeg_ls };
-/// Returns whether a stream is of the kind that it is said to be, and has nothing but well-formed segments
-/// before a grey image of that size with no more bits than `size` has room for. DCMTK does not check this: it
-/// never returns from data that are no segment, or from an image of the other kind.
+/// Returns whether a stream is of this kind and has only well-formed segments before a grey image of this
+/// size, with no more bits than `size` allows. DCMTK does not check this: it hangs on data that are not a
+/// segment and on an image of the other kind.
 bool jpeg_fits(std::span<const unsigned char> stream, JpegKind kind, const FrameSize& size);
 
 }  // namespace osteomill

@@ -30,7 +30,7 @@ void put(Bytes& bytes, std::size_t at, std::uint32_t number) {
   for (std::size_t n = 0; n < 4; ++n) bytes[at + n] = static_cast<unsigned char>(number >> 8 * n);
 }
 
-// Two segments, of the high and the low bytes, a literal run each.
+// Two segments, high and low bytes, each a literal run.
 Bytes rle_stream() {
   Bytes stream(64);
   put(stream, 0, 2);
@@ -55,7 +55,8 @@ TEST(FrameDecoders, RleGivesTheValues) {
   expect_values(values);
 }
 
-// The example of PackBits: fe aa (three times), 02 80 00 2a, fd aa (four times), 80 (nothing), 00 22.
+// Example from the PackBits documentation: fe aa (three times), 02 80 00 2a, fd aa (four times), 80 (no-op),
+// 00 22.
 TEST(FrameDecoders, RleUnpacksRunsAndLiterals) {
   Bytes stream(64);
   put(stream, 0, 1);
@@ -66,7 +67,7 @@ TEST(FrameDecoders, RleUnpacksRunsAndLiterals) {
   ASSERT_TRUE(decode_rle(stream, {.columns = 11, .rows = 1, .bytes_a_value = 1}, values));
   const Bytes expected{0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0xAA, 0xAA, 0xAA, 0xAA, 0x22};
   EXPECT_EQ(std::memcmp(values.data(), expected.data(), expected.size()), 0);
-  // A run that goes beyond the frame.
+  // Run beyond the end of the frame.
   EXPECT_FALSE(decode_rle(stream, {.columns = 9, .rows = 1, .bytes_a_value = 1}, values));
 }
 
@@ -109,7 +110,7 @@ TEST(FrameDecoders, Jpeg2000OfAnotherSizeOrCutShortIsRefused) {
     EXPECT_FALSE(decode_jpeg2000(whole, size, values));
   }
   std::vector<char> values(kSize.bytes());
-  // The last two bytes say that it ends.
+  // The last two bytes are only the end marker.
   for (std::size_t length = 0; length + 2 < whole.size(); ++length) {
     EXPECT_FALSE(decode_jpeg2000(std::span(whole).first(length), kSize, values)) << length;
   }
@@ -137,7 +138,7 @@ TEST(FrameDecoders, AJpegHeaderOfAnotherSizeDoesNotFit) {
     other[3] = lone;
     EXPECT_FALSE(jpeg_fits(other, JpegKind::jpeg, kSize)) << "a marker that begins no segment";
   }
-  // DCMTK would look for the image behind that of the other kind for ever.
+  // DCMTK would search endlessly after an image of the other kind.
   EXPECT_FALSE(jpeg_fits(jpeg, JpegKind::jpeg_ls, kSize));
   Bytes jpeg_ls = jpeg;
   jpeg_ls[9] = 0xF7;

@@ -11,8 +11,8 @@
 
 namespace osteomill {
 
-/// The numbers of a header's field, parted by any of `separators`; nothing if a piece is not a number.
-/// "nan" and "inf" are numbers here: a caller that needs finite ones has to check.
+/// Parses the numbers of a header field, separated by any of `separators`; returns nullopt if one is not a
+/// number. Accepts "nan" and "inf": callers that need finite numbers must check.
 inline std::optional<std::vector<double>> parse_numbers(std::string_view text,
                                                         std::string_view separators = " \t\r\n") {
   std::vector<double> numbers;
@@ -30,7 +30,7 @@ inline std::optional<std::vector<double>> parse_numbers(std::string_view text,
   }
 }
 
-/// `text` without blanks at its ends, and in small letters.
+/// Returns `text` without leading and trailing blanks.
 inline std::string trimmed(std::string_view text) {
   const std::size_t start = text.find_first_not_of(" \t\r");
   if (start == std::string_view::npos) return {};

@@ -33,12 +33,13 @@ std::optional<int> whole_number(const std::string& text) {
 
 namespace {
 
-// Longer names than this are no names; and control characters are none. Older programs write Latin 1.
+// Maximum length of a name, bytes; longer ones are cut. Control characters are replaced. Older programs write
+// Latin 1.
 constexpr std::size_t kMaxName = 100;
 std::string usable_name(const std::string& name) {
   std::string shown = without_controls(is_utf8(name) ? name : utf8_of_latin1(name), ' ');
   if (shown.size() > kMaxName) shown.resize(kMaxName);
-  // Not in the middle of a character.
+  // Do not end inside a multi-byte character.
   while (!is_utf8(shown)) shown.pop_back();
   return trimmed(shown);
 }
@@ -54,7 +55,7 @@ std::optional<Colour> colour_of(const std::vector<double>& channels, double whit
   return colour;
 }
 
-// "value red green blue opacity shown meshed "name"", as ITK-SNAP writes it.
+// Parses a line "value red green blue opacity shown meshed "name"" of ITK-SNAP.
 bool add_snap_line(const std::string& line, LabelTable& table) {
   const std::size_t open = line.find('"');
   const auto numbers = parse_numbers(line.substr(0, open));
@@ -66,7 +67,7 @@ bool add_snap_line(const std::string& line, LabelTable& table) {
   return true;
 }
 
-// "value name red green blue alpha", of which the name may be several words.
+// Parses a line "value name red green blue alpha", whose name may have several words.
 bool add_line(const std::string& line, LabelTable& table) {
   if (line.ends_with('"')) return add_snap_line(line, table);
   constexpr std::size_t kChannels = 4;
@@ -83,14 +84,14 @@ bool add_line(const std::string& line, LabelTable& table) {
   const auto numbers = parse_numbers(channels);
   const auto colour = numbers ? colour_of(*numbers, 255) : std::nullopt;
   if (!value || !colour) return false;
-  // Slicer writes names as one word.
+  // Slicer writes names as one word, with underscores.
   std::replace(name.begin(), name.end(), '_', ' ');
   table[*value] = {usable_name(name), colour};
   return true;
 }
 
-// Reads the key/value pairs of a segmentation of 3D Slicer's (.seg.nrrd): Segment0_Name, _Color (three
-// numbers from 0 to 1) and _LabelValue, and so on. Throws InputError naming `subject`.
+// Reads the key/value pairs of a 3D Slicer segmentation (.seg.nrrd): Segment0_Name, _Color (three numbers
+// from 0 to 1), _LabelValue, and so on. Throws InputError, naming `subject`.
 LabelTable segments_in(const std::string& subject, const std::map<std::string, std::string>& key_values) {
   LabelTable table;
   for (const int n : segment_numbers(key_values)) {
@@ -98,7 +99,7 @@ LabelTable segments_in(const std::string& subject, const std::map<std::string, s
     const auto name = find("Name"), value = find("LabelValue"), colour = find("Color");
     const auto end = key_values.end();
     if (name == end && value == end) continue;
-    // Segmentations from before there were label values have them in order, from 1.
+    // Older segmentations have no label values; they are numbered from 1.
     const auto label = value == end ? n + 1 : whole_number(value->second);
     if (!label) {
       throw InputError(subject, fmt::format("has a Segment{}_LabelValue that is not a whole number", n));
@@ -120,7 +121,7 @@ std::optional<int> value_in(const Json& json) {
   return json.is_string() ? whole_number(json.get<std::string>()) : std::nullopt;
 }
 
-// The first of some members that there is.
+// Returns the first of these members that exists.
 const Json* member(const Json& object, std::initializer_list<const char*> names) {
   for (const char* name : names)
     if (object.contains(name)) return &object[name];
@@ -137,8 +138,8 @@ std::optional<Colour> colour_in(const Json* json) {
   return colour_of(channels, are_shares ? 1 : 255);
 }
 
-// Takes the labels of JSON, {"26": "mandible"}, {"labels": {"mandible": 26}} and [{"value": 26, "name":
-// "mandible"}], however deep.
+// Adds labels from JSON such as {"26": "mandible"}, {"labels": {"mandible": 26}} and [{"value": 26, "name":
+// "mandible"}], up to kDeepest levels deep.
 void add_labels(const Json& json, bool of_labels, int depth, LabelTable& table) {
   constexpr int kDeepest = 8;
   if (depth > kDeepest || !json.is_structured()) return;
@@ -165,7 +166,7 @@ void add_labels(const Json& json, bool of_labels, int depth, LabelTable& table) 
   }
 }
 
-// The value of an attribute of an XML element, of which `tag` is what stands between its angle brackets.
+// Returns the value of an attribute of an XML element, given the text between its angle brackets.
 std::string attribute(std::string_view tag, std::string_view name) {
   for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
     const std::size_t open = tag.find_first_not_of(" \t\r\n=", at + name.size());
@@ -217,7 +218,7 @@ LabelTable labels_in_text(const std::string& text) {
   if (start == std::string::npos) return table;
   if (text[start] == '<') add_labels_of_xml(text, table);
   if (text[start] == '{' || text[start] == '[') {
-    // Extensions are filled up with zeros.
+    // Extensions are zero-padded.
     const std::string json = text.substr(start, std::min(text.find('\0'), text.size()) - start);
     add_labels(Json::parse(json, nullptr, false), false, 0, table);
   }
@@ -238,7 +239,7 @@ LabelTable read_label_table(const fs::path& path) {
   if (fs::file_size(path) > kMaxBytes) throw InputError(subject, "is too long for a table of labels");
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
-    // Some editors begin a text with a mark of its encoding.
+    // Some editors start a text with a byte order mark.
     constexpr std::string_view kMark = "\xEF\xBB\xBF";
     if (number == 1 && line.starts_with(kMark)) line.erase(0, kMark.size());
     line = trimmed(line);

@@ -25,7 +25,7 @@ bool is_true(const HeaderFields& fields, const std::string& name) {
   return !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
 }
 
-// The first of several names for the same thing.
+// Returns the first of several synonymous names that is present.
 std::string first_of(const HeaderFields& fields, std::initializer_list<const char*> names) {
   for (const char* name : names) {
     if (fields.has(name)) return name;
@@ -33,7 +33,7 @@ std::string first_of(const HeaderFields& fields, std::initializer_list<const cha
   return {};
 }
 
-// Names as ITK writes them; in files of other programs the case may be another.
+// Names as ITK writes them; other programs may use another case.
 constexpr std::array kNames{"NDims",
                             "DimSize",
                             "ElementSpacing",
@@ -55,8 +55,8 @@ constexpr std::array kNames{"NDims",
                             "BinaryDataByteOrderMSB",
                             "ElementDataFile"};
 
-// The header ends with the line that names the data; before it, fields may come in any order. What ITK passes
-// over is passed over here: empty lines, lines that are no field, and unknown fields.
+// The header ends with the line that names the data file; the other fields may be in any order. Like ITK,
+// ignores empty lines, lines without a field, and unknown fields.
 HeaderFields read_fields(const std::string& subject, std::istream& in) {
   HeaderFields fields{subject};
   std::string line;
@@ -82,7 +82,7 @@ HeaderFields read_fields(const std::string& subject, std::istream& in) {
 
 VoxelType type_of(const std::string& subject, const std::string& type) {
   using enum VoxelType;
-  // MET_LONG is 4 bytes in a file, whatever it is on the machine.
+  // MET_LONG has 4 bytes in files, on any machine.
   static const std::map<std::string, VoxelType> kTypes{
       {"met_char", int8},       {"met_uchar", uint8},       {"met_short", int16},   {"met_ushort", uint16},
       {"met_int", int32},       {"met_uint", uint32},       {"met_long", int32},    {"met_ulong", uint32},
@@ -104,7 +104,7 @@ std::vector<double> first_three(const HeaderFields& fields, const std::string& n
   return numbers;
 }
 
-// Returns the columns of a square matrix, whose first three dimensions are those of space.
+// Returns the first three columns of a square matrix, whose first three dimensions are spatial.
 Mat3 axes_of(const HeaderFields& fields, const std::string& name, std::size_t dimensions) {
   const std::vector<double> values = fields.numbers(name);
   if (values.size() != dimensions * dimensions) {
@@ -157,7 +157,7 @@ StoredVoxels voxels_of(const fs::path& path, const HeaderFields& fields, std::if
   const Packing packing = is_true(fields, "CompressedData") ? Packing::gzip_or_zlib : Packing::none;
   const double header_size = fields.count("HeaderSize", -1);
   BeforeVoxels before;
-  // It counts from the beginning of the file that holds the data.
+  // Counted from the start of the data file.
   if (header_size > 0) before.file_bytes = static_cast<std::uint64_t>(header_size);
   before.are_last = header_size < 0 && packing == Packing::none && !is_text;
   std::vector<fs::path> files;

@@ -24,7 +24,7 @@ constexpr std::size_t kHeader1Bytes = 348;
 constexpr std::size_t kHeader2Bytes = 540;
 constexpr double kAgreement = 1e-3;
 
-// The file's bytes, whether it is compressed or not.
+// Opens a file that may be compressed.
 ByteSource open_source(const std::string& subject, const fs::path& path) {
   std::ifstream in = open_regular_file(subject, path);
   const bool packed = in.get() == 0x1F && in.get() == 0x8B;
@@ -33,7 +33,7 @@ ByteSource open_source(const std::string& subject, const fs::path& path) {
   return {std::move(in), packed ? Packing::gzip_or_zlib : Packing::none};
 }
 
-// The header's bytes; numbers are fetched by their offset.
+// Bytes of the header, read as numbers by offset.
 class Bytes {
  public:
   Bytes(const std::string& subject, ByteSource& source) {
@@ -65,7 +65,7 @@ class Bytes {
     if (source.read(std::span(bytes_).subspan(from, to - from)) != to - from)
       throw InputError(subject, "is cut short in its header");
   }
-  // In either order of bytes.
+  // Tries both byte orders.
   bool is_length(std::size_t bytes) {
     length_ = bytes;
     for (int n = 0; n < 2; ++n) {
@@ -80,7 +80,7 @@ class Bytes {
   bool swap_ = false;
 };
 
-// Holds what is read of a header, whichever of the two layouts it has.
+// Fields read from a header of either version.
 struct Header {
   std::string subject;
   // dim[0] to dim[7].
@@ -101,7 +101,7 @@ struct Header {
   bool is_pair = false;
 };
 
-// A run of numbers from `offset` on: 4 bytes each in NIfTI-1, 8 in NIfTI-2.
+// Returns the nth number of an array at `offset`, whose type is Small in NIfTI-1 and Large in NIfTI-2.
 template <typename Small, typename Large>
 double number(const Bytes& bytes, std::size_t offset, std::size_t n) {
   return bytes.is_nifti2() ? static_cast<double>(bytes.at<Large>(offset + n * sizeof(Large)))
@@ -130,7 +130,7 @@ Header header_of(const std::string& subject, const Bytes& bytes) {
   for (std::size_t n = 0; n < header.sizes.size(); ++n)
     header.sizes[n] = number<std::int16_t, std::int64_t>(bytes, place(40, 16), n);
   header.qfac = real(76, 104) < 0 ? -1 : 1;
-  // Some writers give lengths a sign; the axes' directions are elsewhere.
+  // Some writers give spacings a sign, but the directions of the axes are stored elsewhere.
   header.spacing = vector(76, 104, 1).cwiseAbs();
   header.type = bytes.at<std::int16_t>(place(70, 12));
   header.offset = two ? static_cast<double>(bytes.at<std::int64_t>(168)) : real(108, 0);
@@ -187,7 +187,7 @@ double unit_of(const Header& header) {
   }
 }
 
-// Columns: the steps from voxel to voxel, and the place of the first, in RAS.
+// Steps from voxel to voxel (columns) and position of the first voxel, in RAS.
 struct Placement {
   Mat3 steps;
   Vec3 origin;
@@ -204,7 +204,7 @@ Placement by_sform(const Header& header) {
   return placement;
 }
 
-// Nothing if it is no rotation.
+// Returns nullopt if the quaternion is not a rotation.
 std::optional<Placement> by_qform(const Header& header) {
   const Vec3& bcd = header.quaternion_bcd;
   if (!(bcd.norm() < 1.01) || !header.qoffset.allFinite()) return std::nullopt;
@@ -218,7 +218,7 @@ bool has_sizes_of(const Placement& placement, const Vec3& spacing) {
   return ((lengths - spacing).cwiseAbs().array() <= kAgreement * spacing.array()).all();
 }
 
-// Says why a placement cannot be used as it is; empty if it can.
+// Returns why a placement cannot be used as it is; empty if it can.
 std::string fault_of(const Placement& placement, const Vec3& spacing) {
   if (!placement.steps.allFinite() || !placement.origin.allFinite()) return "holds what is no number";
   if (!((placement.steps.colwise().norm().array() > 0).all())) return "has an axis of no length";
@@ -227,7 +227,7 @@ std::string fault_of(const Placement& placement, const Vec3& spacing) {
   return "";
 }
 
-// Uses the sform, as nibabel and 3D Slicer do; if it cannot be used, the qform, as ITK does.
+// Prefers the sform, as nibabel and 3D Slicer do; if it is unusable, the qform, as ITK does.
 Placement placement_of(const Header& header, std::vector<std::string>& warnings) {
   const std::optional<Placement> qform =
       header.qform_code > 0 && (header.spacing.array() > 0).all() ? by_qform(header) : std::nullopt;
@@ -270,7 +270,7 @@ GridGeometry geometry_of(const Header& header, std::vector<std::string>& warning
   return geometry;
 }
 
-// A slope of 0 or NaN means that the values are as stored (nifti1.h; nibabel writes NaN for both).
+// A slope of 0 or NaN means unscaled values (nifti1.h; nibabel writes NaN for slope and intercept).
 void set_scaling(const Header& header, StoredVoxels& voxels, std::vector<std::string>& warnings) {
   if (std::isnan(header.slope)) {
     warnings.push_back("has a scl_slope that is not a number; its values were taken as stored");
@@ -283,8 +283,8 @@ void set_scaling(const Header& header, StoredVoxels& voxels, std::vector<std::st
   voxels.intercept = header.intercept;
 }
 
-// The texts of the extensions that begin where the source stands, behind the header, and end at most `bytes`
-// further on. `used` counts what was read of the source.
+// Returns the texts of the extensions, which start at the source's position after the header and have at most
+// `most` bytes. Adds the bytes read to `used`.
 std::vector<std::string> extensions(const Bytes& bytes, ByteSource& source, std::uint64_t most,
                                     std::uint64_t& used) {
   constexpr std::size_t kMostBytes = 1 << 24, kHead = 8;
@@ -313,7 +313,8 @@ std::string without_ending(const fs::path& path) {
   return name.substr(0, name.size() - 4);
 }
 
-// The file beside that has the same name and one of these endings; nothing if there is none.
+// Returns the existing file in the same folder with the same name and one of these endings; nullopt if there
+// is none.
 std::optional<fs::path> beside(const fs::path& path, const char* small, const char* large) {
   std::error_code error;
   for (const std::string ending : {small, large}) {

@@ -23,21 +23,21 @@ namespace {
 struct Header {
   HeaderFields fields;
   std::map<std::string, std::string> key_values{};
-  // An empty line parts the header from what follows it.
+  // True if an empty line ends the header, after which data may follow.
   bool has_end = false;
 };
 
-// Longer headers than this are no headers.
+// Maximum length of a header, bytes.
 constexpr std::size_t kMaxHeader = 1 << 22;
 
-// "data file" and "datafile" are the same field.
+// Normalises a field name: "data file" and "datafile" are the same.
 std::string field_name(std::string_view text) {
   std::string name = lower(std::string(text));
   std::erase(name, ' ');
   return name;
 }
 
-// A field with a slip of the pen in its name would be missed in silence.
+// Rejects unknown names, because a misspelt field would be ignored silently.
 void check_name(const std::string& subject, const std::string& name) {
   constexpr std::string_view kNames =
       "|axismaxs|axismins|blocksize|byteskip|centerings|centers|content|data|datafile|dimension|"
@@ -77,7 +77,7 @@ Header read_header(const std::string& subject, std::istream& in) {
     const std::string name = field_name(std::string_view(line).substr(0, colon));
     check_name(subject, name);
     const std::string value = header.fields.values[name] = trimmed(std::string_view(line).substr(colon + 1));
-    // The names of the data files follow, to the file's end.
+    // The rest of the file lists the data files.
     if (name.starts_with("data") && (value == "LIST" || value.starts_with("LIST "))) break;
   }
   return header;
@@ -103,7 +103,7 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
   throw InputError(subject, fmt::format("has voxels of type \"{:.40}\", which is not known", type));
 }
 
-// The texts of a field: in quotes, or its words if it has no quotes.
+// Returns the quoted texts of a field, or its words if it has no quotes.
 std::vector<std::string> texts_of(const std::string& field) {
   std::vector<std::string> texts;
   if (field.find('"') == std::string::npos) {
@@ -119,7 +119,7 @@ std::vector<std::string> texts_of(const std::string& field) {
   return texts;
 }
 
-// Returns the unit of each axis; a single one is that of all.
+// Returns the unit of each axis; a single unit applies to all.
 std::vector<std::string> units_of(const HeaderFields& fields, const std::string& name, std::size_t axes) {
   std::vector<std::string> units = texts_of(fields[name]);
   if (units.empty()) units.emplace_back();
@@ -133,7 +133,8 @@ double millimetres(const HeaderFields& fields, const std::string& unit) {
   return millimetres_in(fields.subject, lower(unit));
 }
 
-// A step along each axis, in the directions of the space; nothing if an axis has no direction in it ("none").
+// Returns the step along each axis in the coordinates of the space; nullopt for an axis without a direction
+// ("none").
 std::vector<std::optional<std::vector<double>>> space_directions(const std::string& subject,
                                                                  std::string_view rest) {
   constexpr std::size_t kMostAxes = 16;
@@ -160,9 +161,9 @@ std::vector<std::optional<std::vector<double>>> space_directions(const std::stri
   throw refused();
 }
 
-// The signs that turn the axes of a space into LPS.
+// Returns the signs that convert the axes of a space to LPS.
 Vec3 lps_from_space(const std::string& subject, std::string space, std::vector<std::string>& warnings) {
-  // Time is one more axis of the space.
+  // Ignores time, a fourth axis of the space.
   if (space.ends_with("-time")) space.resize(space.size() - 5);
   if (space == "lpst" || space == "rast" || space == "last") space.pop_back();
   if (space.empty() || space == "left-posterior-superior" || space == "lps") return Vec3(1, 1, 1);
@@ -179,7 +180,7 @@ bool is_spatial(const std::string& kind) {
   return kind == "domain" || kind == "space" || kind == "???" || kind == "none";
 }
 
-// Along an axis of another kind lie several values of one voxel.
+// Rejects axes of other kinds, along which a voxel has several values.
 void check_kind(const std::string& subject, const std::string& kind) {
   if (kind == "list") {
     throw InputError(subject,
@@ -189,17 +190,17 @@ void check_kind(const std::string& subject, const std::string& kind) {
     throw InputError(subject, fmt::format("is not a grey volume: it has an axis of kind \"{:.40}\"", kind));
 }
 
-// How the file's array is made of axes, the one that runs fastest first.
+// Axes of the file's array, fastest first.
 struct Axes {
   std::vector<double> sizes;
   std::vector<std::string> kinds;
   std::vector<std::optional<std::vector<double>>> directions;
-  // The places of the three axes of the grid.
+  // Indices of the grid's three axes.
   std::vector<std::size_t> of_grid;
 };
 
-// Those that have a direction, or are said to be of space; then, if there are too many, those along which
-// there is more than one voxel.
+// Returns the axes with a direction, or of a spatial kind; if they are more than three, drops those of size
+// 1.
 std::vector<std::size_t> axes_of_grid(const Axes& axes) {
   std::vector<std::size_t> found;
   for (std::size_t axis = 0; axis < axes.sizes.size(); ++axis) {
@@ -207,7 +208,7 @@ std::vector<std::size_t> axes_of_grid(const Axes& axes) {
                                                   : axes.directions[axis].has_value();
     if (in_space) found.push_back(axis);
   }
-  // Behind the others as a rule.
+  // Last axes first, because axes of size 1 usually follow the others.
   for (std::size_t n = found.size(); n-- > 0 && found.size() > 3;)
     if (axes.sizes[found[n]] == 1) found.erase(found.begin() + static_cast<std::ptrdiff_t>(n));
   return found;
@@ -238,8 +239,8 @@ Axes axes_of(const HeaderFields& fields) {
   return axes;
 }
 
-// Returns the layers along the axes that are not the grid's: as a rule one. Segments that may overlap lie
-// along one axis, first or last.
+// Returns the layers along the axes outside the grid, usually one. Overlapping segments lie along one axis,
+// the first or the last.
 VoxelLayers layers_of(const Header& header, const Axes& axes) {
   VoxelLayers layers;
   for (std::size_t axis = 0; axis < axes.sizes.size(); ++axis) {

@@ -28,7 +28,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-// By the numbers in the names, so that slice 2 comes before slice 10.
+// Natural order: slice 2 comes before slice 10.
 bool comes_before(std::string_view a, std::string_view b) {
   while (!a.empty() && !b.empty()) {
     const auto digits = [](std::string_view text) {
@@ -52,7 +52,7 @@ bool comes_before(std::string_view a, std::string_view b) {
   return a.size() < b.size();
 }
 
-// A name's texts and the numbers between them.
+// Texts of a name and the numbers between them.
 struct NameParts {
   std::vector<std::string> texts;
   std::vector<double> numbers;
@@ -74,7 +74,8 @@ NameParts parts_of(const fs::path& path) {
   return parts;
 }
 
-// The number of each picture: the only one in the names that differs; empty if several do, or none.
+// Returns the number of each picture: the only number in the names that differs. Empty if several differ or
+// none.
 std::vector<double> slice_numbers(const std::vector<NameParts>& names) {
   std::vector<double> numbers;
   for (std::size_t n = 0; n < names.front().numbers.size(); ++n) {
@@ -86,7 +87,8 @@ std::vector<double> slice_numbers(const std::vector<NameParts>& names) {
   return numbers;
 }
 
-// Names are all that says whether pictures are of one stack, and all of it. `files` are in its order.
+// Checks by the names, in order, that the pictures form one complete stack; pictures contain no other
+// information on it.
 void check_names(const std::string& subject, const std::vector<fs::path>& files,
                  std::vector<std::string>& warnings) {
   std::vector<NameParts> names;
@@ -126,8 +128,8 @@ bool is_png(const fs::path& path) {
   return lower(path.extension().string()) == ".png";
 }
 
-// The slices one behind the other. Of pictures with three channels and more a value is a colour: red * 65536
-// + green * 256 + blue, 0 if it is not opaque at all.
+// Collects the slices. Pixels of pictures with at least three channels become a colour value, red * 65536 +
+// green * 256 + blue; 0 if fully transparent.
 class Slices {
  public:
   explicit Slices(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}

@@ -14,14 +14,14 @@ using testing_support::contains;
 
 constexpr std::uint32_t kColumns = 5, kRows = 4, kSlices = 12;
 
-// The value at a place of a stack: every place has another.
+// Value at a position of a stack, unique for each position.
 int value_at(std::uint32_t i, std::uint32_t j, std::uint32_t k) {
   return static_cast<int>(i + kColumns * (j + kRows * k));
 }
 
 class PictureStack : public testing_support::FolderTest {
  protected:
-  // A picture whose pixel has the channels of `pixel(i, j)`, as the library itself writes it.
+  // Writes a picture with libpng; `pixel(i, j)` returns the channels of a pixel.
   template <typename Value>
   void write_png(const std::string& name, int colour_type,
                  const std::function<std::vector<Value>(std::uint32_t, std::uint32_t)>& pixel,
@@ -32,7 +32,7 @@ class PictureStack : public testing_support::FolderTest {
     png_init_io(png, file);
     png_set_IHDR(png, info, columns, kRows, 8 * sizeof(Value), colour_type, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    // Gamma is for screens and does not change values.
+    // Gamma is for display and must not change values.
     png_set_gAMA(png, info, 0.45455);
     png_write_info(png, info);
     if (sizeof(Value) == 2) png_set_swap(png);
@@ -53,7 +53,7 @@ class PictureStack : public testing_support::FolderTest {
             return std::vector<std::uint16_t>{static_cast<std::uint16_t>(270 * value_at(i, j, k))};
           });
   }
-  // A page for each slice, of floats in strips or tiles.
+  // Writes one page per slice, floats in strips or tiles.
   std::filesystem::path write_pages(const std::string& name, bool tiled, std::uint16_t photometric) const {
     TIFF* const file = TIFFOpen((folder_ / name).c_str(), "w");
     for (std::uint32_t k = 0; k < kSlices; ++k) {
@@ -137,7 +137,7 @@ TEST_F(PictureStack, NamesSayWhetherASliceIsMissingOrOfAnotherStack) {
     std::filesystem::rename(path("slice" + std::to_string(k) + ".png"),
                             path("z2_" + std::to_string(95 + 5 * k) + "_.png"));
   expect_values(read(folder_));
-  // Times of day, or places in other units.
+  // Numbers that are times of day, or positions in other units.
   std::filesystem::rename(path("z2_110_.png"), path("z2_112_.png"));
   EXPECT_TRUE(contains(read(folder_).warnings.at(0), "grow unevenly (z2_112_.png follows z2_105_.png)"));
 }

@@ -15,9 +15,9 @@
 
 namespace osteomill {
 
-/// Throws InputError naming `subject` if a grid is not one that a scanner makes of a bone: voxels under
-/// 1 um or over 100 mm apart, or a first voxel over 100 m from the scanner's own origin. With such numbers
-/// later work would overflow or never end.
+/// Throws InputError, naming `subject`, if a grid cannot be a scan of a bone: spacing below 1 um or above 100
+/// mm, or a first voxel over 100 m from the scanner's origin. Later computations would overflow or not
+/// terminate.
 inline void check_plausible(const std::string& subject, const GridGeometry& geometry) {
   constexpr double kMinSpacing_mm = 1e-3, kMaxSpacing_mm = 100, kMaxOrigin_mm = 1e5;
   for (const double spacing_mm : geometry.spacing_mm) {
@@ -34,7 +34,7 @@ inline void check_plausible(const std::string& subject, const GridGeometry& geom
   }
 }
 
-/// Throws InputError naming `subject` if the densities would take more memory than `max_bytes`.
+/// Throws InputError, naming `subject`, if the densities would need more memory than `max_bytes`.
 inline void check_memory(const std::string& subject, std::uint64_t voxels, std::uint64_t max_bytes) {
   const std::uint64_t needed = voxels * sizeof(float);
   if (needed > max_bytes) {
@@ -44,9 +44,8 @@ inline void check_memory(const std::string& subject, std::uint64_t voxels, std::
   }
 }
 
-/// Returns how many voxels have no density (NaN). Throws InputError naming `subject` if that is all of
-/// them, or a density is infinite or beyond what any scanner writes: nothing sensible can be milled there,
-/// and gradients would overflow.
+/// Returns the number of voxels without density (NaN). Throws InputError, naming `subject`, if that is all of
+/// them, or if a density is infinite or beyond what any scanner writes, because gradients would overflow.
 inline std::size_t check_densities(const std::string& subject, const std::vector<float>& densities) {
   constexpr std::size_t kAtOnce = 1 << 22;
   constexpr float kMost = 1e10f;

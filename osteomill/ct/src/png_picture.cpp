@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The state with which libpng reads a file. Its errors come back by longjmp, so that functions which call it
-// hold nothing that has a destructor.
+// State of libpng. It reports errors by longjmp, so functions that call it must not have local objects with
+// destructors.
 struct PngFile {
   PngFile() = default;
   ~PngFile() {
@@ -32,7 +32,7 @@ struct PngFile {
   std::FILE* file = nullptr;
   png_structp png = nullptr;
   png_infop info = nullptr;
-  // Why it cannot be read.
+  // Error message of libpng.
   char fault[128] = "";
 };
 
@@ -44,7 +44,7 @@ struct PngFile {
 
 void pass_over(png_structp, png_const_charp) {}
 
-// Values come as stored, one to a byte or to two in the machine's order; those of a palette as colours.
+// Sets up reading: values as stored, in one byte or in two of native order; palette values as colours.
 bool read_head(PngFile& in) {
   if (setjmp(png_jmpbuf(in.png)) != 0) return false;
   png_init_io(in.png, in.file);

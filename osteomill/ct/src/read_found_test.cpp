@@ -1,4 +1,4 @@
-// Scans after public bug reports, beside the checkout. Unless said otherwise each is the same phantom.
+// Scans modelled on public bug reports, stored next to the checkout. Unless noted, each is the same phantom.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -18,9 +18,9 @@ using testing_support::shared_data;
 
 struct Found {
   const char* file;
-  /// The phantom's; x and y are 0.4 mm unless they equal z's digits.
+  /// Slice distance of the phantom; x and y are 0.4 mm unless they equal z's digits.
   double slice_distance_mm = 0.5;
-  /// In one of the warnings; empty if there is none.
+  /// Part of one of the warnings; empty if there are none.
   const char* warning = "";
   const char* series = "";
   double origin_z_mm = 3;
@@ -96,7 +96,7 @@ TEST(ReadFound, HighThroughputJpeg2000IsReadToTheBit) {
     double max;
     double mean;
   };
-  // In the order of their places, which need not be that of their files.
+  // In order of position, which need not be the order of the files.
   const std::array<Slice, 2> slices{{{-2000, 2278, 152.6963}, {-2048, 1433, -754.2929}}};
   const auto& dims = scan.grid.geometry().dims;
   ASSERT_EQ(dims, (std::array<int, 3>{512, 512, 2}));

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// By value, in its order: how many voxels have it and its place among the labels.
+// Voxel count of a label value, and the label's index in order of value.
 struct FoundLabel {
   std::size_t voxels = 0;
   LabelMap::LabelIndex place = 0;
@@ -76,7 +76,7 @@ std::vector<LabelMap::LabelIndex> places_of(const std::vector<float>& values, co
   return places;
 }
 
-// Hues by the golden angle, so that labels which follow each other differ.
+// Hues by the golden angle, so that consecutive labels differ.
 Colour colour_of_place(LabelMap::LabelIndex place) {
   const double hue = std::fmod(0.09 + 0.381966 * place, 1.0);
   Colour colour{};
@@ -92,7 +92,7 @@ bool is_called(const Label& label, const std::string& said) {
   return said == std::to_string(label.value) || lower(said) == lower(label.name);
 }
 
-// Throws if it calls none of the labels.
+// Marks the labels called `said` as no-go. Throws if there are none.
 void mark_no_go(const std::string& subject, const std::string& said, std::vector<Label>& labels) {
   bool found = false;
   for (Label& label : labels) {
@@ -149,7 +149,7 @@ std::string extent_text(const GridGeometry& geometry) {
                      least.y(), most.y(), least.z(), most.z());
 }
 
-// How much of what is labelled lies in the scan, by volume.
+// Warns if more than 2 % of the labelled volume is outside the scan.
 std::optional<std::string> cover_warning(const FoundLabels& found, const GridGeometry& own,
                                          const LabelMap& map, const std::string& subject) {
   std::size_t own_voxels = 0, scan_voxels = 0;
@@ -161,14 +161,14 @@ std::optional<std::string> cover_warning(const FoundLabels& found, const GridGeo
   return fmt::format("{}: {:.0f} % of what it labels lies outside the scan", subject, 100 * (1 - share));
 }
 
-// Labels on a grid of their own.
+// Labels on their own grid.
 struct OwnLabels {
   const GridGeometry& geometry;
   std::vector<float> values;
   LabelTable table;
 };
 
-// Puts labels on the grid of a scan. Errors and warnings name `subject`.
+// Resamples labels to the grid of a scan. Errors and warnings name `subject`.
 LabelsRead put_on(const GridGeometry& scan, const std::string& subject, OwnLabels own,
                   const LabelFiles& files) {
   if (!files.table.empty()) {

@@ -54,7 +54,7 @@ TEST_F(ReadLabels, TakesNamesAndColoursOfSlicersSegmentations) {
   EXPECT_TRUE(read.warnings.empty());
 }
 
-// Two layers of 2 x 2 x 2 voxels, as 3D Slicer writes them: the values of a voxel beside each other.
+// Two layers of 2 x 2 x 2 voxels as 3D Slicer writes them, with the values of a voxel adjacent.
 TEST_F(ReadLabels, PutsLayersThatDoNotOverlapIntoOne) {
   const auto layered = [&](const std::string& values, const std::string& fields, const std::string& first,
                            const std::string& second) {
@@ -152,7 +152,7 @@ TEST_F(ReadLabels, NamesAreUtf8WhateverTheTableIsWrittenIn) {
   EXPECT_EQ(name_of(letters + a), letters);
 }
 
-// A NIfTI-1 file of 2 x 2 x 2 labels with an extension of such a text.
+// Returns a NIfTI-1 file of 2 x 2 x 2 labels with `text` in an extension.
 std::string nifti_with(std::string text) {
   std::string bytes(352, '\0');
   const auto set = [&](std::size_t offset, auto value) {

@@ -58,7 +58,7 @@ class ZipReader {
   std::vector<char> block_ = std::vector<char>(1 << 18);
 };
 
-// Some archives part folders by backslashes.
+// Returns the current file's name. Some archives use backslashes as separators.
 fs::path ZipReader::name_here(unz_file_info64& info) const {
   std::string name(4096, '\0');
   if (unzGetCurrentFileInfo64(archive_.get(), &info, name.data(), name.size() - 1, nullptr, 0, nullptr, 0) !=
@@ -88,7 +88,7 @@ void ZipReader::unpack_here(const fs::path& file) {
     out.write(block_.data(), count);
     WorkProgress::done(0);
   }
-  // The checksum is looked at when a file is closed.
+  // unzCloseCurrentFile() verifies the checksum.
   if (count < 0 || unzCloseCurrentFile(archive_.get()) != UNZ_OK) throw damaged();
   out.close();
   if (!out) throw fault(with_reason(fmt::format("cannot be unpacked to {}", file.parent_path().string())));
@@ -107,16 +107,15 @@ void ZipReader::unpack_into(const fs::path& folder) {
   }
 }
 
-// Whether a file begins as zip archives do.
+// Returns whether a file starts with the signature of zip archives.
 bool is_zip(const fs::path& file) {
   std::string head(4, '\0');
   std::ifstream(file, std::ios::binary).read(head.data(), 4);
   return head == "PK\3\4";
 }
 
-// Unpacks the files of a zip archive into `folder`, where they have the names that they have in it. Throws
-// InputError naming the archive if it is damaged or encrypted, if a name leads out of the folder, or
-// if it unpacks to more than `max_bytes`, whatever its own directory says of that.
+// Unpacks a zip archive into `folder`, keeping names. Throws InputError, naming the archive, if it is damaged
+// or encrypted, if a name leads out of the folder, or if its actual unpacked size exceeds `max_bytes`.
 void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t max_bytes) {
   note_input(archive);
   try {
@@ -126,7 +125,7 @@ void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t m
   }
 }
 
-// Reads a folder: DICOM, else its only volume file, or its pictures.
+// Reads a folder: its DICOM files, or else its only volume file, or else its pictures.
 Scan read_folder(const fs::path& folder, const ReadOptions& options) {
   if (std::optional<Scan> scan = read_dicom(folder, options)) return std::move(*scan);
   std::vector<fs::path> volumes, pictures;
@@ -154,7 +153,7 @@ std::string with_name(std::string text, const std::string& unpacked, const std::
   return text;
 }
 
-// Reads an archive. Messages name the archive, not the folder into which it was unpacked.
+// Reads an archive. In messages, replaces the temporary folder by the archive.
 Scan read_zip(const fs::path& archive, const ReadOptions& options) {
   const TemporaryFolder unpacked;
   try {
@@ -200,7 +199,7 @@ bool may_be_scan(const fs::path& file) {
     if (name.ends_with(ending)) return true;
   if (name == "dicomdir") return true;
   if (volume_format_of(file) != nullptr) return !header_of_voxels(file);
-  // Many programs name slices by their UIDs or numbers.
+  // Many programs name slices by UID or number, without an extension.
   const std::string ending = file.extension().string();
   const bool has_letters =
       std::any_of(ending.begin(), ending.end(), [](unsigned char c) { return std::isalpha(c) != 0; });

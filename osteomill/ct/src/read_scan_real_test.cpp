@@ -24,7 +24,7 @@ json read_json(const fs::path& path) {
   return json::parse(std::ifstream(path));
 }
 
-// Some files of expectations say "hu_min", others "min" or "value_min".
+// Returns the first of these keys that exists: some expectations use "hu_min", others "min" or "value_min".
 const json* find(const json& expected, std::initializer_list<const char*> names) {
   for (const char* name : names) {
     if (expected.contains(name)) return &expected[name];
@@ -82,8 +82,8 @@ void expect_numbers(const json& expected, const Scan& scan) {
   if (const json* samples = find(expected, {"samples"})) expect_samples(*samples, scan.grid);
 }
 
-// Expects the outcome that expect.json states: "load", "load_or_warn", "load_or_clean_error",
-// "warn_or_error", "error".
+// Checks the outcome given in expect.json: "load", "load_or_warn", "load_or_clean_error", "warn_or_error" or
+// "error".
 void expect_outcome(const fs::path& path, const json& expected) {
   SCOPED_TRACE(path.string() + ": " + expected["note"].get<std::string>());
   const std::string outcome = expected["expect"].get<std::string>();
@@ -94,7 +94,7 @@ void expect_outcome(const fs::path& path, const json& expected) {
     EXPECT_TRUE(outcome != "load" || warning.empty()) << warning;
     EXPECT_TRUE(outcome != "warn_or_error" || !warning.empty()) << "was read without a word";
     if (expected.contains("shear_mm_per_slice")) {
-      // Put straight, so that its numbers are others; straighten_test.cpp has the exact ones.
+      // Straightened, so that its geometry differs; slice_stack_test.cpp checks that exactly.
       EXPECT_NE(warning.find("15.0 degrees"), std::string::npos) << warning;
       expect_vector(find(expected, {"spacing_xyz_mm"}), scan.grid.geometry().spacing_mm, 1e-4, "spacing");
     } else if (outcome.starts_with("load")) {
@@ -176,7 +176,7 @@ struct KnownIsovalue {
 };
 class RealScanIsovalue : public ::testing::TestWithParam<KnownIsovalue> {};
 
-// Whether an isovalue lies on one of the boundaries between what a grid is made of.
+// Returns whether an isovalue lies on a boundary between materials of a grid.
 bool is_on_boundary(const DensityGrid& grid, double isovalue) {
   const std::vector<Boundary> boundaries = boundaries_in(grid);
   return std::any_of(boundaries.begin(), boundaries.end(), [&](const Boundary& boundary) {
@@ -184,7 +184,7 @@ bool is_on_boundary(const DensityGrid& grid, double isovalue) {
   });
 }
 
-// The suggestion must lie in the range that experts of each scan give for bone.
+// The suggested isovalue must be in the range that experts give for bone in each scan.
 TEST_P(RealScanIsovalue, SuggestedIsBone) {
   const auto& [path, known] = GetParam();
   OSTEOMILL_NEEDS_SHARED(path);
@@ -195,7 +195,7 @@ TEST_P(RealScanIsovalue, SuggestedIsBone) {
   EXPECT_EQ(LabelGuess::densities, guess_labels(scan.grid));
 }
 
-// Densities in eight bits as programs save pictures: the whole range, or the part that a window shows.
+// Densities in eight bits, as programs save pictures: the whole range, or a display window.
 TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
   struct Window {
     const char* scan;
@@ -228,7 +228,7 @@ TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
   }
 }
 
-// Its densities rise in thick steps, of which few voxels lie between others.
+// Its densities form thick steps, so that few voxels lie between a lower and a higher neighbour.
 TEST(ReadRealScan, ABlockOfStepsLooksLikeNoLabels) {
   OSTEOMILL_NEEDS_SHARED("attacks4/stderr-closed/b6.nrrd");
   EXPECT_NE(LabelGuess::labels,
@@ -246,7 +246,7 @@ TEST(ReadRealScan, LabelMapsLookLikeLabels) {
   }
 }
 
-// A phantom of 40 x 36 x 24 voxels, as many programs have written it; each file is odd in one way.
+// Phantom of 40 x 36 x 24 voxels, written by many programs; each file is unusual in one way.
 struct OddPhantom {
   const char* path;
   double slice_mm;

@@ -1,5 +1,4 @@
-// The layers in which 3D Slicer keeps segments that may overlap (.seg.nrrd): SegmentN_Layer,
-// SegmentN_LabelValue.
+// Layers of overlapping segments in 3D Slicer's files (.seg.nrrd): SegmentN_Layer, SegmentN_LabelValue.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -20,7 +19,7 @@ namespace osteomill {
 
 namespace {
 
-// A segment's layer and its value in that.
+// Layer of a segment and its value in that layer.
 using Place = std::pair<std::uint64_t, float>;
 
 struct Segment {
@@ -50,8 +49,8 @@ bool a_value_has_two_layers(const std::set<Place>& places) {
                      [&](const Place& place) { return !values.insert(place.second).second; });
 }
 
-// The layer in which a voxel has a value, and that value; {0, 0} if it has none. Throws InputError if
-// it has several.
+// `at` returns the layer in which a voxel is labelled, and its value there; {0, 0} if none. Throws InputError
+// if there are several.
 class Layers {
  public:
   Layers(const std::string& subject, const std::vector<float>& values, const VoxelLayers& layers)

@@ -16,7 +16,7 @@ namespace {
 
 using Numbers = std::vector<std::size_t>;
 
-// Slices that share the value of a mark, or several values in turn.
+// Slices that share one value, or a range of consecutive values, of a mark.
 struct Group {
   std::string first_value;
   std::string last_value;
@@ -41,13 +41,13 @@ bool share_a_place(const Group& a, const Group& b) {
   });
 }
 
-// Whether the ranges of groups of `least_slices` and more overlap.
+// Returns whether the ranges of two groups of at least `least_slices` slices overlap.
 bool overlap(const Group& a, const Group& b, std::size_t least_slices) {
   return a.slices.size() >= least_slices && b.slices.size() >= least_slices &&
          a.heights_mm.front() < b.heights_mm.back() && b.heights_mm.front() < a.heights_mm.back();
 }
 
-// By numbers, then by letters; derived images come behind originals.
+// Orders values numerically, then alphabetically; derived images after originals.
 bool is_less(const std::string& a, const std::string& b) {
   const auto place = [](const std::string& text) {
     return std::pair(text.starts_with("DERIVED"),
@@ -56,7 +56,7 @@ bool is_less(const std::string& a, const std::string& b) {
   return std::pair(place(a), a) < std::pair(place(b), b);
 }
 
-// Parts one series.
+// Splits one series into parts.
 class Parting {
  public:
   Parting(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
@@ -67,19 +67,19 @@ class Parting {
 
  private:
   std::vector<Numbers> by_shape() const;
-  // Replaces `part` by what it falls into.
+  // Splits `part` recursively and appends the result to `parts`.
   void split(SeriesPart part, std::vector<SeriesPart>& parts) const;
-  // Those that share a value, in the order of their values.
+  // Groups slices by value, in order of the values.
   std::vector<Group> by_value(const Numbers& slices, std::size_t mark) const;
-  // None if the mark does not tell parts apart.
+  // Returns the groups that the mark distinguishes; empty if it does not.
   std::vector<Group> by_mark(const Numbers& slices, std::size_t mark) const;
-  // Nothing if they are no volume.
+  // Returns nullopt if the slices do not form a volume.
   std::optional<SliceStack> stacked(const Numbers& slices, bool by_number = false) const;
   bool is_volume(const Numbers& slices, bool by_number = false) const {
     return stacked(slices, by_number).has_value();
   }
-  // The least size of groups whose ranges may not overlap. A single slice may lie between others of its
-  // volume if they are even with it.
+  // Returns the minimum size of groups whose ranges must not overlap. A single slice may lie between others
+  // of its volume if they are even with it.
   std::size_t least_group(const Numbers& slices, std::span<const Group> values) const;
   bool are_volumes(std::span<const Group> groups) const {
     return std::all_of(groups.begin(), groups.end(), [&](const Group& group) {
@@ -143,7 +143,7 @@ std::vector<Group> Parting::by_value(const Numbers& slices, std::size_t mark) co
   return groups;
 }
 
-// The values in turn, as long as they do not get in each other's way.
+// Joins consecutive values as long as they do not collide.
 std::vector<Group> joined(const std::vector<Group>& values, const auto& collide) {
   std::vector<Group> groups;
   for (const Group& value : values) {
@@ -156,7 +156,7 @@ std::vector<Group> joined(const std::vector<Group>& values, const auto& collide)
   return groups;
 }
 
-// Calls `collide` with pairs of groups that lie near each other, until one collides.
+// Returns whether any two groups with overlapping ranges collide.
 bool any_collide(std::vector<Group> groups, const auto& collide) {
   std::sort(groups.begin(), groups.end(),
             [](const Group& a, const Group& b) { return a.heights_mm.front() < b.heights_mm.front(); });
@@ -181,7 +181,7 @@ std::vector<Group> Parting::by_mark(const Numbers& slices, std::size_t mark) con
     return share_a_place(a, b) || (!kind.is_of_slices && intrude(a, b));
   };
   if (!at_one_place && (kind.is_of_slices || !any_collide(values, intrude))) return {};
-  // Slices at one place are copies, or their positions are rounded.
+  // Coincident slices that still form a volume are copies or have rounded positions.
   if (at_one_place && is_volume(slices, kind.is_of_slices)) return {};
   const std::vector<Group> groups = kind.is_ordered ? joined(values, collide) : values;
   if (groups.size() < 2 || 2 * groups.size() > slices.size()) return {};
@@ -191,7 +191,7 @@ std::vector<Group> Parting::by_mark(const Numbers& slices, std::size_t mark) con
     });
     return alike && are_volumes(groups) ? groups : std::vector<Group>{};
   }
-  // Slices of one volume, some of them with another mark.
+  // One volume, some of whose slices have another mark.
   if (!at_one_place && !are_volumes(groups) && is_volume(slices)) return {};
   return groups;
 }

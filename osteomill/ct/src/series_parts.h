@@ -10,16 +10,16 @@
 
 namespace osteomill {
 
-/// A value of a header that tells the acquisitions, phases and time points of one series apart.
+/// Header value that distinguishes acquisitions, phases or time points within a series.
 struct MarkKind {
   const char* name;
-  /// Slices come in the order of its numbers, so that several values in turn may make one part.
+  /// Slices are ordered by its numbers, so that several consecutive values may form one part.
   bool is_ordered;
-  /// It may differ from slice to slice of one volume, and counts only if slices lie at the same places.
+  /// May differ between slices of one volume; used only if slices coincide in position.
   bool is_of_slices;
 };
 
-/// The most telling first.
+/// Marks in order of significance.
 inline constexpr std::array<MarkKind, 29> kMarkKinds{{{"modality", false, false},
                                                       {"study", false, false},
                                                       {"series number", false, false},
@@ -49,23 +49,22 @@ inline constexpr std::array<MarkKind, 29> kMarkKinds{{{"modality", false, false}
                                                       {"trigger time", true, true},
                                                       {"content time", true, true},
                                                       {"instance number", true, true}}};
-/// The texts of a slice's header in the order of kMarkKinds; empty if it has none.
+/// Header texts of a slice in the order of kMarkKinds; empty if missing.
 using SliceMarks = std::array<std::string, kMarkKinds.size()>;
 
 /// Slices of a series that lie on one grid.
 struct SeriesPart {
-  /// Numbers of slices, in their order.
+  /// Slice indices, ascending.
   std::vector<std::size_t> slices;
-  /// The marks that tell it from the other parts, as "acquisition 2"; empty if only its shape does.
+  /// Marks that distinguish it from the other parts, such as "acquisition 2"; empty if only its shape does.
   std::string told_by;
 };
 
-/// Parts the slices of one series: those of another size, pixel spacing or orientation; then, if slices lie
-/// at one place or ranges along the normal overlap, those of different marks. Values in turn of an ordered
-/// mark that do not get in each other's way stay together, as the slices of a series that number every
-/// rotation or every slice as an acquisition. A part of a single slice fits nothing else; one that makes even
-/// slices uneven is such a part. `marks` are those
-/// of `slices`, which may be of several series' parts again; `same_pixels` as `stack_slices` takes it.
+/// Splits the slices of one series into parts: first by size, pixel spacing and orientation; then, if slices
+/// coincide or ranges along the normal overlap, by marks. Consecutive values of an ordered mark stay together
+/// if they do not collide, as in series that count every rotation or slice as an acquisition. A part may be a
+/// single slice that fits no other, including one that would make even slices uneven. `marks` belong to
+/// `slices`; `same_pixels` is as for `stack_slices`.
 std::vector<SeriesPart> part_series(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
                                     const SamePixels& same_pixels);
 

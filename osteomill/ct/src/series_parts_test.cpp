@@ -15,11 +15,11 @@ std::size_t mark_named(const std::string& name) {
   return static_cast<std::size_t>(kind - kMarkKinds.begin());
 }
 
-// Slices of one series, each with its marks, in the order in which they were added.
+// Slices of one series with their marks, in order of addition.
 struct Series {
   std::vector<SlicePlane> slices;
   std::vector<SliceMarks> marks;
-  // Slices of one number here show the same picture.
+  // Picture number of each slice; equal numbers mean equal pixels.
   std::vector<int> pictures;
 
   SlicePlane& add(double height_mm, const std::string& mark = "acquisition", const std::string& value = "") {
@@ -41,7 +41,7 @@ struct Series {
     return part_series(slices, marks,
                        [&](std::size_t a, std::size_t b) { return pictures[a] == pictures[b]; });
   }
-  // How many slices each part has.
+  // Returns the number of slices of each part.
   std::vector<std::size_t> sizes() const {
     std::vector<std::size_t> sizes;
     for (const SeriesPart& part : parts()) sizes.push_back(part.slices.size());
@@ -70,7 +70,7 @@ TEST(SeriesParts, AcquisitionsWhoseRangesOverlapOrCoincideAreTwo) {
 }
 
 TEST(SeriesParts, AcquisitionsThatFollowEachOtherAreOne) {
-  // Every slice, and every rotation of four, has a number of its own; slices were taken every second first.
+  // Every slice, or every rotation of four slices, has its own number; every other slice was acquired first.
   for (const int rotation : {1, 4}) {
     Series series;
     for (int k = 0; k < 24; ++k) series.add(0.5 * k, "acquisition", std::to_string(k / rotation));

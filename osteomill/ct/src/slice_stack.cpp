@@ -20,19 +20,19 @@ namespace osteomill {
 
 namespace {
 
-// Scanners round directions and positions to a few digits; these let that pass and no more.
+// Tolerances for the rounding of directions and spacings by scanners.
 constexpr double kDirectionTolerance = 1e-3;
 constexpr double kSpacingTolerance = 1e-3;
-// A distance may differ from the mean one by this share of it, and a slice be off its place in the grid by
-// twice that, without being moved.
+// Even slices: distances may differ from the mean by this fraction of it, and positions from the grid by
+// twice that.
 constexpr double kDistanceTolerance = 0.05;
-// A gap wider than this share of those beside it lacks a slice.
+// If a gap is wider than this multiple of its neighbours, a slice is missing.
 constexpr double kMissing = 1.5;
-// Largest distance between slices, mm, over which the bone may be interpolated.
+// Largest gap, mm, over which bone may be interpolated.
 constexpr double kMaxUnevenGap_mm = 10;
-// An uneven stack becomes at most as many times as many slices.
+// Resampling an uneven stack multiplies the number of slices by at most this.
 constexpr double kMostSlices = 4;
-// Sideways, in pixels: what cannot be seen after trilinear sampling.
+// Sideways offset, pixels, that is invisible after trilinear sampling.
 constexpr double kSidewaysTolerance = 0.25;
 // Gantries tilt by 30 degrees at most.
 constexpr double kMaxTilt_deg = 45.0;
@@ -57,7 +57,7 @@ void check_alike(const std::string& subject, const SlicePlane& first, const Slic
                    fmt::format("slices differ in {}: {} and {}", difference, first.name, other.name));
 }
 
-// Right-handed, with exact right angles; j is turned by what little it was off.
+// Returns exactly orthogonal, right-handed axes; adjusts j.
 Mat3 axes_of(const SlicePlane& slice) {
   Mat3 axes;
   axes.col(0) = slice.i_direction.normalized();
@@ -66,8 +66,7 @@ Mat3 axes_of(const SlicePlane& slice) {
   return axes;
 }
 
-// Leaves out copies of slices that lie where they do. Returns the first two that lie at one place and are no
-// copies, if there are any.
+// Drops coincident copies of slices. Returns the first two coincident slices that are not copies, if any.
 std::optional<std::pair<std::size_t, std::size_t>> drop_copies(std::span<const SlicePlane> slices,
                                                                const Vec3& normal, const SamePixels& is_copy,
                                                                SliceStack& stack) {
@@ -91,7 +90,7 @@ std::optional<std::pair<std::size_t, std::size_t>> drop_copies(std::span<const S
   return others;
 }
 
-// How far each of the slices that were kept lies above the first.
+// Returns the heights of the stack's slices above the first.
 std::vector<double> heights_of(std::span<const SlicePlane> slices, const Vec3& normal,
                                const SliceStack& stack) {
   const double lowest_mm = normal.dot(slices[stack.order.front()].position_mm);
@@ -109,7 +108,7 @@ std::vector<double> gaps_between(std::span<const double> heights_mm) {
 bool are_even(std::span<const double> heights_mm, std::span<const double> gaps_mm) {
   const double mean_mm = heights_mm.back() / static_cast<double>(gaps_mm.size());
   for (std::size_t k = 0; k < gaps_mm.size(); ++k) {
-    // Small differences may add up.
+    // Small differences may accumulate.
     const double off_mm = heights_mm[k + 1] - mean_mm * static_cast<double>(k + 1);
     if (std::abs(gaps_mm[k] - mean_mm) > kDistanceTolerance * mean_mm ||
         std::abs(off_mm) > 2 * kDistanceTolerance * mean_mm)
@@ -118,7 +117,8 @@ bool are_even(std::span<const double> heights_mm, std::span<const double> gaps_m
   return true;
 }
 
-// In the order of the slices' numbers, which have to be consecutive; lowest first. Else empty.
+// Returns the slices in order of their numbers, lowest position first; empty if the numbers are not
+// consecutive.
 std::vector<std::size_t> order_by_number(std::span<const SlicePlane> slices, const Vec3& normal,
                                          std::vector<std::size_t> order) {
   for (const std::size_t n : order) {
@@ -134,7 +134,7 @@ std::vector<std::size_t> order_by_number(std::span<const SlicePlane> slices, con
   return order;
 }
 
-// Whether a straight line with a value for each k comes as near to all of them.
+// Returns whether some straight line over k is within `within` of all values.
 bool lie_on_a_line(std::span<const double> values, double within) {
   const auto spread = [&](double slope) {
     double least = values.front(), most = least;
@@ -157,8 +157,8 @@ bool lie_on_a_line(std::span<const double> values, double within) {
   return spread(0.5 * (low + high)) <= 2 * within * kTie;
 }
 
-// The last decimal of positions, along the normal. Zeros at all ends count as decimals unless slices lie at
-// one place, which proves that they are none.
+// Returns the last decimal of positions, projected onto the normal, mm. Common trailing zeros count as
+// decimals unless slices coincide, which proves that they are not significant.
 double last_decimal_mm(std::span<const SlicePlane> slices, const SliceStack& stack, const Vec3& normal,
                        bool at_one_place) {
   double step_mm = 0;
@@ -177,7 +177,7 @@ double last_decimal_mm(std::span<const SlicePlane> slices, const SliceStack& sta
   return step_mm;
 }
 
-// Whether as many lie at every height, as images of several times do too.
+// Returns whether every height has the same number of slices, as with several time points.
 bool lie_together_alike(const std::vector<double>& heights_mm) {
   std::vector<std::size_t> counts;
   for (std::size_t k = 0; k < heights_mm.size(); ++k) {
@@ -188,10 +188,10 @@ bool lie_together_alike(const std::vector<double>& heights_mm) {
                      [&](std::size_t count) { return count == counts.front(); });
 }
 
-// Puts slices in the order of their numbers if positions that were rounded explain why they are not even.
+// Sorts slices by number if rounded positions explain why they are uneven. Returns whether it did.
 bool are_rounded(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
                  bool at_one_place, SliceStack& stack) {
-  // Else the distance of the slices is not known.
+  // Minimum height in rounding steps; below it, the slice distance is undetermined.
   constexpr double kLeastHeight = 8;
   const double step_mm = last_decimal_mm(slices, stack, normal, at_one_place);
   SliceStack numbered = stack;
@@ -213,8 +213,8 @@ bool are_rounded(const std::string& subject, std::span<const SlicePlane> slices,
   return true;
 }
 
-// Leaves out copies. Returns whether the slices lie in the order of their numbers on an even grid, their
-// positions being rounded.
+// Drops copies. Returns whether the slices, in order of their numbers, fit an even grid with rounded
+// positions.
 bool settle_places(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
                    const SamePixels& same_pixels, SliceStack& stack) {
   const auto is_same_instance = [&](std::size_t a, std::size_t b) {
@@ -228,7 +228,7 @@ bool settle_places(const std::string& subject, std::span<const SlicePlane> slice
   };
   others = drop_copies(slices, normal, is_same_instance, stack);
   if (are_on_rounded_grid()) return true;
-  // Only now, because two slices without anything in them may be rounded to one place.
+  // Pixels are compared last, because two empty slices may have been rounded to one position.
   if (others && same_pixels) {
     others = drop_copies(slices, normal, same_pixels, stack);
     if (are_on_rounded_grid()) return true;
@@ -240,7 +240,8 @@ bool settle_places(const std::string& subject, std::span<const SlicePlane> slice
   return false;
 }
 
-// After a change of the table's feed the distances are alike again; beside a lost slice they are not.
+// Next to a missing slice, gaps are smaller on both sides; after a change of the table feed, the next gap is
+// as wide.
 bool slice_is_missing(std::span<const double> gaps_mm, std::size_t k) {
   double beside_mm = 0;
   if (k > 0) beside_mm = gaps_mm[k - 1];
@@ -248,7 +249,7 @@ bool slice_is_missing(std::span<const double> gaps_mm, std::size_t k) {
   return gaps_mm.size() > 1 && gaps_mm[k] > kMissing * beside_mm;
 }
 
-// The grid's slices along the normal.
+// Sets the grid's number of slices and their spacing.
 void place_slices(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
                   bool is_rounded, SliceStack& stack) {
   std::vector<double> heights_mm = heights_of(slices, normal, stack);
@@ -306,13 +307,13 @@ void find_drift(const std::string& subject, std::span<const SlicePlane> slices, 
   }
 }
 
-// Between two densities; one without any weight need not be there.
+// Interpolates between two densities; one of zero weight may be NaN.
 double mixed(double one, double other, double share) {
   if (share == 0) return one;
   return share == 1 ? other : (1 - share) * one + share * other;
 }
 
-// How far a slice is moved: in whole pixels, and the fraction by which it lies further.
+// Shift of a slice: whole pixels, and the remaining fraction.
 struct Shift {
   int whole;
   double fraction;

@@ -11,75 +11,75 @@
 
 namespace osteomill {
 
-/// The place of one slice of a series, as its header says: sizes above 0, numbers finite. All in mm, in the
-/// patient's LPS frame W.
+/// Position of one slice of a series according to its header; sizes are above 0, numbers finite. In mm, in
+/// the patient's LPS frame W.
 struct SlicePlane {
-  /// The slice's name in a message.
+  /// Name of the slice in messages.
   std::string name;
-  /// Two slices with the same one are copies of each other (SOPInstanceUID and frame).
+  /// Identifier (SOPInstanceUID and frame); slices with the same one are copies.
   std::string instance;
   int columns = 0;
   int rows = 0;
-  /// Distance of neighbouring columns (along i) and of neighbouring rows (along j).
+  /// Distance between neighbouring columns (along i) and rows (along j).
   double column_distance_mm = 0;
   double row_distance_mm = 0;
-  /// Direction in which i, and j, grow.
+  /// Directions of increasing i and j.
   Vec3 i_direction = Vec3::UnitX();
   Vec3 j_direction = Vec3::UnitY();
   /// Centre of the first pixel.
   Vec3 position_mm = Vec3::Zero();
-  /// How many decimals of each coordinate of the position the writer gave.
+  /// Number of decimals of each coordinate of the position in the file.
   std::array<int, 3> decimals{};
-  /// The slice's number in its series.
+  /// Number of the slice in its series.
   std::optional<int> number{};
 };
 
-/// Slices nearer to each other than this along the normal lie at one place.
+/// Slices closer than this along the normal count as coincident.
 inline constexpr double kSamePlace_mm = 1e-4;
 
-/// Returns whether two slices, by their numbers, have the same pixels.
+/// Returns whether two slices, given by index, have the same pixels.
 using SamePixels = std::function<bool(std::size_t, std::size_t)>;
 
-/// Returns in what two slices differ so that they cannot be of one volume: "size", "pixel spacing" or
-/// "orientation"; null if in nothing.
+/// Returns why two slices cannot belong to one volume: "size", "pixel spacing" or "orientation"; null if they
+/// can.
 const char* difference_of(const SlicePlane& one, const SlicePlane& other);
 
-/// Slices put in order along their common normal.
+/// Slices ordered along their common normal.
 struct SliceStack {
-  /// The straight grid on which the slices lie, or nearly: see `heights_mm` and the drift.
+  /// Straight grid of the slices, except for `heights_mm` and the drift.
   GridGeometry geometry;
-  /// For every k the number of the slice that lies there; copies are left out.
+  /// Slice index for each k, without copies.
   std::vector<std::size_t> order;
-  /// The height of each slice above the lowest, if these are not the heights of the grid's slices, which may
-  /// then be more or fewer: their densities have to be interpolated (`even_out_slices`). Else empty.
+  /// Height of each slice above the lowest if the slices are not even. The grid may then have more or fewer
+  /// slices, to be interpolated by `even_out_slices`. Empty if the slices are even.
   std::vector<double> heights_mm;
-  /// By how much each of the grid's slices lies further along i and j than the one below: a gantry tilt. Zero
-  /// if the stack is straight; else they have to be shifted before they are in their place.
+  /// Offset of each slice of the grid along i and j from the one below (gantry tilt), to be corrected by
+  /// `correct_gantry_tilt`. Zero if the stack is straight.
   double drift_i_mm = 0;
   double drift_j_mm = 0;
   std::vector<std::string> warnings;
 };
 
-/// Puts the slices in order of their position along the normal, lowest first, whatever order they come in.
-/// If their distances differ, as after a change of a table's feed, the grid is as fine as nine tenths of
-/// them ask for, and a warning names the largest. If every position lies within half of its last decimal of
-/// an even grid in the order of consecutive numbers of the slices, the writer has rounded it: that grid is
-/// taken, with a warning. Of slices at one position those that are copies, by their instance or by
-/// `same_pixels`, are left out. Throws InputError naming `subject` if no grid holds them all: fewer than
-/// two, not all of one size, spacing and orientation, two at one position, or a gap that is over 1.5 times
-/// those beside it (a slice is missing) or over 10 mm while others are less.
+/// Sorts slices by their position along the normal, lowest first. Uneven distances, as after a change of the
+/// table feed: the grid's spacing is about the 10th percentile of the distances, at least a quarter of the
+/// mean, and a warning gives the largest. Rounded positions: if all lie within half of their last decimal of
+/// an even grid in the order of consecutive slice numbers, uses that grid and adds a warning. Copies (same
+/// `instance`, or `same_pixels` at the same position) are dropped. Throws InputError, naming `subject`, if
+/// there is no common grid: fewer than two slices; different sizes, spacings or orientations; two different
+/// images at one position; or, if uneven, a gap over 1.5 times its neighbours (a slice is missing) or over 10
+/// mm.
 SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices,
                         const SamePixels& same_pixels = {});
 
-/// Interpolates slices that lie at uneven distances (`SliceStack::heights_mm`) linearly to the even ones of
-/// the stack's grid, from pixel to pixel, so along the axis of a tilted gantry's table. `densities`, slice
-/// after slice as they were read, are replaced. An even stack is left alone.
+/// Resamples uneven slices (`SliceStack::heights_mm`) linearly to the stack's even grid, pixel by pixel, and
+/// so along the table's axis if the gantry is tilted. Replaces `densities`, which hold the slices one after
+/// the other as read. Does nothing if the stack is even.
 void even_out_slices(SliceStack& stack, std::vector<float>& densities);
 
-/// Moves every slice of a stack that was taken with a tilted gantry to its place in a straight grid, by
-/// linear interpolation within the slice. The grid grows so that nothing is lost; `densities` and `stack` are
-/// replaced, places without pixels get the least density, and a warning says so. A straight stack is left
-/// alone. Throws InputError naming `subject` if the tilt is more than a gantry can do.
+/// Corrects gantry tilt: shifts every slice to its position in a straight grid by linear interpolation within
+/// the slice. Enlarges the grid so that no pixel is lost, fills the rest with the lowest density, and adds a
+/// warning. Replaces `densities` and updates `stack`. Does nothing if the stack is straight. Throws
+/// InputError, naming `subject`, if the tilt exceeds what gantries can do.
 void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vector<float>& densities);
 
 }  // namespace osteomill

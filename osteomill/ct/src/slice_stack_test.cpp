@@ -13,7 +13,7 @@
 namespace osteomill {
 namespace {
 
-// Slices along the normal of a turned grid, in order.
+// Slices along the normal of a rotated grid, in order.
 std::vector<SlicePlane> series(int count, double distance_mm, const Mat3& axes = Mat3::Identity()) {
   std::vector<SlicePlane> slices;
   for (int k = 0; k < count; ++k) {
@@ -72,7 +72,7 @@ TEST(SliceStack, RoundedPositionsAreNoGap) {
   EXPECT_NEAR(stack_slices("folder", slices).geometry.spacing_mm.z(), 0.625, 1e-3);
 }
 
-// Positions as writers round them that give too few decimals.
+// Slices with positions rounded to few decimals, as some writers do.
 std::vector<SlicePlane> rounded_series(double distance_mm, int decimals) {
   std::vector<SlicePlane> slices = series(24, distance_mm);
   const double unit = std::pow(10.0, decimals);
@@ -103,10 +103,10 @@ TEST(SliceStack, RoundingIsNoExcuseForASliceThatIsMissingOrRepeated) {
   std::vector<SlicePlane> missing = rounded_series(0.25, 1);
   missing.erase(missing.begin() + 9);
   EXPECT_TRUE(contains(refusal(missing), "a slice is missing"));
-  // Nor if the rest is numbered from 0 again.
+  // Renumbering the rest from 0 does not help.
   for (std::size_t k = 0; k < missing.size(); ++k) missing[k].number = static_cast<int>(k);
   EXPECT_TRUE(contains(refusal(missing), "a slice is missing"));
-  // Every slice twice may be two times as well.
+  // Two slices at every position may be two time points.
   std::vector<SlicePlane> twice = rounded_series(1, 0);
   for (std::size_t k = 0; k < 24; ++k) twice[k].position_mm.z() = static_cast<double>(k / 2);
   EXPECT_TRUE(contains(refusal(twice), "positions are rounded to 1 mm, or there are several"));
@@ -154,7 +154,7 @@ TEST(SliceStack, AMissingSliceIsNamedByItsNeighbours) {
   }
 }
 
-// The densities of slices whose pixels are linear in space.
+// Returns the pixels of slices, sampled from `density`.
 template <typename Density>
 std::vector<float> pixels_of(const std::vector<SlicePlane>& slices, const SliceStack& stack,
                              const Density& density) {
@@ -174,7 +174,7 @@ std::vector<float> pixels_of(const std::vector<SlicePlane>& slices, const SliceS
 
 TEST(SliceStack, UnevenDistancesAreEvenedOutAndNamed) {
   const auto density = [](const Vec3& p) { return 1000 + 3 * p.x() - 5 * p.y() + 7 * p.z(); };
-  // Slices after a change of the table's feed, with an overlap where it changed.
+  // Slices with a change of the table feed, overlapping at the change.
   std::vector<SlicePlane> slices = series(11, 0);
   double height_mm = 3;
   for (std::size_t k = 0; k < slices.size(); ++k) {
@@ -220,7 +220,7 @@ TEST(SliceStack, WhatHasNoDensitySpreadsNoFurtherThanItIsUsed) {
   densities[48 * 2 + 7] = std::numeric_limits<float>::quiet_NaN();
   even_out_slices(stack, densities);
   EXPECT_EQ(stack.geometry.dims[2], 5);
-  // The second and third slice are interpolated with it.
+  // The second and third slice are interpolated from the one with NaN.
   EXPECT_EQ(
       std::count_if(densities.begin(), densities.end(), [](float density) { return std::isnan(density); }),
       2);
@@ -269,8 +269,7 @@ TEST(SliceStack, WhatMakesNoGridIsRefused) {
   EXPECT_TRUE(contains(refusal({}), "no slices"));
 }
 
-// A density that is linear in space is kept exactly by linear interpolation, so it can be told at every
-// voxel.
+// Linear interpolation preserves a linear density exactly, so the result is known at every voxel.
 TEST(GantryTilt, EveryVoxelOfATiltedStackComesToItsPlace) {
   const auto density = [](const Vec3& p) { return 1000 + 3 * p.x() - 5 * p.y() + 7 * p.z(); };
   for (const Vec3& drift_mm : {Vec3(0.11, -0.2, 0), Vec3(-0.3, 0.07, 0), Vec3(0, 0.25, 0)}) {

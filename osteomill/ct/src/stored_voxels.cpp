@@ -18,13 +18,13 @@ namespace osteomill {
 namespace {
 
 constexpr std::size_t kBlock = 1 << 18;
-// A number and what parts it from the next take fewer letters than this; text behind that is not wanted.
+// Maximum length of a number with its separator; limits the text that is read.
 constexpr std::uint64_t kMaxLetters = 64;
-// So much beyond the voxels is read on to come to the checksum.
+// Bytes read beyond the voxels to reach the checksum.
 constexpr std::uint64_t kMaxRest = 1 << 20;
 constexpr const char* kHoldsMore = "holds more data than its sizes need; the rest was left out";
 
-// Calls `use` with a value of the type in which a voxel is stored.
+// Calls `use` with a value of the voxel type.
 template <typename Use>
 auto with_type(VoxelType type, const Use& use) {
   switch (type) {
@@ -51,7 +51,7 @@ auto with_type(VoxelType type, const Use& use) {
   }
 }
 
-// Whether a voxel of this type can hold the number.
+// Returns whether a voxel of this type can represent the number.
 bool fits(double number, VoxelType type) {
   return with_type(type, [&](auto value) {
     using Limits = std::numeric_limits<decltype(value)>;
@@ -65,7 +65,7 @@ InputError cut_short(const std::string& subject, std::uint64_t needed, std::uint
   return {subject, fmt::format("is cut short: its voxels need {} bytes, there are {}", needed, found)};
 }
 
-// `bytes` hold whole values, whose order of bytes is changed in place if it is not the machine's.
+// Appends densities. `bytes` must hold whole values; swaps them in place if their byte order is not native.
 void append(std::span<char> bytes, const StoredVoxels& stored, std::vector<float>& densities) {
   with_type(stored.type, [&](auto value) {
     const bool swap = stored.big_endian != (std::endian::native == std::endian::big);
@@ -78,7 +78,7 @@ void append(std::span<char> bytes, const StoredVoxels& stored, std::vector<float
   });
 }
 
-// Checks the data behind the voxels; as a rule there are none.
+// Checks the data after the voxels; usually there are none.
 void check_rest(const std::string& subject, StoredVoxels& stored, std::uint64_t needed,
                 std::vector<std::string>& warnings) {
   ByteSource& source = stored.source;
@@ -97,7 +97,7 @@ void check_rest(const std::string& subject, StoredVoxels& stored, std::uint64_t 
   if (rest > 0) warnings.push_back(kHoldsMore);
 }
 
-// Puts `count` densities behind those that are there; `all` are to come in all.
+// Appends `count` densities of a total of `all`.
 void read_binary(const std::string& subject, StoredVoxels& stored, std::uint64_t count, std::uint64_t all,
                  std::uint64_t max_bytes, std::vector<float>& densities, std::vector<std::string>& warnings) {
   ByteSource& source = stored.source;
@@ -125,7 +125,7 @@ void read_binary(const std::string& subject, StoredVoxels& stored, std::uint64_t
 void read_text(const std::string& subject, StoredVoxels& stored, std::uint64_t count, std::uint64_t all,
                std::uint64_t max_bytes, std::vector<float>& densities, std::vector<std::string>& warnings) {
   stored.source.skip(stored.skip);
-  // One digit and one space each, at the least.
+  // At least one digit and one separator each.
   const std::uint64_t needed = 2 * count - 1;
   const std::uint64_t possible = stored.source.max_bytes();
   if (possible < needed) throw cut_short(subject, needed, possible);
@@ -190,7 +190,7 @@ std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored,
     set_skip(stored, count / files);
     read();
   }
-  // Told once, however many files it is true of.
+  // All files give the same warning, so report it once.
   if (!found.empty()) warnings.push_back(found.front());
   return densities;
 }

@@ -27,7 +27,7 @@ struct Close {
 };
 using TiffFile = std::unique_ptr<TIFF, Close>;
 
-// Keeps the first reason of a failure in a string.
+// Stores the first error message in a string.
 int keep_reason(TIFF*, void* reason, const char*, const char* format, std::va_list arguments) {
   auto& text = *static_cast<std::string*>(reason);
   if (!text.empty()) return 1;
@@ -41,7 +41,7 @@ int pass_over(TIFF*, void*, const char*, const char*, std::va_list) {
   return 1;
 }
 
-// How the values of a page are stored.
+// Storage format of a page.
 struct Layout {
   std::uint32_t columns = 0, rows = 0;
   std::uint16_t bits = 1, channels = 1, format = SAMPLEFORMAT_UINT, planes = PLANARCONFIG_CONTIG,
@@ -60,7 +60,7 @@ void append(const std::uint8_t* bytes, std::size_t count, bool is_inverted, std:
   }
 }
 
-// Eight values a byte, the first in the highest bit; a row begins with a byte.
+// Eight values per byte, the first in the highest bit; rows start at a byte.
 void append_bits(const std::uint8_t* bytes, std::size_t count, bool is_inverted, std::vector<float>& values) {
   for (std::size_t n = 0; n < count; ++n)
     values.push_back(static_cast<float>((bytes[n / 8] >> (7 - n % 8) & 1) ^ static_cast<int>(is_inverted)));
@@ -103,7 +103,7 @@ class TiffReader {
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), pass_over, nullptr);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(),
                                         static_cast<tmsize_t>(std::min(max_bytes, kMostBytes)));
-    // Not mapped: a file that is cut short meanwhile would end the program.
+    // Not memory-mapped: if the file were truncated meanwhile, the program would crash.
     file_.reset(TIFFOpenExt(path.c_str(), "rm", options.get()));
     if (!file_) refuse();
   }
@@ -112,7 +112,7 @@ class TiffReader {
     do {
       std::uint32_t kind = 0;
       TIFFGetFieldDefaulted(file_.get(), TIFFTAG_SUBFILETYPE, &kind);
-      // Smaller copies and masks are no slices.
+      // Ignores thumbnails and masks.
       if ((kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0) use(page());
     } while (TIFFReadDirectory(file_.get()) != 0);
     if (!reason_.empty()) refuse();
@@ -187,14 +187,14 @@ class TiffReader {
     if (row < layout.rows) refuse();
   }
 
-  // A row of tiles at a time.
+  // Reads a row of tiles at a time.
   template <typename AppendRow>
   void read_tiles(const Layout& layout, std::size_t row_bytes, const AppendRow& append_row) {
     std::uint32_t width = 0, height = 0;
     TIFFGetField(file_.get(), TIFFTAG_TILEWIDTH, &width);
     TIFFGetField(file_.get(), TIFFTAG_TILELENGTH, &height);
     const tmsize_t size = TIFFTileSize(file_.get());
-    // Tiles have to be a multiple of 16 wide.
+    // Tile widths are multiples of 16, so tile rows are whole bytes.
     const std::uint64_t tile_row_bits = std::uint64_t{width} * layout.channels * layout.bits;
     const std::uint64_t tile_row_bytes = tile_row_bits / 8;
     if (width == 0 || tile_row_bits % 8 != 0 || height == 0 || size <= 0 ||

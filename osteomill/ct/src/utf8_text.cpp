@@ -7,7 +7,7 @@ namespace osteomill {
 
 namespace {
 
-// The bytes of the character with which `text` begins, as UTF-8 has it; 0 if it does not.
+// Returns the length of the UTF-8 character at the start of `text`; 0 if it is invalid.
 std::size_t length_of_utf8(std::string_view text) {
   const auto byte = [&](std::size_t n) {
     return n < text.size() ? static_cast<unsigned>(static_cast<unsigned char>(text[n])) : 0;
@@ -15,7 +15,7 @@ std::size_t length_of_utf8(std::string_view text) {
   const auto follows = [&](std::size_t n) { return (byte(n) & 0xC0) == 0x80; };
   if (byte(0) < 0x80) return 1;
   if (byte(0) >= 0xC2 && byte(0) < 0xE0 && follows(1)) return 2;
-  // Neither too long a form, nor half of a pair.
+  // Rejects overlong forms and surrogates.
   const unsigned two = byte(0) << 8 | byte(1);
   if (two >= 0xE0A0 && two < 0xF000 && follows(1) && follows(2) && !(two >= 0xEDA0 && two < 0xEE00)) return 3;
   if (two >= 0xF090 && two < 0xF490 && follows(1) && follows(2) && follows(3)) return 4;

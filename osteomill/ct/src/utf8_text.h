@@ -5,13 +5,13 @@
 
 namespace osteomill {
 
-/// Returns whether all bytes are characters in UTF-8.
+/// Returns whether a text is valid UTF-8.
 bool is_utf8(std::string_view text);
 
-/// Returns Latin 1 in UTF-8.
+/// Converts Latin 1 to UTF-8.
 std::string utf8_of_latin1(std::string_view text);
 
-/// Returns UTF-8 with `instead` for every control character: C0, DEL and C1.
+/// Replaces every control character (C0, DEL and C1) of a UTF-8 text by `instead`.
 std::string without_controls(std::string_view text, char instead);
 
 }  // namespace osteomill

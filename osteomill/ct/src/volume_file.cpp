@@ -43,7 +43,7 @@ std::array<int, 3> checked_dims(const std::string& subject, const std::vector<do
   return dims;
 }
 
-// Axes of length 1 at right angles that lie as near to these as any do, on the same side of a mirror.
+// Returns the nearest orthonormal axes with the same handedness.
 Mat3 straightened(const Mat3& axes) {
   const Eigen::JacobiSVD<Mat3> parts(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return parts.matrixU() * parts.matrixV().transpose();
@@ -70,7 +70,7 @@ namespace {
 
 constexpr std::size_t kMostFiles = 1 << 20;
 
-// "%03d", of which the 0 and the width may be missing, with a number in its place.
+// Replaces a conversion such as "%03d" or "%d" by a number; nullopt if the pattern has none or several.
 std::optional<std::string> filled_in(const std::string& pattern, long number) {
   const std::size_t percent = pattern.find('%');
   std::size_t at = percent + 1;
@@ -89,7 +89,7 @@ std::optional<std::string> filled_in(const std::string& pattern, long number) {
          pattern.substr(at + 1);
 }
 
-// Nothing if it is no pattern with its numbers: then it is a name.
+// Returns the names that a pattern and its numbers stand for; nullopt if it is a plain name.
 std::optional<std::vector<std::string>> names_of_pattern(const std::string& subject,
                                                          const std::string& said) {
   std::istringstream in(said);
@@ -143,8 +143,7 @@ double most_skew(const Mat3& axes) {
 GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
                               const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
                               double unit_mm, std::vector<std::string>& warnings, const Vec3& lps_from_axes) {
-  // Half of it, which is as far as an axis is turned, moves the end of a scan of 400 mm by under a
-  // millimetre.
+  // Axes are turned by half of this at most, which moves the end of a 400 mm scan by less than 1 mm.
   constexpr double kMostShear = 4.4e-3;
   GridGeometry geometry;
   geometry.dims = checked_dims(subject, sizes);
@@ -161,7 +160,7 @@ GridGeometry checked_geometry(const std::string& subject, const std::vector<doub
   Mat3 directions = axes.colwise().normalized();
   Vec3 first_mm = origin * unit_mm;
   if (skew > kNoShear) {
-    // The middle of the scan stays where it is.
+    // Keeps the centre of the scan in place.
     const Mat3 straight = straightened(directions);
     const Vec3 middle(0.5 * (sizes[0] - 1), 0.5 * (sizes[1] - 1), 0.5 * (sizes[2] - 1));
     first_mm += (directions - straight) * geometry.spacing_mm.cwiseProduct(middle);
@@ -170,7 +169,7 @@ GridGeometry checked_geometry(const std::string& subject, const std::vector<doub
         fmt::format("has axes that are {:.2g} degrees off right angles; they were put straight",
                     std::asin(skew) * 57.29577951308232));
   }
-  // Adding 0 makes -0, which only puzzles, 0.
+  // Adding 0 turns -0 into 0.
   geometry.origin_mm = lps_from_axes.cwiseProduct(first_mm).array() + 0.0;
   geometry.direction = (lps_from_axes.asDiagonal() * directions).array() + 0.0;
   check_plausible(subject, geometry);

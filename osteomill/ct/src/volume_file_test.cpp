@@ -24,7 +24,7 @@ class VolumeFile : public testing_support::FolderTest {
 
 constexpr std::array<int, 3> kDims{4, 3, 2};
 
-// The voxel (i, j, k) holds i + 10 j + 100 k - 50.
+// Voxel (i, j, k) has the value i + 10 j + 100 k - 50.
 template <typename Stored>
 std::string voxels() {
   std::string bytes;
@@ -80,7 +80,7 @@ std::string swapped(std::string bytes, std::size_t size) {
   return bytes;
 }
 
-// Returns a NIfTI-1 header with the bytes of the numbers that `Nifti` sets swapped.
+// Returns a NIfTI-1 header with the byte order swapped for the numbers that `Nifti` sets.
 std::string swapped_header(std::string header) {
   const auto swap = [&](std::size_t at, std::size_t end, std::size_t size) {
     header.replace(at, end - at, swapped(header.substr(at, end - at), size));
@@ -94,7 +94,7 @@ std::string swapped_header(std::string header) {
   return header;
 }
 
-// A NIfTI-1 header, field by field as nifti1.h lays it out.
+// NIfTI-1 header with the layout of nifti1.h.
 class Nifti {
  public:
   Nifti() : bytes_(352, '\0') {
@@ -223,7 +223,7 @@ TEST_F(VolumeFile, AFieldOrSpaceWithASlipIsRefused) {
   EXPECT_LT(refusal(write("d.nrrd", nrrd("encoding: raw\n" + long_key + ": 1\n", data))).size(), 200U);
 }
 
-// It would be waited for.
+// Reading a pipe would block.
 TEST_F(VolumeFile, APipeIsNoDataFile) {
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   EXPECT_TRUE(contains(refusal(write("a.nhdr", nrrd("encoding: raw\nline skip: 1\ndata file: pipe\n", ""))),
@@ -245,7 +245,7 @@ TEST_F(VolumeFile, EveryAxisHasItsOwnUnit) {
   EXPECT_TRUE(spacing_of("spacings: 1 2 50\nunits: \"mm\" \"cm\" \"um\"\n").isApprox(Vec3(1, 20, 0.05)));
   EXPECT_TRUE(spacing_of("spacings: 1 2 50\nunits: mm mm um\n").isApprox(Vec3(1, 2, 0.05)));
   EXPECT_TRUE(spacing_of("spacings: 20 20 50\nunits: \"um\"\n").isApprox(Vec3(0.02, 0.02, 0.05)));
-  // Those of a space are of its directions, whichever axes run along them.
+  // Space units apply to the directions of the space, whatever axes run along them.
   const std::string placed =
       "space: LPS\nspace directions: (0,0,40) (0,2,0) (3,0,0)\nspace origin: (1,2,500)\n"
       "space units: \"mm\" \"mm\" \"um\"\n";
@@ -256,7 +256,7 @@ TEST_F(VolumeFile, EveryAxisHasItsOwnUnit) {
                        "2 units for its 3 axes"));
 }
 
-// The voxels in three files of 8 and in two of 12.
+// Voxels in three files of 8 and in two of 12.
 TEST_F(VolumeFile, VoxelsInSeveralFilesFollowEachOther) {
   const std::string bytes = voxels<std::int16_t>();
   for (std::size_t n = 0; n < 3; ++n)
@@ -349,7 +349,7 @@ TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
   expect_voxels(read_scan(write("b.mha", mha(fields + "CompressedData = True\n" + size, packed))).grid);
 }
 
-// ITK's rules: field names come in any order and whose unknown ones are passed over.
+// ITK's rules: fields may be in any order, and unknown ones are ignored.
 TEST_F(VolumeFile, OddHeadersOfMetaImageAreRead) {
   const std::string data = voxels<std::int16_t>();
   const std::string odd =
@@ -441,7 +441,7 @@ TEST_F(VolumeFile, NiftiWithoutAScalingHasItsValuesAsStored) {
                        "is not a number"));
 }
 
-// Not turned, its first voxel at (9, 8, 7) in RAS.
+// Not rotated, with the first voxel at (9, 8, 7) in RAS.
 Nifti with_qform() {
   return Nifti().set<std::int16_t>(252, 1).set<float>(268, 9).set<float>(272, 8).set<float>(276, 7);
 }
@@ -465,7 +465,7 @@ TEST_F(VolumeFile, AQformStandsInForAnSformThatCannotBeUsed) {
     expect_qform(with_qform().set<float>(280, shear), "its sform is sheared; its qform");
   expect_qform(with_qform().set<float>(280, 0.3F), "its sform gives other voxel sizes");
   expect_qform(with_qform().set<float>(292, std::numeric_limits<float>::quiet_NaN()), "is no number");
-  // Both are sound.
+  // Both are valid.
   Nifti elsewhere = with_qform();
   for (const auto& [offset, value] : {std::pair{280, 0.5F},
                                       {284, 0.0F},
@@ -479,7 +479,7 @@ TEST_F(VolumeFile, AQformStandsInForAnSformThatCannotBeUsed) {
     elsewhere.set<float>(offset, value);
   const Scan other = read_scan(write("c.nii", elsewhere.with(voxels<std::int16_t>())));
   EXPECT_EQ(other.warnings.at(0), "its sform and its qform place it differently; the sform was taken");
-  // A qform that is none does not spoil a good sform.
+  // An invalid qform does not matter if the sform is good.
   const Scan scan = read_scan(write("b.nii", with_qform().set<float>(256, 3).with(voxels<std::int16_t>())));
   EXPECT_TRUE(scan.warnings.empty());
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
@@ -502,14 +502,14 @@ TEST_F(VolumeFile, AShearOfATenthOfADegreeIsPutStraight) {
         });
     EXPECT_TRUE(named) << file;
   }
-  // The middle stays: half of what the second axis leans over, 1 voxel up.
+  // The centre stays in place: the shift is half the lean of the second axis, 1 voxel up.
   EXPECT_NEAR(read_scan(nrrd_file).grid.geometry().world_from_voxel(Vec3(1.5, 1, 0.5)).x(), 0.75 + 0.00175,
               1e-9);
   const std::string more = "encoding: raw\nspace: LPS\nspace directions: (1,0,0) (0.005,1,0) (0,0,1)\n";
   EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd(more, data))), "right angles"));
 }
 
-// A NIfTI-2 header of the same scan, field by field as nifti2.h lays it out.
+// NIfTI-2 header of the same scan with the layout of nifti2.h.
 std::string nifti2(const std::string& magic) {
   std::string bytes(544, '\0');
   const auto set = [&](std::size_t offset, auto value) {
@@ -556,7 +556,7 @@ TEST_F(VolumeFile, Nifti2AndPairsOfFilesGiveTheSame) {
   std::filesystem::copy_file(folder_ / "b.img", alone / "b.img");
   expect_scan(alone);
   EXPECT_TRUE(contains(refusal(write("d.nii", nifti2("n+1") + data)), "neither n+2 nor ni2"));
-  // Its forerunner has the same header without a magic.
+  // Analyze, NIfTI's predecessor, has the same header without a magic.
   pair.replace(344, 3, std::string(3, '\0'));
   EXPECT_TRUE(contains(refusal(write("b.hdr", pair)), "is Analyze 7.5, not NIfTI"));
   EXPECT_TRUE(contains(refusal(write("e.nii", nifti2("n+2").substr(0, 400))), "cut short in its header"));
@@ -640,7 +640,7 @@ TEST_F(VolumeFile, PlacesThatNoBoneCanHaveAreRefused) {
                        "mm apart"));
 }
 
-// With one voxel that is no density.
+// Voxels of which one has the value `odd`.
 std::string floats_with(float odd, std::string data = voxels<float>()) {
   std::memcpy(data.data() + 4 * 7, &odd, 4);
   std::string bytes = nrrd("encoding: raw\n" + kPlaced, data);

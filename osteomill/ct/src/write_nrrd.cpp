@@ -36,7 +36,7 @@ bool holds_exactly(const DensityGrid& grid) {
   return holds;
 }
 
-// False if not all could be written.
+// Returns false if not everything could be written.
 template <typename Stored>
 bool write_values(gzFile file, const DensityGrid& grid) {
   std::vector<Stored> values;
@@ -49,7 +49,7 @@ bool write_values(gzFile file, const DensityGrid& grid) {
   return written;
 }
 
-// Writes as many digits as read back to the same number.
+// Writes the shortest digits that read back to the same number.
 std::string vector_text(const Vec3& v) {
   return fmt::format("({},{},{})", v.x(), v.y(), v.z());
 }
@@ -75,7 +75,7 @@ std::string header_of(const GridGeometry& geometry, const char* type) {
       vector_text(geometry.origin_mm));
 }
 
-// The values as a gzip stream behind the header.
+// Writes the header, then the values as a gzip stream.
 template <typename Stored>
 void write_as(const char* type, const DensityGrid& grid, const std::filesystem::path& path,
               const std::filesystem::path& beside) {
@@ -83,7 +83,7 @@ void write_as(const char* type, const DensityGrid& grid, const std::filesystem::
   std::ofstream header(beside);
   header << header_of(grid.geometry(), type);
   header.close();
-  // Scans are large, and higher levels than 4 win little on noise.
+  // Scans are large and noisy: levels above 4 gain little.
   gzFile file = header ? gzopen(beside.c_str(), "ab4") : nullptr;
   if (file == nullptr) throw InputError(path.string(), with_reason("cannot be created"));
   const bool written = write_values<Stored>(file, grid);

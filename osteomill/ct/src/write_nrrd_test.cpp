@@ -63,7 +63,7 @@ TEST_F(WriteNrrd, ComesBackInItsFrameInTheSmallestTypeThatHoldsIt) {
   }
 }
 
-// More than the writer packs at once.
+// More data than the writer compresses at once.
 TEST_F(WriteNrrd, ComesBackHoweverLong) {
   GridGeometry geometry;
   geometry.dims = {101, 67, 53};

@@ -38,7 +38,7 @@ TEST_F(ZipArchive, HoldsAScanAndNamesItself) {
       read_scan(write_zip({{"case/", ""}, {"case\\a.nrrd", kNrrd}, {"__MACOSX/case/._a.nrrd", "x"}}));
   EXPECT_EQ(scan.grid[(VoxelIndex{1, 1, 1})], 8);
   EXPECT_EQ(scan.name, (folder_ / "scan.zip").string());
-  // One that is at fault is named as it lies in the archive.
+  // Errors name the file within the archive.
   EXPECT_TRUE(contains(refusal(write_zip({{"case/a.nrrd", kNrrd.substr(0, kNrrd.size() - 4)}})),
                        (folder_ / "scan.zip/case/a.nrrd: is cut short").string()));
   EXPECT_TRUE(contains(refusal(write_zip({{"a.nrrd", kNrrd}, {"b.nrrd", kNrrd}})), "holds 2 scans"));
@@ -67,7 +67,7 @@ TEST_F(ZipArchive, WhereverItIsCutOrDamagedThatIsNoticed) {
   const fs::path path = write_zip({{"a.nrrd", kNrrd}});
   std::ifstream in(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), {});
-  // Its last field, a remark's length, does not matter.
+  // The last field, the length of a comment, does not matter.
   for (std::size_t length = 1; length < bytes.size() - 10; ++length) {
     EXPECT_FALSE(refusal(write("cut.zip", bytes.substr(0, length))).empty()) << length;
   }
