@@ -117,8 +117,8 @@ bool ByteSource::skip(std::uint64_t count) {
 std::ifstream open_regular_file(const std::string& subject, const fs::path& file) {
   std::error_code error;
   const std::string name = file.string() == subject ? "" : fmt::format("its data file {} ", file.string());
-  if (!fs::exists(file, error)) throw InputError(subject, name + "is not there");
-  if (!fs::is_regular_file(file, error)) throw InputError(subject, name + "is no regular file");
+  if (!fs::exists(file, error)) throw InputError(subject, name + "does not exist");
+  if (!fs::is_regular_file(file, error)) throw InputError(subject, name + "is not a regular file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(subject, name + "cannot be read");
   note_input(file);

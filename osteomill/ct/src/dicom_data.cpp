@@ -287,7 +287,7 @@ void check_bounds(const fs::path& path, const MetaGroup& meta) {
   if (deflated && (!source.ended_well() || bytes > max_bytes)) {
     throw InputError(subject, "is cut short or damaged: its deflated data do not inflate");
   }
-  if (items > kMaxItems) throw InputError(subject, "is damaged: no scan has as many sequence items");
+  if (items > kMaxItems) throw InputError(subject, "is damaged: it has more sequence items than any scan");
 }
 
 }  // namespace
@@ -300,9 +300,10 @@ std::optional<DicomData> load_dicom(const fs::path& path, std::uint64_t max_byte
   set_up_dcmtk();
   if (!looks_like_dicom(path)) return std::nullopt;
   if (const std::uintmax_t bytes = fs::file_size(path); bytes > max_bytes + kMaxHeadBytes) {
-    throw InputError(path.string(),
-                     fmt::format("is {:.3g} GB long, over the {:.3g} GB that its voxels may take",
-                                 static_cast<double>(bytes) * 1e-9, static_cast<double>(max_bytes) * 1e-9));
+    throw InputError(
+        path.string(),
+        fmt::format("is {:.3g} GB long, over the limit of {:.3g} GB for its voxels (--max-memory)",
+                    static_cast<double>(bytes) * 1e-9, static_cast<double>(max_bytes) * 1e-9));
   }
   const MetaGroup meta = read_meta_group(path);
   check_bounds(path, meta);

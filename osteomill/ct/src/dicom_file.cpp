@@ -216,7 +216,7 @@ std::string FileReader::no_slice() const {
     return fmt::format("a colour image ({})", header_.photometric);
   const bool has_place = std::any_of(kPlaceTags.begin(), kPlaceTags.end(),
                                      [&](const DcmTagKey& tag) { return !text_of(data_, tag).empty(); });
-  return has_place || header_.frames > 1 ? "" : "a picture without a place";
+  return has_place || header_.frames > 1 ? "" : "a picture without a position";
 }
 
 // Returns the lowest `bits_allocated` bits of an element's number, so that it does not matter whether the
@@ -318,7 +318,7 @@ void FileReader::describe_segments() {
   for (std::size_t frame = 0; frame < header_.slices.size() && type != "LABELMAP"; ++frame) {
     const auto segment =
         frame_numbers(frame, DCM_SegmentIdentificationSequence, DCM_ReferencedSegmentNumber, 1, "segment");
-    if (!segment) throw fault("is a segmentation that does not say what its frames show");
+    if (!segment) throw fault("is a segmentation that does not state the segments of its frames");
     header_.slices[frame].segment = static_cast<int>(segment->front());
   }
 }
@@ -341,7 +341,7 @@ StoredPixels FileReader::stored_pixels() const {
       pixels.bits_allocated == 8 || pixels.bits_allocated == 16 || pixels.bits_allocated == 32;
   if (!whole_bytes || pixels.bits_stored < 1 || pixels.bits_stored > pixels.bits_allocated ||
       high_bit != pixels.bits_stored - 1) {
-    throw fault(fmt::format("has pixels of {} bits in {}, the highest being bit {}, which is not supported",
+    throw fault(fmt::format("has pixels of {} bits in {} with high bit {}, which is not supported",
                             pixels.bits_stored, pixels.bits_allocated, high_bit));
   }
   pixels.padding = padding_of(pixels);
@@ -350,13 +350,13 @@ StoredPixels FileReader::stored_pixels() const {
 
 SlicePlane FileReader::plane_of(std::size_t frame) const {
   const auto spacing = frame_numbers(frame, DCM_PixelMeasuresSequence, DCM_PixelSpacing, 2, "PixelSpacing");
-  if (!spacing) throw fault("has no PixelSpacing, so its size is not known");
+  if (!spacing) throw fault("has no PixelSpacing, so its size is unknown");
   const auto position =
       frame_numbers(frame, DCM_PlanePositionSequence, DCM_ImagePositionPatient, 3, "ImagePositionPatient");
-  if (!position) throw fault("has no ImagePositionPatient, so its place is not known");
+  if (!position) throw fault("has no ImagePositionPatient, so its position is unknown");
   const auto orientation = frame_numbers(frame, DCM_PlaneOrientationSequence, DCM_ImageOrientationPatient, 6,
                                          "ImageOrientationPatient");
-  if (!orientation) throw fault("has no ImageOrientationPatient, so its place is not known");
+  if (!orientation) throw fault("has no ImageOrientationPatient, so its orientation is unknown");
 
   SlicePlane plane;
   plane.columns = header_.columns;
@@ -389,7 +389,7 @@ DicomSlice FileReader::slice_of(std::size_t frame) const {
   if (const auto slope = rescale(DCM_RescaleSlope, "RescaleSlope")) slice.pixels.slope = slope->front();
   if (const auto intercept = rescale(DCM_RescaleIntercept, "RescaleIntercept"))
     slice.pixels.intercept = intercept->front();
-  if (slice.pixels.slope == 0) throw fault("has a RescaleSlope of 0, which leaves nothing of its values");
+  if (slice.pixels.slope == 0) throw fault("has a RescaleSlope of 0, which makes all densities equal");
   return slice;
 }
 
@@ -408,8 +408,7 @@ void FileReader::place_frames() {
   // Frames of a film are ordered by time.
   if (data_.findAndGetElement(DCM_FrameIncrementPointer, pointer).good() &&
       pointer->getTagVal(along, 0).good() && along != DCM_SliceLocationVector) {
-    throw fault(fmt::format("has several frames, which follow each other by {}, not by known places",
-                            DcmTag(along).getTagName()));
+    throw fault(fmt::format("has several frames ordered by {}, not by position", DcmTag(along).getTagName()));
   }
   if (const auto heights_mm =
           numbers(data_, DCM_SliceLocationVector, header_.frames, "SliceLocationVector")) {
@@ -419,11 +418,11 @@ void FileReader::place_frames() {
     for (std::size_t frame = 0; frame < header_.frames; ++frame)
       offsets_mm_.push_back(spacing_mm->front() * static_cast<double>(frame));
   } else {
-    throw fault("has several frames and does not say where each of them lies");
+    throw fault("has several frames without positions");
   }
   header_.warning = fmt::format(
-      "its frames have no places of their own: they were put along the normal, the second {:.6g} mm from the "
-      "first",
+      "its frames have no positions of their own: they were placed along the normal, the second {:.6g} mm "
+      "from the first",
       offsets_mm_[1]);
 }
 
@@ -445,7 +444,7 @@ void FileReader::check_byte_count() const {
 
 void FileReader::read_frames() {
   if (const auto frames = numbers(data_, DCM_NumberOfFrames, 1, "NumberOfFrames")) {
-    if (frames->front() < 1 || frames->front() > 1 << 16) throw fault("has no sensible NumberOfFrames");
+    if (frames->front() < 1 || frames->front() > 1 << 16) throw fault("has an invalid NumberOfFrames");
     header_.frames = static_cast<std::size_t>(frames->front());
   }
   if (!header_.undecodable.empty() && header_.is_image())

@@ -126,7 +126,7 @@ std::size_t FrameReader::first_fragment(std::size_t frame) const {
       if (before == offset) return n;
     }
   }
-  throw fault("does not say in which of its fragments each frame lies");
+  throw fault("does not state which of its fragments belong to which frame");
 }
 
 std::vector<unsigned char> FrameReader::stream_of(std::size_t frame) const {
@@ -157,7 +157,7 @@ void FrameReader::read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCach
 void FrameReader::decode_jpeg(std::span<const unsigned char> stream) {
   const bool is_jpeg_ls = syntax_ == EXS_JPEGLSLossless || syntax_ == EXS_JPEGLSLossy;
   if (!jpeg_fits(stream, is_jpeg_ls ? JpegKind::jpeg_ls : JpegKind::jpeg, size_))
-    throw fault("is damaged: its compressed pixels are not what its header says");
+    throw fault("is damaged: its compressed pixels do not match its header");
   DcmDataset alone;
   for (const DcmTagKey& tag : {DCM_SamplesPerPixel, DCM_PhotometricInterpretation, DCM_Rows, DCM_Columns,
                                DCM_BitsAllocated, DCM_BitsStored, DCM_HighBit, DCM_PixelRepresentation}) {
@@ -209,7 +209,7 @@ void FrameReader::read_bits(std::size_t frame) {
   const std::size_t first = frame * size_.values();
   if (data_.findAndGetUint8Array(DCM_PixelData, bytes, &count).bad() || bytes == nullptr ||
       8 * count < first + size_.values())
-    throw fault("is cut short, or has bits that are compressed");
+    throw fault("is cut short, or has compressed single-bit pixels");
   for (std::size_t n = 0; n < size_.values(); ++n)
     values_[n] = static_cast<char>(bytes[(first + n) / 8] >> (first + n) % 8 & 1);
 }

@@ -136,7 +136,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
     std::error_code ignored;
     if (entry->is_regular_file(ignored)) files.push_back(entry->path());
     if (files.size() > kMaxFiles) {
-      throw InputError(folder.string(), fmt::format("holds over {} files; name a folder in it", kMaxFiles));
+      throw InputError(folder.string(), fmt::format("holds over {} files; choose a folder in it", kMaxFiles));
     }
   }
   if (error) throw InputError(folder.string(), "cannot be read: " + error.message());
@@ -174,7 +174,7 @@ std::string size_and_spacing(const DicomPart& part) {
     return fmt::format("{} x {} x {}, {:.4g} x {:.4g} x {:.4g} mm", grid.dims[0], grid.dims[1], grid.dims[2],
                        grid.spacing_mm.x(), grid.spacing_mm.y(), grid.spacing_mm.z());
   } catch (const InputError&) {
-    return fmt::format("{} slices, no volume", part.slices.size());
+    return fmt::format("{} slices, not a volume", part.slices.size());
   }
 }
 
@@ -185,7 +185,9 @@ DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_b
   std::vector<fs::path> files;
   for (const fs::path& name : dicomdir.listed_files) {
     const std::optional<fs::path> file = file_named(dicomdir.file.parent_path(), name);
-    if (!file) throw InputError(subject, fmt::format("names {}, which is not there", name.string()));
+    if (!file)
+      throw InputError(subject,
+                       fmt::format("lists {}, which does not exist; copy the whole disc", name.string()));
     files.push_back(*file);
   }
   std::sort(files.begin(), files.end());
@@ -327,7 +329,7 @@ const DicomPart& pick_part(const std::string& subject, const std::vector<DicomPa
     return *std::find_if(all.begin(), all.end(),
                          [&](const DicomPart& part) { return part.number == number; });
   }
-  if (wanted.empty()) throw InputError(subject, "is a picture of its own, not a slice of a scan");
+  if (wanted.empty()) throw InputError(subject, "is a separate picture, not a slice of a scan");
   std::string list;
   for (const DicomPart& part : all) list += (list.empty() ? "" : "; ") + describe(part);
   throw InputError(
@@ -347,7 +349,7 @@ void drop_localizers(std::vector<DicomHeader>& images, std::vector<std::string>&
 
 void add_notes(const DicomHeader& first, std::vector<std::string>& warnings) {
   if (first.photometric == "MONOCHROME1") {
-    warnings.push_back("MONOCHROME1: meant to be shown inverted; the densities are taken as they are");
+    warnings.push_back("MONOCHROME1, meant for inverted display: the densities are not inverted");
   }
   if (!first.modality.empty() && first.modality != "CT") {
     warnings.push_back(
@@ -378,8 +380,7 @@ std::vector<float> read_densities(const DicomPart& part, const SliceStack& stack
   }
   if (signed_after_all) {
     warnings.push_back(
-        "its compressed pixels are signed though its header says that they are not: they were read as "
-        "signed");
+        "its compressed pixels are signed but its header says unsigned: they were read as signed");
   }
   return densities;
 }
@@ -395,8 +396,7 @@ void check_concatenation(const DicomPart& part, std::vector<std::string>& warnin
     total = std::max({total, of->total, of->number});
   }
   if (found.size() < static_cast<std::size_t>(total)) {
-    warnings.push_back(
-        fmt::format("is a part: {} of the {} files over which its image is parted", found.size(), total));
+    warnings.push_back(fmt::format("is incomplete: {} of the {} files of its image", found.size(), total));
   }
 }
 
@@ -413,11 +413,10 @@ void check_numbers(const DicomPart& part, const SliceStack& stack, std::vector<s
   const auto step = [&](std::size_t k) { return std::int64_t{*planes[k]->number} - *planes[k - 1]->number; };
   for (std::size_t k = 2; k < planes.size(); ++k) {
     if ((step(k) > 0) == (step(1) > 0) && step(k) != 0 && step(1) != 0) continue;
-    warnings.push_back(
-        fmt::format("slices do not lie in the order of their numbers, {}, {}, {} ({} to {}): they may be of "
-                    "several scans",
-                    *planes[k - 2]->number, *planes[k - 1]->number, *planes[k]->number, planes[k - 2]->name,
-                    planes[k]->name));
+    warnings.push_back(fmt::format(
+        "slices are not in the order of their numbers, {}, {}, {} ({} to {}): they may be of several scans",
+        *planes[k - 2]->number, *planes[k - 1]->number, *planes[k]->number, planes[k - 2]->name,
+        planes[k]->name));
     return;
   }
 }
@@ -433,8 +432,8 @@ void check_hounsfield_units(const std::vector<float>& densities, std::vector<std
   }
   if (least >= kLeast && most <= kMost) return;
   warnings.push_back(
-      fmt::format("holds densities from {:.6g} to {:.6g}, and no CT has such Hounsfield units: its header "
-                  "may be wrong about the sign of its pixels, or about its rescaling",
+      fmt::format("has densities from {:.6g} to {:.6g}, outside the range of CT in Hounsfield units: its "
+                  "header may be wrong about the sign or the rescaling of its pixels",
                   least, most));
 }
 
@@ -478,9 +477,9 @@ void add_choice(const DicomPart& picked, const std::vector<DicomPart>& all, std:
                             part.told_by.empty() ? size_and_spacing(part) : part.told_by);
   }
   if (!others.empty() && wanted != picked.number) {
-    warnings.push_back(fmt::format("a series holds several volumes; {} was read{}{}{}, --series chooses: {}",
-                                   picked.number, picked.told_by.empty() ? "" : " (", picked.told_by,
-                                   picked.told_by.empty() ? "" : ")", others));
+    warnings.push_back(fmt::format(
+        "a series holds several volumes; {} was read{}{}{}, choose with --series: {}", picked.number,
+        picked.told_by.empty() ? "" : " (", picked.told_by, picked.told_by.empty() ? "" : ")", others));
   }
 }
 
@@ -489,7 +488,7 @@ void drop_segmentations(std::vector<DicomHeader>& images, std::vector<std::strin
   const auto first = std::stable_partition(images.begin(), images.end(),
                                            [](const DicomHeader& header) { return !header.is_segmentation; });
   if (first == images.end() || first == images.begin()) return;
-  warnings.push_back(fmt::format("{} left out, which --labels reads: {}",
+  warnings.push_back(fmt::format("{} left out; read it with --labels: {}",
                                  counted(static_cast<std::size_t>(images.end() - first), "segmentation"),
                                  first->file.filename().string()));
   images.erase(first, images.end());
@@ -516,7 +515,7 @@ Scan read_images(const std::string& subject, DicomImages images, const ReadOptio
   if (images.headers.front().is_segmentation) {
     if (images.headers.size() > 1)
       throw InputError(subject,
-                       fmt::format("holds {} segmentations; name one of them", images.headers.size()));
+                       fmt::format("holds {} segmentations; choose one of them", images.headers.size()));
     if (images.headers.front().fault) throw *images.headers.front().fault;
     return read_segmentation(subject, images.headers.front(), options);
   }

@@ -58,9 +58,9 @@ FrameGrid grid_of(const std::string& subject, const DicomHeader& header, const R
   const double least_mm = least_distance_mm(heights_mm);
   const double step_mm = said_mm > 0 ? said_mm : least_mm;
   if (!(step_mm > 0 && std::isfinite(step_mm)))
-    throw InputError(subject, "has frames at one place and does not say how thick they are");
+    throw InputError(subject, "has frames at one position and no slice thickness");
   const double steps = (heights_mm.back() - heights_mm.front()) / step_mm;
-  if (!(steps < 1 << 16)) throw InputError(subject, "has frames too far apart for their distance");
+  if (!(steps < 1 << 16)) throw InputError(subject, "has frames too far apart for its slice distance");
   geometry.dims = {first.columns, first.rows, static_cast<int>(std::round(steps)) + 1};
   geometry.spacing_mm = {first.column_distance_mm, first.row_distance_mm, step_mm};
   geometry.origin_mm = first.position_mm + heights_mm.front() * geometry.direction.col(2);
@@ -71,7 +71,7 @@ FrameGrid grid_of(const std::string& subject, const DicomHeader& header, const R
     const bool is_off = std::abs(step - std::round(step)) > kOffShare ||
                         std::abs(place_mm.x()) > kOffShare * first.column_distance_mm ||
                         std::abs(place_mm.y()) > kOffShare * first.row_distance_mm;
-    if (is_off) throw InputError(subject, "has frames that lie on no straight and even grid");
+    if (is_off) throw InputError(subject, "has frames that are not on a straight, even grid");
     grid.slices.push_back(static_cast<int>(std::round(step)));
   }
   return grid;
@@ -109,8 +109,9 @@ Scan read_segmentation(const std::string& subject, const DicomHeader& header, co
   keep(last);
   std::vector<std::string> warnings;
   if (overlaps > 0) {
-    warnings.push_back(
-        fmt::format("{} voxels are of several segments: the one of the highest number has them", overlaps));
+    warnings.push_back(fmt::format(
+        "{} voxels are in several segments: they were assigned to the one with the highest number",
+        overlaps));
   }
   Scan scan{DensityGrid(geometry, std::move(labels)), subject, "DICOM", std::move(warnings)};
   scan.is_labels = true;

@@ -33,7 +33,7 @@ TEST_F(DicomSegmentation, IsALabelMapWithItsNames) {
     EXPECT_EQ(scan.grid[v], segment_at(v.i, v.j, v.k)) << v.i << ' ' << v.j << ' ' << v.k;
   });
   ASSERT_EQ(scan.warnings.size(), 1U);
-  EXPECT_TRUE(contains(scan.warnings[0], "voxels are of several segments"));
+  EXPECT_TRUE(contains(scan.warnings[0], "voxels are in several segments"));
   ASSERT_EQ(scan.labels.size(), 2U);
   EXPECT_EQ(scan.labels[1].name,
             "Sch\xC3\xA4"
@@ -48,7 +48,7 @@ TEST_F(DicomSegmentation, BesideItsScanItIsLeftToLabels) {
   const Scan scan = read_scan(folder_);
   EXPECT_FALSE(scan.is_labels);
   EXPECT_EQ(scan.grid.geometry().dims[2], 5);
-  EXPECT_TRUE(contains(scan.warnings.at(0), "1 segmentation left out, which --labels reads: seg"));
+  EXPECT_TRUE(contains(scan.warnings.at(0), "1 segmentation left out; read it with --labels: seg"));
   const LabelsRead labels = read_labels({folder_ / "seg", "", {"mandible"}}, scan.grid.geometry());
   ASSERT_EQ(labels.map->labels().size(), 2U);
   EXPECT_EQ(labels.map->labels()[0].name, "mandible");

@@ -236,7 +236,8 @@ LabelTable read_label_table(const fs::path& path) {
   const std::string subject = path.string();
   std::ifstream in = open_regular_file(subject, path);
   LabelTable table;
-  if (fs::file_size(path) > kMaxBytes) throw InputError(subject, "is too long for a table of labels");
+  if (fs::file_size(path) > kMaxBytes)
+    throw InputError(subject, "is longer than 1 MB, too long for a table of labels");
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     // Some editors start a text with a byte order mark.
@@ -253,7 +254,7 @@ LabelTable read_label_table(const fs::path& path) {
               number));
     }
   }
-  if (table.empty()) throw InputError(subject, "has no labels");
+  if (table.empty()) throw InputError(subject, "holds no labels");
   return table;
 }
 

@@ -64,7 +64,7 @@ HeaderFields read_fields(const std::string& subject, std::istream& in) {
   while (!fields.has("ElementDataFile") && std::getline(in, line)) {
     length += line.size() + 1;
     if (length > kMaxHeader || line.find('\0') != std::string::npos) {
-      throw InputError(subject, "is not MetaImage: its header is not made of \"name = value\"");
+      throw InputError(subject, "is not MetaImage: its header has no lines \"name = value\"");
     }
     const std::size_t separator = line.find_first_of("=:");
     if (separator == std::string::npos) continue;
@@ -74,9 +74,9 @@ HeaderFields read_fields(const std::string& subject, std::istream& in) {
     if (known != kNames.end()) fields.values[*known] = trimmed(std::string_view(line).substr(separator + 1));
   }
   if (fields.values.empty())
-    throw InputError(subject, "is not MetaImage: its header is not made of \"name = value\"");
+    throw InputError(subject, "is not MetaImage: its header has no lines \"name = value\"");
   if (!fields.has("ElementDataFile"))
-    throw InputError(subject, "does not say where its data are (ElementDataFile)");
+    throw InputError(subject, "does not name its data file (ElementDataFile)");
   return fields;
 }
 
@@ -129,10 +129,11 @@ GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& w
                             sizes = first_three(fields, "DimSize", count);
   for (std::size_t axis = 3; axis < count; ++axis) {
     if (all_sizes[axis] != 1)
-      throw InputError(subject, fmt::format("holds {} volumes or values a voxel, not one", all_sizes[axis]));
+      throw InputError(subject,
+                       fmt::format("holds {} volumes or values per voxel, not one", all_sizes[axis]));
   }
   const std::string spacing = first_of(fields, {"ElementSpacing", "ElementSize"});
-  if (spacing.empty()) warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
+  if (spacing.empty()) warnings.push_back("has no voxel size; 1 mm was assumed");
   const std::string matrix = first_of(fields, {"TransformMatrix", "Rotation", "Orientation"});
   const std::string origin = first_of(fields, {"Offset", "Position", "Origin"});
   return checked_geometry(
@@ -145,7 +146,7 @@ GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& w
 
 void check_grey(const HeaderFields& fields) {
   if (fields.has("ElementNumberOfChannels") && fields.numbers("ElementNumberOfChannels").front() != 1) {
-    throw InputError(fields.subject, "is not a grey volume: it holds several values a voxel");
+    throw InputError(fields.subject, "is not a grey volume: it has several values per voxel");
   }
 }
 

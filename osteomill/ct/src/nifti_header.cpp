@@ -122,7 +122,7 @@ Header header_of(const std::string& subject, const Bytes& bytes) {
   };
   const std::string_view magic = bytes.text(place(344, 4), 3), digit = two ? "2" : "1";
   if (!two && magic.front() == '\0')
-    throw InputError(subject, "is Analyze 7.5, not NIfTI: it does not say which side is left");
+    throw InputError(subject, "is Analyze 7.5, not NIfTI: left and right are undefined; convert it to NIfTI");
   if ((magic.substr(0, 2) != "n+" && magic.substr(0, 2) != "ni") || magic.substr(2) != digit)
     throw InputError(subject, fmt::format("is not NIfTI: its magic is neither n+{0} nor ni{0}", digit));
   Header header{subject};
@@ -154,7 +154,7 @@ std::vector<double> sizes_of(const Header& header) {
   for (std::size_t axis = 4; axis <= static_cast<std::size_t>(dimensions); ++axis) {
     if (header.sizes[axis] > 1) {
       throw InputError(header.subject,
-                       fmt::format("holds {} volumes or values a voxel, not one", header.sizes[axis]));
+                       fmt::format("holds {} volumes or values per voxel, not one", header.sizes[axis]));
     }
   }
   return {header.sizes[1], header.sizes[2], header.sizes[3]};
@@ -168,7 +168,7 @@ VoxelType type_of(const Header& header) {
   const auto found = kTypes.find(header.type);
   if (found == kTypes.end()) {
     throw InputError(header.subject,
-                     fmt::format("has voxels of type {}, which is not grey or not supported", header.type));
+                     fmt::format("has voxels of type {}, which is not supported", header.type));
   }
   return found->second;
 }
@@ -183,7 +183,7 @@ double unit_of(const Header& header) {
     case 3:
       return 1e-3;
     default:
-      throw InputError(header.subject, "has lengths in a unit that is not known");
+      throw InputError(header.subject, "has lengths in an unknown unit");
   }
 }
 
@@ -220,9 +220,10 @@ bool has_sizes_of(const Placement& placement, const Vec3& spacing) {
 
 // Returns why a placement cannot be used as it is; empty if it can.
 std::string fault_of(const Placement& placement, const Vec3& spacing) {
-  if (!placement.steps.allFinite() || !placement.origin.allFinite()) return "holds what is no number";
-  if (!((placement.steps.colwise().norm().array() > 0).all())) return "has an axis of no length";
-  if (!has_sizes_of(placement, spacing)) return "gives other voxel sizes than its pixdim";
+  if (!placement.steps.allFinite() || !placement.origin.allFinite())
+    return "holds values that are not finite";
+  if (!((placement.steps.colwise().norm().array() > 0).all())) return "has an axis of zero length";
+  if (!has_sizes_of(placement, spacing)) return "contradicts the voxel sizes in pixdim";
   if (most_skew(placement.steps) > kNoShear) return "is sheared";
   return "";
 }
@@ -236,20 +237,20 @@ Placement placement_of(const Header& header, std::vector<std::string>& warnings)
     const std::string fault = fault_of(sform, header.spacing);
     if (!qform) return sform;
     if (!fault.empty()) {
-      warnings.push_back(fmt::format("its sform {}; its qform was taken", fault));
+      warnings.push_back(fmt::format("its sform {}; its qform was used", fault));
       return *qform;
     }
     if ((qform->steps - sform.steps).cwiseAbs().maxCoeff() > 0.01 * header.spacing.minCoeff())
-      warnings.push_back("its sform and its qform turn it differently; the sform was taken");
+      warnings.push_back("its sform and qform differ in rotation; the sform was used");
     else if ((qform->origin - sform.origin).cwiseAbs().maxCoeff() > 0.5 * header.spacing.minCoeff())
-      warnings.push_back("its sform and its qform place it differently; the sform was taken");
+      warnings.push_back("its sform and qform differ in position; the sform was used");
     return sform;
   }
   if (header.qform_code > 0) {
     if (const auto placement = by_qform(header)) return *placement;
-    throw InputError(header.subject, "has a qform that is no rotation");
+    throw InputError(header.subject, "has a qform that is not a rotation");
   }
-  warnings.push_back("does not say how it lies in the patient; its axes were taken for RAS");
+  warnings.push_back("does not state its orientation in the patient; its axes were assumed to be RAS");
   return {header.spacing.asDiagonal(), Vec3::Zero()};
 }
 
@@ -273,11 +274,11 @@ GridGeometry geometry_of(const Header& header, std::vector<std::string>& warning
 // A slope of 0 or NaN means unscaled values (nifti1.h; nibabel writes NaN for slope and intercept).
 void set_scaling(const Header& header, StoredVoxels& voxels, std::vector<std::string>& warnings) {
   if (std::isnan(header.slope)) {
-    warnings.push_back("has a scl_slope that is not a number; its values were taken as stored");
+    warnings.push_back("has a scl_slope that is not a number; its values were not rescaled");
   }
   if (std::isnan(header.slope) || header.slope == 0) return;
   if (!std::isfinite(header.intercept) || std::isinf(header.slope)) {
-    throw InputError(header.subject, "has a scl_slope or scl_inter that is not a number");
+    throw InputError(header.subject, "has a scl_slope or scl_inter that is not finite");
   }
   voxels.slope = header.slope;
   voxels.intercept = header.intercept;
@@ -343,7 +344,7 @@ VolumeHeader read_nifti_header(const fs::path& path) {
   const GridGeometry geometry = geometry_of(header, warnings);
   const auto least = static_cast<double>(header.is_pair ? 0 : bytes.length());
   if (!(header.offset >= least && header.offset < 1e12)) {
-    throw InputError(subject, fmt::format("says that its voxels begin at byte {}", header.offset));
+    throw InputError(subject, fmt::format("has an invalid offset of its voxels: {} bytes", header.offset));
   }
   const auto offset = static_cast<std::uint64_t>(header.offset);
   std::uint64_t used = bytes.length();
@@ -351,7 +352,9 @@ VolumeHeader read_nifti_header(const fs::path& path) {
       extensions(bytes, source, header.is_pair ? source.max_bytes() : offset - used, used);
   if (header.is_pair) {
     const auto voxels = beside(header_path, ".img", ".IMG");
-    if (!voxels) throw InputError(subject, "its voxels are not there, in a file of the same name with .img");
+    if (!voxels)
+      throw InputError(subject,
+                       "its voxels are missing; copy the .img file of the same name into its folder");
     source = open_source(subject, *voxels);
     used = 0;
   }

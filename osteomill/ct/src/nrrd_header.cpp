@@ -45,7 +45,7 @@ void check_name(const std::string& subject, const std::string& name) {
       "sampleunits|sizes|space|spacedimension|spacedirections|spaceorigin|spaceunits|spacings|"
       "thicknesses|type|units|";
   if (kNames.find("|" + name + "|") == std::string_view::npos) {
-    throw InputError(subject, fmt::format("has a field \"{:.40}\" that is not known", name));
+    throw InputError(subject, fmt::format("has an unknown field \"{:.40}\"", name));
   }
 }
 
@@ -96,11 +96,11 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
        {uint64, "|ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t|"},
        {float32, "|float|"},
        {float64, "|double|"}}};
-  if (type.empty()) throw InputError(subject, "does not say of what type its voxels are");
+  if (type.empty()) throw InputError(subject, "does not state the type of its voxels");
   for (const auto& [known, names] : kNames) {
     if (names.find("|" + type + "|") != std::string_view::npos) return known;
   }
-  throw InputError(subject, fmt::format("has voxels of type \"{:.40}\", which is not known", type));
+  throw InputError(subject, fmt::format("has voxels of the unknown type \"{:.40}\"", type));
 }
 
 // Returns the quoted texts of a field, or its words if it has no quotes.
@@ -170,9 +170,9 @@ Vec3 lps_from_space(const std::string& subject, std::string space, std::vector<s
   if (space == "right-anterior-superior" || space == "ras") return Vec3(-1, -1, 1);
   if (space == "left-anterior-superior" || space == "las") return Vec3(1, -1, 1);
   if (space != "scanner-xyz" && space != "3d-right-handed" && space != "3d-left-handed") {
-    throw InputError(subject, fmt::format("lies in a space that is not known: \"{:.40}\"", space));
+    throw InputError(subject, fmt::format("is in an unknown space: \"{:.40}\"", space));
   }
-  warnings.push_back(fmt::format("lies in the space \"{}\"; its axes were taken for LPS", space));
+  warnings.push_back(fmt::format("is in the space \"{}\"; its axes were assumed to be LPS", space));
   return Vec3::Ones();
 }
 
@@ -183,8 +183,8 @@ bool is_spatial(const std::string& kind) {
 // Rejects axes of other kinds, along which a voxel has several values.
 void check_kind(const std::string& subject, const std::string& kind) {
   if (kind == "list") {
-    throw InputError(subject,
-                     "has several layers, as a segmentation whose segments overlap; save it with one");
+    throw InputError(
+        subject, "has several layers, as a segmentation with overlapping segments; save it with one layer");
   }
   if (!is_spatial(kind) && kind != "time")
     throw InputError(subject, fmt::format("is not a grey volume: it has an axis of kind \"{:.40}\"", kind));
@@ -233,7 +233,7 @@ Axes axes_of(const HeaderFields& fields) {
   }
   axes.of_grid = axes_of_grid(axes);
   if (axes.of_grid.size() != 3) {
-    throw InputError(subject, fmt::format("is not a grey volume: {} of its {} axes lie in space, not 3",
+    throw InputError(subject, fmt::format("is not a grey volume: {} of its {} axes are spatial, not 3",
                                           axes.of_grid.size(), dimension));
   }
   return axes;
@@ -253,7 +253,7 @@ VoxelLayers layers_of(const Header& header, const Axes& axes) {
     if (!are_segments || layers.count > 1 || !(count >= 1 && count <= 1e6) || count != std::floor(count) ||
         !(run_fastest || axis > axes.of_grid.back())) {
       throw InputError(header.fields.subject,
-                       fmt::format("holds {} volumes or values a voxel, not one", count));
+                       fmt::format("holds {} volumes or values per voxel, not one", count));
     }
     layers = {static_cast<std::uint64_t>(count), run_fastest};
   }
@@ -286,7 +286,7 @@ GridGeometry geometry_of(const HeaderFields& fields, const Axes& axes, std::vect
     for (std::size_t n = 0; n < 3; ++n)
       spacing[n] = all[axes.of_grid[n]] * millimetres(fields, units[axes.of_grid[n]]);
   } else {
-    warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
+    warnings.push_back("has no voxel size; 1 mm was assumed");
   }
   Vec3 origin = Vec3::Zero();
   if (fields.has("spaceorigin")) {
@@ -307,11 +307,11 @@ StoredVoxels voxels_of(const fs::path& path, const Header& header, std::ifstream
   const bool is_packed = encoding == "gzip" || encoding == "gz";
   if (encoding != "raw" && !is_text && !is_packed) {
     throw InputError(subject, encoding.empty()
-                                  ? "does not say how its data are encoded"
+                                  ? "does not state its encoding"
                                   : fmt::format("is encoded as \"{}\", which is not supported", encoding));
   }
   const std::string name = fields[fields.has("datafile") ? "datafile" : "data"];
-  if (name.empty() && !header.has_end) throw InputError(subject, "has a header without an end, and no data");
+  if (name.empty() && !header.has_end) throw InputError(subject, "has a header without an end and no data");
   std::vector<fs::path> files;
   if (!name.empty()) {
     files = data_files(subject, path, name, in);
@@ -330,7 +330,7 @@ StoredVoxels voxels_of(const fs::path& path, const Header& header, std::ifstream
       .before = before};
   const std::string endian = lower(fields["endian"]);
   if (!is_text && bytes_of(type) > 1 && endian != "little" && endian != "big") {
-    throw InputError(subject, "does not say whether its voxels are little or big endian");
+    throw InputError(subject, "does not state its byte order (endian: little or big)");
   }
   voxels.big_endian = endian == "big";
   set_skip(voxels, count / (1 + voxels.more.size()));

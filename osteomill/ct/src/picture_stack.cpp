@@ -95,10 +95,9 @@ void check_names(const std::string& subject, const std::vector<fs::path>& files,
   for (const fs::path& file : files) {
     names.push_back(parts_of(file));
     if (names.back().texts != names.front().texts) {
-      throw InputError(
-          subject, fmt::format("holds pictures whose names differ in more than numbers, as those of several "
-                               "stacks: {} and {}",
-                               files.front().filename().string(), file.filename().string()));
+      throw InputError(subject, fmt::format("holds pictures of several stacks, whose names differ in more "
+                                            "than numbers: {} and {}; use a folder for each stack",
+                                            files.front().filename().string(), file.filename().string()));
     }
   }
   const std::vector<double> numbers = slice_numbers(names);
@@ -115,9 +114,7 @@ void check_names(const std::string& subject, const std::vector<fs::path>& files,
       fmt::format("{} follows {}", files[n + 1].filename().string(), files[n].filename().string());
   if (sorted.front() < usual) {
     warnings.push_back(
-        fmt::format("is made of pictures whose numbers grow unevenly ({}): they were taken to lie "
-                    "evenly",
-                    here));
+        fmt::format("has pictures whose numbers grow unevenly ({}): even distances were assumed", here));
     return;
   }
   throw InputError(subject,
@@ -164,9 +161,9 @@ class Slices {
       }
       value = labels.emplace(value, static_cast<float>(labels.size())).first->second;
       if (labels.size() > LabelMap::kMaxLabels + 1) {
-        throw InputError(subject, fmt::format("holds pictures of over {} colours; a scan is grey, and labels "
-                                              "have fewer",
-                                              LabelMap::kMaxLabels));
+        throw InputError(
+            subject, fmt::format("holds over {} colours; scans are grey, and label maps have fewer colours",
+                                 LabelMap::kMaxLabels));
       }
     }
     return std::move(densities_);
@@ -177,7 +174,7 @@ class Slices {
     const float red = picture.values[at], green = picture.values[at + 1], blue = picture.values[at + 2];
     const bool is_grey = red == green && green == blue;
     if (picture.bits > 8) {
-      if (!is_grey) throw InputError(subject, "is a picture in colours of more than 8 bits");
+      if (!is_grey) throw InputError(subject, "is a colour picture with more than 8 bits per channel");
       return red;
     }
     if (picture.channels == 4 && picture.values[at + 3] == 0) return 0;
@@ -202,13 +199,12 @@ bool is_picture(const fs::path& path) {
 Scan read_pictures(const fs::path& path, std::vector<fs::path> files, const ReadOptions& options) {
   const std::string subject = path.string();
   if (!options.spacing_mm)
-    throw InputError(subject,
-                     "is made of pictures, which do not say how far voxels lie apart; --spacing does");
+    throw InputError(subject, "has pictures, which contain no voxel spacing; give it with --spacing");
   if (std::any_of(files.begin(), files.end(), [&](const fs::path& file) {
         return file.parent_path() != files.front().parent_path() || is_png(file) != is_png(files.front());
       }))
-    throw InputError(subject,
-                     "holds pictures in several folders, or PNG and TIFF; name a folder of one kind");
+    throw InputError(
+        subject, "holds pictures in several folders, or both PNG and TIFF; choose a folder with one kind");
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return comes_before(a.filename().string(), b.filename().string());
   });
@@ -224,8 +220,7 @@ Scan read_pictures(const fs::path& path, std::vector<fs::path> files, const Read
     }
   }
   const WorkProgress::Part checking(1);
-  if (slices.count() < 2)
-    throw InputError(subject, "is one picture; name the folder of all that are its slices");
+  if (slices.count() < 2) throw InputError(subject, "is a single picture; choose the folder with all slices");
   GridGeometry geometry;
   geometry.dims = {static_cast<int>(slices.first().columns), static_cast<int>(slices.first().rows),
                    static_cast<int>(slices.count())};
@@ -234,12 +229,13 @@ Scan read_pictures(const fs::path& path, std::vector<fs::path> files, const Read
   std::vector<float> densities = slices.take(subject);
   check_densities(subject, densities);
   warnings.push_back(
-      "does not say how it lies in the patient; its columns, rows and slices were taken for L, P and S");
+      "does not state its orientation in the patient; its columns, rows and slices were assumed to run along "
+      "L, P and S");
   Scan scan{DensityGrid(geometry, std::move(densities)), subject, is_png(files.front()) ? "PNG" : "TIFF",
             std::move(warnings)};
   if (slices.are_coloured()) {
     scan.is_labels = true;
-    scan.warnings.push_back("is in colour; each colour was taken for a label");
+    scan.warnings.push_back("is in colour; each colour was read as a label");
   }
   return scan;
 }

@@ -117,7 +117,7 @@ TEST_F(PictureStack, PngsAreSlicesInTheOrderOfTheirNumbers) {
   const Scan scan = read(folder_);
   expect_values(scan);
   EXPECT_EQ(scan.format, "PNG");
-  EXPECT_TRUE(contains(refusal(folder_), "how far voxels lie apart; --spacing does"));
+  EXPECT_TRUE(contains(refusal(folder_), "no voxel spacing; give it with --spacing"));
   write_png<std::uint16_t>(
       "slice12.png", PNG_COLOR_TYPE_GRAY, [](auto, auto) { return std::vector<std::uint16_t>{1}; }, 6);
   EXPECT_TRUE(contains(refusal_of(folder_), "slice12.png: is a picture of 6 x 4 pixels"));
@@ -131,7 +131,7 @@ TEST_F(PictureStack, NamesSayWhetherASliceIsMissingOrOfAnotherStack) {
                        "a slice is missing: slice8.png follows slice6.png, and numbers grow "
                        "by 1 otherwise"));
   std::filesystem::rename(path("slice27.png"), path("mask7.png"));
-  EXPECT_TRUE(contains(refusal_of(folder_), "as those of several stacks: mask7.png and slice0.png"));
+  EXPECT_TRUE(contains(refusal_of(folder_), "in more than numbers: mask7.png and slice0.png"));
   std::filesystem::rename(path("mask7.png"), path("slice7.png"));
   for (std::uint32_t k = 0; k < kSlices; ++k)
     std::filesystem::rename(path("slice" + std::to_string(k) + ".png"),
@@ -210,7 +210,7 @@ TEST_F(PictureStack, ColoursAreLabelsUnlessAllAreGrey) {
 
 TEST_F(PictureStack, WhatIsNoStackIsRefusedByName) {
   write_grey_pngs();
-  EXPECT_TRUE(contains(refusal_of(folder_ / "slice3.png"), "is one picture; name the folder"));
+  EXPECT_TRUE(contains(refusal_of(folder_ / "slice3.png"), "is a single picture; choose the folder"));
   std::filesystem::resize_file(folder_ / "slice3.png", 60);
   EXPECT_TRUE(contains(refusal_of(folder_), "slice3.png: cannot be read as PNG: "));
   write("slice3.png", "hello");
@@ -220,7 +220,7 @@ TEST_F(PictureStack, WhatIsNoStackIsRefusedByName) {
   EXPECT_TRUE(contains(refusal_of(folder_), "in several folders"));
   const std::string nrrd =
       "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1 1 1\nspacings: 1 1 1\nencoding: raw\n\n1";
-  EXPECT_TRUE(contains(refusal_of(write("a.nrrd", nrrd)), "is NRRD, which says itself"));
+  EXPECT_TRUE(contains(refusal_of(write("a.nrrd", nrrd)), "is NRRD, which has its own voxel spacing"));
 }
 
 }  // namespace

@@ -28,8 +28,9 @@ inline void check_plausible(const std::string& subject, const GridGeometry& geom
   }
   for (const double origin_mm : geometry.origin_mm) {
     if (!(std::abs(origin_mm) <= kMaxOrigin_mm)) {
-      throw InputError(subject, fmt::format("begins {:.6g} mm from its origin; no scanner is that large",
-                                            std::abs(origin_mm)));
+      throw InputError(subject,
+                       fmt::format("starts {:.6g} mm from its origin, farther than any scanner reaches",
+                                   std::abs(origin_mm)));
     }
   }
 }
@@ -39,7 +40,7 @@ inline void check_memory(const std::string& subject, std::uint64_t voxels, std::
   const std::uint64_t needed = voxels * sizeof(float);
   if (needed > max_bytes) {
     throw InputError(subject,
-                     fmt::format("needs {:.3g} GB for its voxels, over the {:.3g} GB that it may take",
+                     fmt::format("needs {:.3g} GB for its voxels, over the limit of {:.3g} GB (--max-memory)",
                                  static_cast<double>(needed) * 1e-9, static_cast<double>(max_bytes) * 1e-9));
   }
 }
@@ -59,11 +60,11 @@ inline std::size_t check_densities(const std::string& subject, const std::vector
     WorkProgress::done(last, densities.size());
   }
   if (beyond > 0) {
-    throw InputError(subject, fmt::format("{} voxels hold no density: infinity or beyond {:g}", beyond,
+    throw InputError(subject, fmt::format("{} voxels have no valid density: infinite or beyond {:g}", beyond,
                                           static_cast<double>(kMost)));
   }
   if (static_cast<std::size_t>(none) == densities.size())
-    throw InputError(subject, "holds no density at all: every voxel is NaN or padding");
+    throw InputError(subject, "has no density at all: every voxel is NaN or padding");
   return static_cast<std::size_t>(none);
 }
 

@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Found{"04-two-acquisitions/same-places.zip", 0.5, "", "1.2"},
                       Found{"07-copies/same-pixels.zip", 0.5, "3 copies"},
                       Found{"08-odd-one/size.zip", 0.5, "zz.dcm, of another size"},
-                      Found{"03-multiframe-cbct/ct-class.dcm", 0.5, "no places of their own"},
+                      Found{"03-multiframe-cbct/ct-class.dcm", 0.5, "no positions of their own"},
                       Found{"12-mislabelled/implicit-said-explicit.zip"}, Found{"09-float-pixels/all.zip"},
                       Found{"30-padding/high.zip"}, Found{"14-enhanced-parts/two.zip"},
                       Found{"15-dynamic/files.zip", 0.5, "1.2 ("},

@@ -36,9 +36,9 @@ using FoundLabels = std::map<int, FoundLabel>;
 void check_is_label(const std::string& subject, float value) {
   constexpr float kMax = 1e6f;
   if (std::isfinite(value) && std::floor(value) == value && std::abs(value) <= kMax) return;
-  throw InputError(subject, fmt::format("is not a label map: it holds {:g}, and labels are whole numbers "
-                                        "up to a million",
-                                        value));
+  throw InputError(
+      subject,
+      fmt::format("is not a label map: it holds {:g}, and labels are whole numbers up to a million", value));
 }
 
 FoundLabels find_labels(const std::string& subject, const std::vector<float>& values) {
@@ -54,7 +54,7 @@ FoundLabels find_labels(const std::string& subject, const std::vector<float>& va
     WorkProgress::done(0);
   }
   found.erase(0);
-  if (found.empty()) throw InputError(subject, "labels nothing: all its voxels are 0");
+  if (found.empty()) throw InputError(subject, "has no labels: all its voxels are 0");
   LabelMap::LabelIndex place = 0;
   for (auto& [value, label] : found) label.place = ++place;
   return found;
@@ -108,7 +108,7 @@ void mark_no_go(const std::string& subject, const std::string& said, std::vector
     names.emplace_back("...");
   }
   throw InputError(subject,
-                   fmt::format("has no label \"{}\" to be no-go; it has {}", said, fmt::join(names, ", ")));
+                   fmt::format("has no label \"{}\" for --no-go; it has {}", said, fmt::join(names, ", ")));
 }
 
 std::vector<Label> make_labels(const FoundLabels& found, const LabelTable& table, const LabelFiles& files) {
@@ -158,7 +158,7 @@ std::optional<std::string> cover_warning(const FoundLabels& found, const GridGeo
   const double share = static_cast<double>(scan_voxels) * map.scan_geometry().voxel_volume_mm3() /
                        (static_cast<double>(own_voxels) * own.voxel_volume_mm3());
   if (share > 0.98) return std::nullopt;
-  return fmt::format("{}: {:.0f} % of what it labels lies outside the scan", subject, 100 * (1 - share));
+  return fmt::format("{}: {:.0f} % of its labelled volume is outside the scan", subject, 100 * (1 - share));
 }
 
 // Labels on their own grid.
@@ -185,7 +185,7 @@ LabelsRead put_on(const GridGeometry& scan, const std::string& subject, OwnLabel
   const auto map =
       std::make_shared<const LabelMap>(std::move(labels), scan, own.geometry, places_of(own.values, found));
   if (map->box().empty()) {
-    throw InputError(subject, fmt::format("labels nothing of the scan: it lies at {}, the scan at {}",
+    throw InputError(subject, fmt::format("does not overlap the scan: its extent is {}, the scan's {}",
                                           extent_text(own.geometry), extent_text(scan)));
   }
   if (auto warning = cover_warning(found, own.geometry, *map, subject))
@@ -203,7 +203,9 @@ LabelsRead read_segmentation_labels(const LabelFiles& files, const GridGeometry&
   const std::optional<Scan> found =
       is_one_file ? read_dicom(files.map, options) : std::optional(read_scan(files.map, options));
   if (!found || found->labels.empty())
-    throw InputError(subject, "is not a label map: neither a DICOM segmentation nor by its name another");
+    throw InputError(
+        subject,
+        "is not a label map: neither a DICOM segmentation nor a NRRD, MetaImage or NIfTI file by its name");
   const Scan& own = *found;
   LabelsRead read = put_on(
       scan, subject, {own.grid.geometry(), every_nth_density(own.grid, 1), table_of(own.labels)}, files);

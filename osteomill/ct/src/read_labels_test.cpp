@@ -89,7 +89,7 @@ TEST_F(ReadLabels, PutsLayersThatDoNotOverlapIntoOne) {
   expect_labels(layered("0 3 0 0 0 0 0 0  0 0 0 0 0 0 5 0", slowest, "3", "5"), 3, 5, 0);
   expect_labels(layered("0 0 1 0 0 0 0 0  0 0 0 0 0 1 0 0", fastest, "1", "1"), 1, 2, 1);
   EXPECT_TRUE(contains(refusal_of({layered("0 0 1 1 0 0 0 0  0 0 0 0 0 1 0 1", fastest, "1", "1"), {}, {}}),
-                       "overlap, in 2 layers; save it as a label map of one layer"));
+                       "overlapping segments, in 2 layers; save it as a label map of one layer"));
 }
 
 TEST_F(ReadLabels, TakesNamesAndColoursOfATableBeforeTheFilesOwn) {
@@ -218,7 +218,7 @@ TEST_F(ReadLabels, RefusesWhatIsNoLabelMapInOneLine) {
   EXPECT_TRUE(contains(refused("0 1 1.5 2 0 0 0 0"), "it holds 1.5, and labels are whole numbers"));
   EXPECT_TRUE(contains(refused("0 1 nan 2 0 0 0 0"), "m.nrrd: is not a label map"));
   EXPECT_TRUE(contains(refused("0 1 2e7 2 0 0 0 0"), "labels are whole numbers up to a million"));
-  EXPECT_TRUE(contains(refused("0 0 0 0 0 0 0 0"), "labels nothing: all its voxels are 0"));
+  EXPECT_TRUE(contains(refused("0 0 0 0 0 0 0 0"), "has no labels: all its voxels are 0"));
   EXPECT_TRUE(contains(refused("0 1 2 3 0 0 0"), "is cut short"));
   EXPECT_TRUE(contains(refused("0 1 2 3 0 0 0 0", "kinds: list domain domain\n"), "several layers"));
   GridGeometry elsewhere = scan();
@@ -226,9 +226,9 @@ TEST_F(ReadLabels, RefusesWhatIsNoLabelMapInOneLine) {
   const auto one = write("m.nrrd", map_of("0 1 2 3 0 0 0 0"));
   EXPECT_TRUE(
       contains(refusal_of({one, {}, {}}, elsewhere),
-               "labels nothing of the scan: it lies at 0 to 1, 0 to 1, 0 to 1 mm, the scan at 50 to 51"));
+               "does not overlap the scan: its extent is 0 to 1, 0 to 1, 0 to 1 mm, the scan's 50 to 51"));
   EXPECT_TRUE(contains(refusal_of({one, {}, {"dura"}}),
-                       "has no label \"dura\" to be no-go; it has 1 label 1, 2 label 2, 3 label 3"));
+                       "has no label \"dura\" for --no-go; it has 1 label 1, 2 label 2, 3 label 3"));
   EXPECT_TRUE(contains(refusal_of({folder_ / "none.nrrd", {}, {}}), "no such file"));
   EXPECT_TRUE(contains(refusal_of({write("labels.txt", "1"), {}, {}}), "is not a label map"));
   EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "1 a 0 0 0 255\n2 b 0 0 900 255\n"), {}}),
@@ -249,7 +249,8 @@ TEST_F(ReadLabels, SaysWhereAMapReachesBeyondTheScan) {
   half.dims = {1, 2, 2};
   const LabelsRead read = read_labels({write("m.nrrd", map_of("1 1 1 1 1 1 1 1")), {}, {}}, half);
   ASSERT_EQ(read.warnings.size(), 1u);
-  EXPECT_TRUE(contains(read.warnings[0], "50 % of what it labels lies outside the scan")) << read.warnings[0];
+  EXPECT_TRUE(contains(read.warnings[0], "50 % of its labelled volume is outside the scan"))
+      << read.warnings[0];
 }
 
 }  // namespace

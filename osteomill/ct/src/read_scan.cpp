@@ -45,9 +45,7 @@ class ZipReader {
 
  private:
   InputError fault(const std::string& reason) const { return {path_.string(), reason}; }
-  InputError damaged() const {
-    return fault("is a zip archive that is damaged, or packed in a way that is not known");
-  }
+  InputError damaged() const { return fault("is a damaged zip archive, or packed by an unknown method"); }
   fs::path name_here(unz_file_info64& info) const;
   void unpack_here(const fs::path& file);
 
@@ -68,7 +66,7 @@ fs::path ZipReader::name_here(unz_file_info64& info) const {
   std::replace(name.begin(), name.end(), '\\', '/');
   const fs::path relative(name);
   if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
-    throw fault("holds a file whose name leads out of it");
+    throw fault("holds a file name that leads out of the archive");
   return relative;
 }
 
@@ -81,7 +79,7 @@ void ZipReader::unpack_here(const fs::path& file) {
   while ((count = unzReadCurrentFile(archive_.get(), block_.data(), static_cast<unsigned>(block_.size()))) >
          0) {
     if (static_cast<std::uint64_t>(count) > left_bytes_) {
-      throw fault(fmt::format("unpacks to over the {:.3g} GB that it may take",
+      throw fault(fmt::format("unpacks to more than the limit of {:.3g} GB (--max-memory)",
                               static_cast<double>(max_bytes_) * 1e-9));
     }
     left_bytes_ -= static_cast<std::uint64_t>(count);
@@ -139,10 +137,10 @@ Scan read_folder(const fs::path& folder, const ReadOptions& options) {
   if (volumes.empty() && !pictures.empty()) return read_pictures(folder, std::move(pictures), options);
   if (volumes.empty()) {
     throw InputError(folder.string(),
-                     "holds no scan: neither DICOM slices, nor NRRD, MetaImage, NIfTI, PNG or TIFF files");
+                     "holds no scan: no DICOM slices and no NRRD, MetaImage, NIfTI, PNG or TIFF files");
   }
   if (volumes.size() > 1) {
-    throw InputError(folder.string(), fmt::format("holds {} scans; name one of them", volumes.size()));
+    throw InputError(folder.string(), fmt::format("holds {} scans; choose one of them", volumes.size()));
   }
   return read_volume_file(volumes.front(), *volume_format_of(volumes.front()), options);
 }
@@ -182,7 +180,7 @@ Scan read_any(const fs::path& path, const ReadOptions& options) {
   if (std::optional<Scan> scan = read_dicom(path, options)) return std::move(*scan);
   throw InputError(
       path.string(),
-      "is not a scan: neither DICOM nor a zip archive, nor NRRD, MetaImage, NIfTI, PNG or TIFF by its name");
+      "is not a scan: not DICOM, not a zip archive, and not NRRD, MetaImage, NIfTI, PNG or TIFF by its name");
 }
 
 bool begins_as_dicom(const fs::path& file) {
@@ -211,8 +209,8 @@ Scan read_scan(const fs::path& path, const ReadOptions& options) {
     Scan scan = read_any(path, options);
     scan.name = path.string();
     if (options.spacing_mm && scan.format != "PNG" && scan.format != "TIFF")
-      throw InputError(scan.name,
-                       fmt::format("is {}, which says itself how far its voxels lie apart", scan.format));
+      throw InputError(
+          scan.name, fmt::format("is {}, which has its own voxel spacing; leave out --spacing", scan.format));
     return scan;
   } catch (const std::bad_alloc&) {
     throw InputError(path.string(), "does not fit into memory");

@@ -279,10 +279,10 @@ TEST_P(RealOddPhantom, IsRead) {
 
 INSTANTIATE_TEST_SUITE_P(
     ReadRealScan, RealOddPhantom,
-    ::testing::Values(OddPhantom{"found4/01-nan-scaling/both-nan.nii.gz", 0.5, true, "were taken as stored"},
-                      OddPhantom{"found4/02-sform/unit-sform-qform.nii.gz", 0.5, true, "its qform was taken"},
-                      OddPhantom{"found4/02-sform/shear-0.1-qform.nii.gz", 0.5, true, "its qform was taken"},
-                      OddPhantom{"found4/02-sform/zero-sform.nii.gz", 0.5, true, "its qform was taken"},
+    ::testing::Values(OddPhantom{"found4/01-nan-scaling/both-nan.nii.gz", 0.5, true, "were not rescaled"},
+                      OddPhantom{"found4/02-sform/unit-sform-qform.nii.gz", 0.5, true, "its qform was used"},
+                      OddPhantom{"found4/02-sform/shear-0.1-qform.nii.gz", 0.5, true, "its qform was used"},
+                      OddPhantom{"found4/02-sform/zero-sform.nii.gz", 0.5, true, "its qform was used"},
                       OddPhantom{"found4/22-nrrd/first-unit.nrrd", 0.05, false, ""},
                       OddPhantom{"found4/22-nrrd/list.nhdr", 0.5, true, ""},
                       OddPhantom{"found4/23-nifti-kinds/pair.hdr", 0.5, true, ""},

@@ -146,7 +146,7 @@ std::string to_text(const ScanSummary& summary) {
   text += fmt::format("values      {:.6g} to {:.6g}, mean {:.6g}\n", summary.value_min, summary.value_max,
                       summary.value_mean);
   if (const std::size_t without = summary.scan.grid.voxels_without_density(); without > 0) {
-    text += fmt::format("no density  {} voxels (padding or NaN), taken for the least\n", without);
+    text += fmt::format("no density  {} voxels (padding or NaN), set to the lowest density\n", without);
   }
   const std::string suggested =
       fmt::format("{:.6g} suggested, {}", summary.suggested_iso.value, summary.suggested_iso.how);

@@ -64,10 +64,10 @@ class Layers {
           values_[layers_.run_fastest ? voxel * layers_.count + layer : layer * voxels_ + voxel];
       if (value == 0) continue;
       if (place.second != 0) {
-        throw InputError(subject_,
-                         fmt::format("has segments that overlap, in {} layers; save it as a label map "
-                                     "of one layer",
-                                     layers_.count));
+        throw InputError(
+            subject_,
+            fmt::format("has overlapping segments, in {} layers; save it as a label map of one layer",
+                        layers_.count));
       }
       place = {layer, value};
     }
@@ -120,9 +120,9 @@ std::vector<float> merge_layers(const std::string& subject, std::vector<float> v
   for (std::uint64_t voxel = 0; voxel < layers.voxels(); ++voxel) {
     if (const Place place = layers.at(voxel); place.second != 0) merged[voxel] = numbers.at(place);
   }
-  header.warnings.push_back(
-      fmt::format("has the same label values in several of its {} layers; its segments were numbered from 1",
-                  header.layers.count));
+  header.warnings.push_back(fmt::format(
+      "has the same label values in several of its {} layers; its segments were renumbered from 1",
+      header.layers.count));
   return merged;
 }
 

@@ -40,8 +40,7 @@ constexpr double kMaxTilt_deg = 45.0;
 void check_plane(const std::string& subject, const SlicePlane& slice) {
   if (!(std::abs(slice.i_direction.norm() - 1) < 0.01 && std::abs(slice.j_direction.norm() - 1) < 0.01 &&
         std::abs(slice.i_direction.dot(slice.j_direction)) < kDirectionTolerance)) {
-    throw InputError(subject,
-                     slice.name + " has an orientation that is not two unit vectors at a right angle");
+    throw InputError(subject, slice.name + " has an orientation that is not two orthogonal unit vectors");
   }
 }
 
@@ -201,14 +200,13 @@ bool are_rounded(const std::string& subject, std::span<const SlicePlane> slices,
   if (heights_mm.back() < kLeastHeight * step_mm || !lie_on_a_line(heights_mm, 0.5 * step_mm)) return false;
   if (at_one_place && lie_together_alike(heights_mm)) {
     throw InputError(subject,
-                     fmt::format("{} and {} lie at one position: positions are rounded to {:.4g} mm, or "
-                                 "there are several images of each place",
+                     fmt::format("{} and {} are at one position: positions are rounded to {:.4g} mm, or "
+                                 "there are several images of each position",
                                  slices[numbered.order[0]].name, slices[numbered.order[1]].name, step_mm));
   }
   stack = std::move(numbered);
   stack.warnings.push_back(
-      fmt::format("its positions are rounded to {:.4g} mm: slices were put in the order of their numbers, "
-                  "{:.6g} mm apart",
+      fmt::format("its positions are rounded to {:.4g} mm: slices were ordered by number, {:.6g} mm apart",
                   step_mm, heights_mm.back() / static_cast<double>(heights_mm.size() - 1)));
   return true;
 }
@@ -268,7 +266,7 @@ void place_slices(const std::string& subject, std::span<const SlicePlane> slices
     }
     if (gaps_mm[k] > kMaxUnevenGap_mm) {
       throw InputError(subject,
-                       fmt::format("slices lie at uneven distances, too far to fill in: {}", between(k)));
+                       fmt::format("slices are uneven, with a gap too wide to interpolate: {}", between(k)));
     }
   }
   const double mean_mm = heights_mm.back() / static_cast<double>(gaps_mm.size());
@@ -279,7 +277,7 @@ void place_slices(const std::string& subject, std::span<const SlicePlane> slices
   if (even) return;
   const auto widest = std::max_element(gaps_mm.begin(), gaps_mm.end());
   stack.warnings.push_back(
-      fmt::format("slices lie at uneven distances, {:.6g} to {}: interpolated to {} slices {:.6g} mm apart",
+      fmt::format("slices are uneven, {:.6g} to {}: interpolated to {} slices {:.6g} mm apart",
                   sorted_mm.front(), between(static_cast<std::size_t>(widest - gaps_mm.begin())),
                   stack.geometry.dims[2], stack.geometry.spacing_mm.z()));
   stack.heights_mm = std::move(heights_mm);
@@ -297,7 +295,7 @@ void find_drift(const std::string& subject, std::span<const SlicePlane> slices, 
     const Vec3 off_mm = here_mm - climb_mm * (here_mm.z() / climb_mm.z());
     if (std::abs(off_mm.x()) > kSidewaysTolerance * spacing_mm.x() ||
         std::abs(off_mm.y()) > kSidewaysTolerance * spacing_mm.y()) {
-      throw InputError(subject, slices[n].name + " lies to the side of the other slices");
+      throw InputError(subject, slices[n].name + " is to the side of the other slices");
     }
   }
   if (std::abs(climb_mm.x()) > kSidewaysTolerance * spacing_mm.x() ||
@@ -354,8 +352,7 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
   });
   const bool is_rounded = settle_places(subject, slices, normal, same_pixels, stack);
   if (stack.order.size() < 2) {
-    throw InputError(subject,
-                     "only one slice: its thickness cannot be known, and a volume needs at least two");
+    throw InputError(subject, "only one slice: a volume needs at least two, to know their distance");
   }
   const SlicePlane& lowest = slices[stack.order.front()];
   stack.geometry.dims = {lowest.columns, lowest.rows, 0};
@@ -397,7 +394,7 @@ void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vec
       std::numbers::pi;
   if (tilt_deg > kMaxTilt_deg) {
     throw InputError(subject,
-                     fmt::format("slices lean by {:.1f} degrees, which is no gantry tilt", tilt_deg));
+                     fmt::format("slices lean by {:.1f} degrees, more than any gantry tilts", tilt_deg));
   }
   const auto [columns, rows, count] = geometry.dims;
   const std::array<double, 2> step{stack.drift_i_mm / geometry.spacing_mm.x(),
@@ -411,7 +408,7 @@ void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vec
   }
   if (cell_count(dims) > 4 * densities.size()) {
     throw InputError(subject,
-                     fmt::format("slices lean by {:.1f} degrees, too far to put them straight", tilt_deg));
+                     fmt::format("slices lean by {:.1f} degrees, too far to straighten them", tilt_deg));
   }
   float outside = std::numeric_limits<float>::max();
   for (const float density : densities) outside = std::min(outside, density);

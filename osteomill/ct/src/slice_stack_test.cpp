@@ -183,10 +183,9 @@ TEST(SliceStack, UnevenDistancesAreEvenedOutAndNamed) {
   }
   SliceStack stack = stack_slices("folder", slices);
   ASSERT_EQ(stack.warnings.size(), 1U);
-  EXPECT_EQ(
-      stack.warnings.front(),
-      "slices lie at uneven distances, 0.5 to 3.5 mm between slice6 and slice7: interpolated to 13 slices "
-      "2.04167 mm apart");
+  EXPECT_EQ(stack.warnings.front(),
+            "slices are uneven, 0.5 to 3.5 mm between slice6 and slice7: interpolated to 13 slices 2.04167 "
+            "mm apart");
   EXPECT_EQ(stack.geometry.dims[2], 13);
   std::vector<float> densities = pixels_of(slices, stack, density);
   even_out_slices(stack, densities);
@@ -238,7 +237,7 @@ TEST(SliceStack, UnevenDistancesThatAreTooLargeAreRefused) {
   std::vector<SlicePlane> slices = series(12, 8);
   for (std::size_t k = 6; k < slices.size(); ++k)
     slices[k].position_mm.z() += 3 * (static_cast<double>(k) - 5);
-  EXPECT_TRUE(contains(refusal(slices), "too far to fill in: 11 mm between slice5 and slice6"));
+  EXPECT_TRUE(contains(refusal(slices), "too wide to interpolate: 11 mm between slice5 and slice6"));
 }
 
 TEST(SliceStack, ACopyIsLeftOutAndAnotherImageAtItsPlaceIsNot) {
@@ -262,7 +261,7 @@ TEST(SliceStack, WhatMakesNoGridIsRefused) {
   EXPECT_TRUE(contains(changed([](SlicePlane& s) { s.row_distance_mm = 0.3; }), "pixel spacing"));
   EXPECT_TRUE(
       contains(changed([](SlicePlane& s) { std::swap(s.i_direction, s.j_direction); }), "orientation"));
-  EXPECT_TRUE(contains(changed([](SlicePlane& s) { s.j_direction = s.i_direction; }), "right angle"));
+  EXPECT_TRUE(contains(changed([](SlicePlane& s) { s.j_direction = s.i_direction; }), "orthogonal"));
   EXPECT_TRUE(contains(changed([](SlicePlane& s) { s.position_mm.x() += 1; }), "to the side"));
   EXPECT_TRUE(contains(refusal(series(1, 1.0)), "only one slice"));
   EXPECT_TRUE(contains(refusal(series(5, 500)), "mm apart"));

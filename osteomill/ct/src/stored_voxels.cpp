@@ -22,7 +22,7 @@ constexpr std::size_t kBlock = 1 << 18;
 constexpr std::uint64_t kMaxLetters = 64;
 // Bytes read beyond the voxels to reach the checksum.
 constexpr std::uint64_t kMaxRest = 1 << 20;
-constexpr const char* kHoldsMore = "holds more data than its sizes need; the rest was left out";
+constexpr const char* kHoldsMore = "holds more data than its sizes need; the rest was ignored";
 
 // Calls `use` with a value of the voxel type.
 template <typename Use>
@@ -62,7 +62,7 @@ bool fits(double number, VoxelType type) {
 }
 
 InputError cut_short(const std::string& subject, std::uint64_t needed, std::uint64_t found) {
-  return {subject, fmt::format("is cut short: its voxels need {} bytes, there are {}", needed, found)};
+  return {subject, fmt::format("is cut short: its voxels need {} bytes, it has {}", needed, found)};
 }
 
 // Appends densities. `bytes` must hold whole values; swaps them in place if their byte order is not native.
@@ -90,8 +90,8 @@ void check_rest(const std::string& subject, StoredVoxels& stored, std::uint64_t 
     if (!source.ended_well()) throw InputError(subject, "its compressed data are cut short or damaged");
     const std::uint64_t said = stored.compressed_bytes;
     if (said != 0 && (said < source.bytes_used() || said > source.bytes_in_file())) {
-      throw InputError(subject, fmt::format("says that its compressed data take {} bytes, they take {}", said,
-                                            source.bytes_used()));
+      throw InputError(
+          subject, fmt::format("states {} bytes of compressed data but has {}", said, source.bytes_used()));
     }
   }
   if (rest > 0) warnings.push_back(kHoldsMore);
@@ -137,15 +137,15 @@ void read_text(const std::string& subject, StoredVoxels& stored, std::uint64_t c
     text.append(block.data(), here);
   }
   const std::optional<std::vector<double>> numbers = parse_numbers(text);
-  if (!numbers) throw InputError(subject, "holds something between its voxels that is not a number");
+  if (!numbers) throw InputError(subject, "holds text between its voxels that is not a number");
   if (numbers->size() < count) {
     throw InputError(
-        subject, fmt::format("is cut short: it has {} voxels, there are {} numbers", count, numbers->size()));
+        subject, fmt::format("is cut short: it needs {} voxels but has {} numbers", count, numbers->size()));
   }
   if (numbers->size() > count) warnings.push_back(kHoldsMore);
   for (const double number : *numbers) {
     if (!fits(number, stored.type))
-      throw InputError(subject, fmt::format("holds {}, which is no value of its type", number));
+      throw InputError(subject, fmt::format("holds {}, which its voxel type cannot hold", number));
   }
   densities.insert(densities.end(), numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count));
 }
@@ -174,8 +174,9 @@ std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored,
                                std::uint64_t max_bytes, std::vector<std::string>& warnings) {
   const std::size_t files = 1 + stored.more.size();
   if (count % files != 0) {
-    throw InputError(subject,
-                     fmt::format("has {} voxels in {} files, and each has to hold as many", count, files));
+    throw InputError(
+        subject,
+        fmt::format("has {} voxels in {} files, which cannot be the same number in each", count, files));
   }
   std::vector<float> densities;
   std::vector<std::string> found;

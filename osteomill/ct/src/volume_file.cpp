@@ -39,7 +39,8 @@ std::array<int, 3> checked_dims(const std::string& subject, const std::vector<do
     dims[axis] = static_cast<int>(sizes[axis]);
     product *= sizes[axis];
   }
-  if (product > 1e12) throw InputError(subject, fmt::format("says that it has {:.3g} voxels", product));
+  if (product > 1e12)
+    throw InputError(subject, fmt::format("states an impossible size: {:.3g} voxels", product));
   return dims;
 }
 
@@ -98,7 +99,8 @@ std::optional<std::vector<std::string>> names_of_pattern(const std::string& subj
   if (!(in >> pattern >> first >> last >> step) || !filled_in(pattern, first)) return std::nullopt;
   if (step == 0 || (last - first) / step < 0 ||
       static_cast<std::size_t>((last - first) / step) >= kMostFiles) {
-    throw InputError(subject, fmt::format("names its data files by numbers that lead nowhere: {:.80}", said));
+    throw InputError(subject,
+                     fmt::format("names its data files by an invalid range of numbers: {:.80}", said));
   }
   std::vector<std::string> names;
   for (long n = 0; n <= (last - first) / step; ++n) names.push_back(*filled_in(pattern, first + n * step));
@@ -112,10 +114,10 @@ std::vector<std::string> names_in_lines(const std::string& subject, std::istream
   for (std::string line; std::getline(header, line);) {
     letters += line.size();
     if (letters > kMostLetters || names.size() == kMostFiles || line.find('\0') != std::string::npos)
-      throw InputError(subject, "has a list of data files that is none");
+      throw InputError(subject, "has an invalid list of data files");
     if (line = trimmed(line); !line.empty()) names.push_back(line);
   }
-  if (names.empty()) throw InputError(subject, "has a list of data files with nothing in it");
+  if (names.empty()) throw InputError(subject, "has an empty list of data files");
   return names;
 }
 
@@ -147,10 +149,9 @@ GridGeometry checked_geometry(const std::string& subject, const std::vector<doub
   constexpr double kMostShear = 4.4e-3;
   GridGeometry geometry;
   geometry.dims = checked_dims(subject, sizes);
-  if (spacing.size() != 3)
-    throw InputError(subject, fmt::format("has {} spacings, a volume has 3", spacing.size()));
-  if (!axes.allFinite()) throw InputError(subject, "has an axis that is no number");
-  if (!((axes.colwise().norm().array() > 0).all())) throw InputError(subject, "has an axis of no length");
+  if (spacing.size() != 3) throw InputError(subject, fmt::format("has {} spacings, not 3", spacing.size()));
+  if (!axes.allFinite()) throw InputError(subject, "has an axis that is not finite");
+  if (!((axes.colwise().norm().array() > 0).all())) throw InputError(subject, "has an axis of zero length");
   const double skew = most_skew(axes);
   if (!(skew <= kMostShear)) {
     throw InputError(
@@ -166,7 +167,7 @@ GridGeometry checked_geometry(const std::string& subject, const std::vector<doub
     first_mm += (directions - straight) * geometry.spacing_mm.cwiseProduct(middle);
     directions = straight;
     warnings.push_back(
-        fmt::format("has axes that are {:.2g} degrees off right angles; they were put straight",
+        fmt::format("has axes that are {:.2g} degrees off right angles; they were straightened",
                     std::asin(skew) * 57.29577951308232));
   }
   // Adding 0 turns -0 into 0.
@@ -192,7 +193,7 @@ double millimetres_in(const std::string& subject, std::string_view unit) {
       {"?", 1},          {"millimeters", 1}};
   const auto found = kUnits.find(unit);
   if (found == kUnits.end())
-    throw InputError(subject, fmt::format("has lengths in \"{:.40}\", which is not known", unit));
+    throw InputError(subject, fmt::format("has lengths in the unknown unit \"{:.40}\"", unit));
   return found->second;
 }
 
@@ -232,7 +233,7 @@ Scan read_volume_file(const fs::path& path, const VolumeFormat& format, const Re
   const WorkProgress::Part checking(1);
   if (const std::size_t none = check_densities(subject, densities); none > 0) {
     header.warnings.push_back(
-        fmt::format("{} voxels hold no density (NaN): the least of the others was put there", none));
+        fmt::format("{} voxels have no density (NaN): they were set to the lowest of the others", none));
   }
   Scan scan{DensityGrid(header.geometry, std::move(densities)), subject, format.name,
             std::move(header.warnings)};

@@ -192,7 +192,7 @@ TEST_F(VolumeFile, TextIsReadAndChecked) {
   }
   expect_voxels(read_scan(write("a.nrrd", nrrd(fields, text))).grid);
   const std::string shorter = text.substr(0, text.rfind(' '));
-  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd(fields, shorter))), "24 voxels, there are 23 numbers"));
+  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd(fields, shorter))), "24 voxels but has 23 numbers"));
   for (const char* odd : {"1x", "1.5", "40000", "nan", "(1)"}) {
     const std::string other = shorter + " " + odd + "\n";
     EXPECT_TRUE(contains(refusal(write("c.nrrd", nrrd(fields, other))), "c.nrrd: holds ")) << odd;
@@ -214,9 +214,9 @@ TEST_F(VolumeFile, CompressedDataMayHaveBytesBeforeTheVoxels) {
 TEST_F(VolumeFile, AFieldOrSpaceWithASlipIsRefused) {
   const std::string data = voxels<std::int16_t>();
   EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd("encoding: raw\nspace drections: 1\n", data))),
-                       "\"spacedrections\" that is not known"));
+                       "unknown field \"spacedrections\""));
   EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd("encoding: raw\nspace: left-posterior\n", data))),
-                       "space that is not known"));
+                       "in an unknown space"));
   EXPECT_TRUE(contains(refusal(write("c.nrrd", nrrd("encoding: raw\nkinds: vector domain domain\n", data))),
                        "axis of kind"));
   const std::string long_key(70'000, 'x');
@@ -227,7 +227,7 @@ TEST_F(VolumeFile, AFieldOrSpaceWithASlipIsRefused) {
 TEST_F(VolumeFile, APipeIsNoDataFile) {
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   EXPECT_TRUE(contains(refusal(write("a.nhdr", nrrd("encoding: raw\nline skip: 1\ndata file: pipe\n", ""))),
-                       "pipe is no regular file"));
+                       "pipe is not a regular file"));
 }
 
 TEST_F(VolumeFile, UnitsOfLengthAreTurnedToMillimetres) {
@@ -278,12 +278,12 @@ TEST_F(VolumeFile, VoxelsInSeveralFilesFollowEachOther) {
   const auto refused = [&](const std::string& files) {
     return refusal(write("d.nhdr", nrrd(packed + files, "")));
   };
-  EXPECT_TRUE(contains(refused("LIST\n"), "nothing in it"));
-  EXPECT_TRUE(contains(refused("LIST\nz0.gz\nz2.gz\n"), "z2.gz is not there"));
+  EXPECT_TRUE(contains(refused("LIST\n"), "empty list"));
+  EXPECT_TRUE(contains(refused("LIST\nz0.gz\nz2.gz\n"), "z2.gz does not exist"));
   EXPECT_TRUE(contains(refused("LIST\nz0.gz\nz1.gz\nz0.gz\nz1.gz\nz1.gz\n"), "24 voxels in 5 files"));
-  EXPECT_TRUE(contains(refused("z%d.gz 0 1 0\n"), "lead nowhere"));
-  EXPECT_TRUE(contains(refused("z%d.gz 0 99999999 1\n"), "lead nowhere"));
-  EXPECT_TRUE(contains(refused("z%s.gz 0 1 1\n"), "is not there"));
+  EXPECT_TRUE(contains(refused("z%d.gz 0 1 0\n"), "invalid range"));
+  EXPECT_TRUE(contains(refused("z%d.gz 0 99999999 1\n"), "invalid range"));
+  EXPECT_TRUE(contains(refused("z%s.gz 0 1 1\n"), "does not exist"));
   EXPECT_TRUE(contains(refused("LIST\nz0.gz\n"), "cut short"));
 }
 
@@ -323,7 +323,7 @@ TEST_F(VolumeFile, FourDimensionsOfOneVolumeAreRead) {
                              "(0,0,0,2)\nspace origin: (0,0,0,0)\n"))
                     .grid);
   EXPECT_TRUE(contains(refusal(of("2 3 2 2", "spacings: 1 1 1 1\nkinds: list space space space\n")),
-                       "holds 2 volumes or values a voxel"));
+                       "holds 2 volumes or values per voxel"));
   EXPECT_TRUE(contains(refusal(of("4 3 1 2", "space: LPS\nspace directions: none none (1,0,0) (0,1,0)\n")),
                        "2 of its 4 axes"));
   std::string header = mha("", voxels<std::int16_t>());
@@ -372,9 +372,9 @@ TEST_F(VolumeFile, CompressedDataSizeOfMetaImageIsCheckedWhereItIsThere) {
   const std::string fields = "CompressedData = True\n";
   expect_voxels(read_scan(write("a.mha", mha(fields, packed))).grid);
   EXPECT_TRUE(
-      contains(refusal(write("b.mha", mha(fields + "CompressedDataSize = 9\n", packed))), "take 9 bytes"));
+      contains(refusal(write("b.mha", mha(fields + "CompressedDataSize = 9\n", packed))), "states 9 bytes"));
   EXPECT_TRUE(contains(refusal(write("c.mha", mha(fields + "CompressedDataSize = 999\n", packed))),
-                       "take 999 bytes"));
+                       "states 999 bytes"));
   EXPECT_TRUE(
       contains(refusal(write("d.mha", mha(fields, voxels<std::int16_t>()))), "cannot be decompressed"));
 }
@@ -438,7 +438,7 @@ TEST_F(VolumeFile, NiftiWithoutAScalingHasItsValuesAsStored) {
   }
   EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<float>(112, 2.0F).set<float>(116, nan).with(
                                                   voxels<std::int16_t>()))),
-                       "is not a number"));
+                       "is not finite"));
 }
 
 // Not rotated, with the first voxel at (9, 8, 7) in RAS.
@@ -459,12 +459,12 @@ TEST_F(VolumeFile, AQformStandsInForAnSformThatCannotBeUsed) {
     zero.set<float>(280 + 4 * n, 0);
     unit.set<float>(280 + 4 * n, n % 5 == 0 ? 1.0F : 0.0F);
   }
-  expect_qform(zero, "its sform has an axis of no length; its qform was taken");
-  expect_qform(unit, "its sform gives other voxel sizes");
+  expect_qform(zero, "its sform has an axis of zero length; its qform was used");
+  expect_qform(unit, "its sform contradicts the voxel sizes");
   for (const float shear : {0.002F, 0.01F})
     expect_qform(with_qform().set<float>(280, shear), "its sform is sheared; its qform");
-  expect_qform(with_qform().set<float>(280, 0.3F), "its sform gives other voxel sizes");
-  expect_qform(with_qform().set<float>(292, std::numeric_limits<float>::quiet_NaN()), "is no number");
+  expect_qform(with_qform().set<float>(280, 0.3F), "its sform contradicts the voxel sizes");
+  expect_qform(with_qform().set<float>(292, std::numeric_limits<float>::quiet_NaN()), "not finite");
   // Both are valid.
   Nifti elsewhere = with_qform();
   for (const auto& [offset, value] : {std::pair{280, 0.5F},
@@ -478,7 +478,7 @@ TEST_F(VolumeFile, AQformStandsInForAnSformThatCannotBeUsed) {
                                       {320, 2.0F}})
     elsewhere.set<float>(offset, value);
   const Scan other = read_scan(write("c.nii", elsewhere.with(voxels<std::int16_t>())));
-  EXPECT_EQ(other.warnings.at(0), "its sform and its qform place it differently; the sform was taken");
+  EXPECT_EQ(other.warnings.at(0), "its sform and qform differ in position; the sform was used");
   // An invalid qform does not matter if the sform is good.
   const Scan scan = read_scan(write("b.nii", with_qform().set<float>(256, 3).with(voxels<std::int16_t>())));
   EXPECT_TRUE(scan.warnings.empty());
@@ -552,7 +552,7 @@ TEST_F(VolumeFile, Nifti2AndPairsOfFilesGiveTheSame) {
   const auto alone = std::filesystem::path(folder_ / "alone");
   std::filesystem::create_directory(alone);
   std::filesystem::copy_file(folder_ / "b.hdr", alone / "b.hdr");
-  EXPECT_TRUE(contains(refusal(alone / "b.hdr"), "its voxels are not there"));
+  EXPECT_TRUE(contains(refusal(alone / "b.hdr"), "its voxels are missing"));
   std::filesystem::copy_file(folder_ / "b.img", alone / "b.img");
   expect_scan(alone);
   EXPECT_TRUE(contains(refusal(write("d.nii", nifti2("n+1") + data)), "neither n+2 nor ni2"));
@@ -566,13 +566,13 @@ TEST_F(VolumeFile, CutShortByOneByteIsRefused) {
   const std::string data = voxels<std::int16_t>();
   const std::string shorter = data.substr(0, data.size() - 1);
   const std::string packed = zipped(data);
-  EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd("encoding: raw\n" + kPlaced, shorter))),
-                       "48 bytes, there are 47"));
-  EXPECT_TRUE(contains(refusal(write("a.mha", mha("", shorter))), "48 bytes, there are 47"));
+  EXPECT_TRUE(
+      contains(refusal(write("a.nrrd", nrrd("encoding: raw\n" + kPlaced, shorter))), "48 bytes, it has 47"));
+  EXPECT_TRUE(contains(refusal(write("a.mha", mha("", shorter))), "48 bytes, it has 47"));
   EXPECT_TRUE(
       contains(refusal(write("b.mha", mha("CompressedData = True\n", packed.substr(0, packed.size() - 1)))),
                "cut short"));
-  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().with(shorter))), "48 bytes, there are 47"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().with(shorter))), "48 bytes, it has 47"));
 }
 
 TEST_F(VolumeFile, HugeSizesAreRefusedBeforeAnythingIsAllocated) {
@@ -601,7 +601,7 @@ TEST_F(VolumeFile, DirectionsThatAreNoUnitVectorsAreRefused) {
         << length;
   }
   const auto by_qform = Nifti().set<std::int16_t>(252, 1).set<std::int16_t>(254, 0).set<float>(256, 1e30F);
-  EXPECT_TRUE(contains(refusal(write("a.nii", by_qform.with(voxels<std::int16_t>()))), "no rotation"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", by_qform.with(voxels<std::int16_t>()))), "not a rotation"));
 }
 
 TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
@@ -616,7 +616,7 @@ TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
                        "mm apart"));
   const std::string directions = "encoding: raw\nspace: LPS\nspace directions: (nan,0,0) (0,1,0) (0,0,1)\n";
   EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd(directions, voxels<std::int16_t>()))),
-                       "an axis that is no number"));
+                       "an axis that is not finite"));
   EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<float>(84, 0.3F).with(voxels<std::int16_t>()))),
                        "different voxel sizes"));
 }
@@ -649,7 +649,7 @@ std::string floats_with(float odd, std::string data = voxels<float>()) {
 
 TEST_F(VolumeFile, VoxelsBeyondAllDensityAreRefused) {
   for (const float bad : {std::numeric_limits<float>::infinity(), -1e30f})
-    EXPECT_TRUE(contains(refusal(write("a.nrrd", floats_with(bad))), "1 voxels hold no density"));
+    EXPECT_TRUE(contains(refusal(write("a.nrrd", floats_with(bad))), "1 voxels have no valid density"));
   std::string none;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (int n = 0; n < 24; ++n) none.append(reinterpret_cast<const char*>(&nan), 4);
@@ -662,7 +662,7 @@ TEST_F(VolumeFile, AVoxelThatIsNoNumberCountsInNothing) {
   EXPECT_FALSE(scan.grid.has_density(7));
   EXPECT_EQ((scan.grid[{3, 1, 0}]), scan.grid.outside_density());
   ASSERT_EQ(scan.warnings.size(), 1U);
-  EXPECT_TRUE(contains(scan.warnings[0], "1 voxels hold no density (NaN)"));
+  EXPECT_TRUE(contains(scan.warnings[0], "1 voxels have no density (NaN)"));
 }
 
 TEST_F(VolumeFile, WhatIsNoGreyVolumeIsRefused) {
@@ -686,7 +686,7 @@ TEST_F(VolumeFile, WhatIsNoScanIsRefusedByName) {
   EXPECT_TRUE(contains(refusal(write("text.nii", "hello\n")), "header"));
   EXPECT_TRUE(contains(refusal(write("text.txt", "hello\n")), "is not a scan"));
   EXPECT_TRUE(contains(refusal(write("c.nhdr", nrrd("encoding: raw\ndata file: gone.raw\n" + kPlaced, ""))),
-                       "gone.raw is not there"));
+                       "gone.raw does not exist"));
 }
 
 }  // namespace

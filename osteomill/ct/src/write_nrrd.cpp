@@ -88,7 +88,7 @@ void write_as(const char* type, const DensityGrid& grid, const std::filesystem::
   if (file == nullptr) throw InputError(path.string(), with_reason("cannot be created"));
   const bool written = write_values<Stored>(file, grid);
   if (gzclose(file) != Z_OK || !written)
-    throw InputError(path.string(), with_reason("cannot be written to its end"));
+    throw InputError(path.string(), with_reason("cannot be written completely"));
 }
 
 }  // namespace

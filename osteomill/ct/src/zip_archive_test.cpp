@@ -47,7 +47,7 @@ TEST_F(ZipArchive, HoldsAScanAndNamesItself) {
 
 TEST_F(ZipArchive, WritesNowhereElse) {
   for (const char* name : {"../a.nrrd", "case/../../a.nrrd", "/tmp/osteomill_a.nrrd", "..\\a.nrrd"}) {
-    EXPECT_TRUE(contains(refusal(write_zip({{name, kNrrd}})), "leads out of it")) << name;
+    EXPECT_TRUE(contains(refusal(write_zip({{name, kNrrd}})), "leads out of the archive")) << name;
   }
 }
 
@@ -59,7 +59,8 @@ TEST_F(ZipArchive, ThatUnpacksToMoreThanAllowedIsRefused) {
     read_scan(bomb, {.series = "", .max_memory_bytes = 15'000'000});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_TRUE(contains(error.what(), "scan.zip: unpacks to over the 0.015 GB")) << error.what();
+    EXPECT_TRUE(contains(error.what(), "scan.zip: unpacks to more than the limit of 0.015 GB"))
+        << error.what();
   }
 }
 

@@ -169,11 +169,11 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   reals("isovalue", {kNan}, "'isovalue' is not finite");
-  reals("spacing_mm", {1, 1e300, 1}, "'spacing_mm' is not finite, or beyond 1e12");
+  reals("spacing_mm", {1, 1e300, 1}, "'spacing_mm' is not finite or exceeds 1e12");
   reals("origin_mm", {0, kInfinity, 0}, "'origin_mm' is not finite");
   reals("spacing_mm", {1, kNan, 1}, "'spacing_mm' is not finite");
   reals("spacing_mm", {1, 0, 1}, "'spacing_mm' is not three positive numbers");
-  reals("axis_j", {1, 0, 0}, "axes are not unit vectors at right angles");
+  reals("axis_j", {1, 0, 0}, "axes are not orthonormal");
   reals("burr_radius_mm", {-1}, "the burr's radius (mm) must be a positive number");
   reals("tick_period_s", {0}, "'tick_period_s' is not a positive number");
   change([this](hid_t file) {
