@@ -87,7 +87,7 @@ struct DicomHeader {
   bool is_compressed = false;
   /// UID of the actual transfer syntax of the pixels.
   std::string syntax;
-  /// The transfer syntax if it is one that nothing here decodes; else empty.
+  /// Transfer syntax if no decoder supports it; otherwise empty.
   std::string undecodable;
   /// Stored size of its pixels, bytes; 0 if it has none.
   std::uint64_t pixel_bytes = 0;

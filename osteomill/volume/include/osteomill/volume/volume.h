@@ -36,7 +36,7 @@ class Volume {
   /// Returns the structures whose distance is recorded in every tick; null if there are none. Shared by
   /// copies of the bone.
   const std::shared_ptr<const NoGoDistances>& no_go() const { return no_go_; }
-  /// Sets them. Not for the tick.
+  /// Sets the structures. Not for the tick.
   void set_no_go(std::shared_ptr<const NoGoDistances> structures) { no_go_ = std::move(structures); }
 
   /// Returns whether voxel `v`, which must be in the grid, is bone.
