@@ -32,8 +32,9 @@ struct ReplayHooks {
 
 /// Replays the recording through the code of a live session: the inputs of device, spindle and operator come
 /// from the recording, everything else is computed. Every session starts from its recorded bone, tool pose
-/// and wrench. Throws InputError, naming the recording, if it was made with another scan, lost ticks, guarded
-/// structures that `scan` does not have, or if its algorithm or settings are unknown or out of range.
+/// and wrench. Throws InputError, naming the recording, if it was made with another scan, lost ticks, had
+/// another number of guarded structures than `scan`, or if its algorithm or settings are unknown or out of
+/// range.
 void replay_recording(const Volume& scan, const Recording& recording, const ReplayHooks& hooks);
 
 /// First tick in which a recording and its replay differ (Verification).
