@@ -53,8 +53,7 @@ void require_nothing_elsewhere(const Hdf5File& file) {
     return within ? 0 : 1;
   };
   if (H5Lvisit(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, check_link, &refused) != 0)
-    file.refuse("'" + refused +
-                "' is stored outside the file, or needs an HDF5 filter plugin; repack the file");
+    file.refuse("'" + refused + "' is stored outside the file, or needs an HDF5 filter plugin");
 }
 
 // Limits the child's CPU and wall time and its core dump, and restores the default signal handlers. Standard
