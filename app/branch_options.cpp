@@ -13,15 +13,16 @@
 namespace osteomill::app {
 
 void add_branch_options(CLI::App& command, BranchOptions& options) {
-  command.option_defaults()->group("Again from a recording");
+  command.option_defaults()->group("Continuing a recording");
   CLI::Option* from = command
                           .add_option("--from", options.recording,
-                                      "Recording to go on from: its bone, tool, settings and clock")
+                                      "Recording to continue, with its bone, tool, settings and clock")
                           ->check(not_empty())
                           ->type_name("RECORDING");
-  CLI::Option* at = command.add_option("--at", options.at_s, "Time in that recording to go on from, s")
-                        ->check(number_of(NumberRange::finite()))
-                        ->type_name("SECONDS");
+  CLI::Option* at =
+      command.add_option("--at", options.at_s, "Time in that recording at which to continue, s")
+          ->check(number_of(NumberRange::finite()))
+          ->type_name("SECONDS");
   from->needs(at);
   at->needs(from);
 }

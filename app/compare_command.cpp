@@ -253,10 +253,10 @@ void add_match_stiffness(CLI::App& command, CompareOptions& options) {
     return usable ? std::string() : text + " is neither a positive number nor softest";
   };
   command
-      .add_option_function<std::string>("--match-stiffness", take,
-                                        "Match each algorithm's stiffness so that a flat wall feels as stiff "
-                                        "as this, or as with the softest; one that cannot be matched is left "
-                                        "out (docs/algorithms.md)")
+      .add_option_function<std::string>(
+          "--match-stiffness", take,
+          "Match the algorithms' stiffness so that a flat wall feels this stiff, or as stiff as with the "
+          "softest algorithm; algorithms that cannot be matched are left out (docs/algorithms.md)")
       ->expected(0, 1)
       ->check(check)
       ->type_name("N/mm|softest");
@@ -267,7 +267,8 @@ void add_match_stiffness(CLI::App& command, CompareOptions& options) {
 void add_compare_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command = program.add_subcommand(
-      "compare", "Mill with each algorithm in a simulated hand (section 8.2 of the paper) and report");
+      "compare",
+      "Mill with each algorithm in a simulated hand (section 8.2 of the paper) and write a report");
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
   command->option_defaults()->group("The comparison");
@@ -276,13 +277,13 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
   add_count(*command, "--seeds", options->seeds, kMaxSeeds,
-            "Number of hands, each with a seed of its own from --seed on; the report then states which "
-            "differences are significant");
+            "Number of simulated hands, each with its own seed, counted up from --seed; with more than one, "
+            "the report states which differences are significant");
   command->add_flag("--no-stability", options->no_stability,
-                    "Skip the measurement of the greatest passive stiffness against a flat wall");
+                    "Skip the measurement of the highest passive stiffness against a flat wall");
   add_count(*command, "--threads", options->threads, kMaxThreads,
-            "Number of trials after the first that run in parallel (default: one for each processor that the "
-            "program may use: taskset, cgroup v2)");
+            "Number of trials to run in parallel; recorded trials run one at a time (default: the number of "
+            "processors that taskset and cgroup v2 allow)");
   add_match_stiffness(*command, *options);
   add_trial_options(*command, options->trial);
   command->get_option("--seed")->description(

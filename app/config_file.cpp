@@ -42,7 +42,10 @@ void set_option(CLI::App& command, const std::string& name, const std::vector<st
 }
 
 void add_config_option(CLI::App& command) {
-  command.add_option(kConfigOption, "TOML file with any of these options as keys")->type_name("FILE");
+  command
+      .add_option(kConfigOption,
+                  "TOML file with any of these options as keys; the command line takes precedence")
+      ->type_name("FILE");
 }
 
 std::vector<CLI::Option*> given_tool_options(CLI::App& command) {

@@ -254,16 +254,17 @@ void run_debrief(const DebriefOptions& options) {
 void add_debrief_command(CLI::App& program) {
   auto options = std::make_shared<DebriefOptions>();
   CLI::App* command = program.add_subcommand(
-      "debrief", "Measure recorded sessions against their exercise: a page that shows them, and a CSV table");
+      "debrief", "Measure recorded sessions against their exercise, and write a page and a CSV table");
   command->group("Exercises");
   command
       ->add_option("recordings", options->named,
-                   "Recordings (.h5), or folders of them; several make a class's page")
+                   "Recordings (.h5), or folders of them; those of several trainees make a class page")
       ->required();
   command
-      ->add_option("--exercise", options->exercise, "Exercise to measure by (default: the recording's own)")
+      ->add_option("--exercise", options->exercise,
+                   "Exercise to measure against (default: the recording's own)")
       ->type_name("FILE");
-  command->add_flag("--anonymous", options->anonymous, "Leave out names of people and files");
+  command->add_flag("--anonymous", options->anonymous, "Leave out the names of people and files");
   command->add_option("--out", options->out, "Folder for debrief.html and debrief.csv")
       ->required()
       ->type_name("FOLDER");

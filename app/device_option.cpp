@@ -85,31 +85,34 @@ void add_device_option(CLI::App& command, DeviceOption& option) {
       ->type_name("DEVICE")
       ->capture_default_str();
   add_positive(command, "--device-scale", option.scale, "NUMBER",
-               "Motion of the tool for each mm of the handle");
+               "Tool motion per handle motion, mm/mm (default: as last used with this device, at first 1)");
   add_positive(command, "--device-power", option.power, "NUMBER",
-               "Power at the hand for each unit of power at the tool");
+               "Ratio of the power at the hand to the power at the tool (default: as last used with this "
+               "device, at first 1)");
   command
-      .add_option(
-          "--device-turn", option.turn_deg,
-          "Orientation of the device's base: rotation vector in degrees about right, up and towards you")
+      .add_option("--device-turn", option.turn_deg,
+                  "Rotation of the device's base, as a rotation vector in degrees about the axes right, up "
+                  "and towards you (default: as last used with this device, at first 0,0,0)")
       ->delimiter(',')
       ->expected(3)
       ->type_name("X,Y,Z");
   command
-      .add_option("--shaft-lever", option.shaft_lever_mm,
-                  "Distance of the hand from the burr, mm: a device that drives only force then renders the "
-                  "torque as a force (0: not)")
+      .add_option(
+          "--shaft-lever", option.shaft_lever_mm,
+          "Distance from the hand to the burr, by which a device without torque output renders the torque as "
+          "a force; 0 renders no torque (default: as last used with this device, at first 0)")
       ->check(number_of(NumberRange::not_negative()))
       ->type_name("mm");
 }
 
 void add_send_options(CLI::App& command, SendOption& option) {
   command
-      .add_option("--send-bone", option.address,
-                  "Send the bone as it is milled, and the tool, by OpenIGTLink, for example to 3D Slicer")
+      .add_option(
+          "--send-bone", option.address,
+          "Send the bone while it is milled, and the tool, over OpenIGTLink, for example to 3D Slicer")
       ->type_name("HOST:PORT");
   add_positive(command, "--send-rate", option.tool_rate_Hz, "Hz",
-               "Rate at which the tool's pose and the readings are sent");
+               "Rate at which --send-bone sends the tool's pose and the readings");
 }
 
 std::unique_ptr<BoneSender> send_bone(const BoneFollower& bone, const SendOption& option) {

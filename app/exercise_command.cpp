@@ -50,17 +50,19 @@ void run_exercise(const ExerciseCommandOptions& options) {
 
 void add_exercise_command(CLI::App& program) {
   auto options = std::make_shared<ExerciseCommandOptions>();
-  CLI::App* command =
-      program.add_subcommand("exercise", "Check an exercise: its target, structures, steps and items");
+  CLI::App* command = program.add_subcommand(
+      "exercise", "Check an exercise file, and print its target, structures, steps and items");
   command->group("Exercises");
-  command->add_option("file", options->file, "The exercise, TOML; docs/exercises.md");
-  command->add_flag("--check", options->check, "Print what it holds, or the first fault with its line");
+  command->add_option("file", options->file, "Exercise file (TOML, docs/exercises.md)");
+  command->add_flag("--check", options->check,
+                    "Print the contents of the exercise, or its first fault with the line");
   command
-      ->add_option(
-          "--picture", options->picture,
-          "Picture to draw for the start page, PNG; there it stands beside the exercise under its name")
+      ->add_option("--picture", options->picture,
+                   "Picture (PNG) to draw; the start page shows the one that has the exercise's name and "
+                   "lies beside it")
       ->type_name("FILE");
-  command->add_flag("--measures", options->measures, "Print all measures as a Markdown table");
+  command->add_flag("--measures", options->measures,
+                    "Print all measures that items can use, as a Markdown table");
   add_quiet_option(*command);
   command->callback([=] { run_exercise(*options); });
 }

@@ -22,19 +22,21 @@ void add_exercise_options(CLI::App& command, ExerciseOptions& options) {
   command.option_defaults()->group("Exercise");
   command
       .add_option("--exercise", options.file,
-                  "Exercise to work on: a TOML file, which names the scan; docs/exercises.md")
+                  "Exercise to work on (TOML, docs/exercises.md); it names the scan")
       ->check(not_empty())
       ->type_name("FILE");
-  command.add_option("--trainee", options.trainee, "Name to record with the exercise (default: none)")
+  command
+      .add_option("--trainee", options.trainee,
+                  "Name of the trainee to store in recordings of the exercise (default: none)")
       ->check(not_empty())
       ->type_name("NAME");
 }
 
 void add_guidance_option(CLI::App& command, ExerciseOptions& options) {
   options.has_guidance = true;
-  command.add_flag(
-      "--guidance,!--no-guidance", options.has_guidance,
-      "Show steps, colours and distances, and record that they were shown; --no-guidance hides them");
+  command.add_flag("--guidance,!--no-guidance", options.has_guidance,
+                   "Show the exercise's steps, colours and distances, and record that they were shown; "
+                   "--no-guidance hides them");
 }
 
 ScanOptions scan_of(const Exercise& exercise, const ScanOptions& options) {

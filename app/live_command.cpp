@@ -263,8 +263,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<LiveOptions>();
   options->trial.milling.setup.law = CuttingLaw::chips;
   CLI::App* command = program.add_subcommand(
-      "live",
-      "Run one algorithm in real time with a device or the simulated hand, and print how well it keeps time");
+      "live", "Run one algorithm in real time with a device or the simulated hand, and print its timing");
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
   add_exercise_options(*command, options->exercise);
@@ -275,12 +274,13 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   command->option_defaults()->group("The hand and its device");
   add_positive(
       *command, "--seconds", options->seconds, "s",
-      "Length of the session; the simulated hand mills for half of it and holds still for the other half");
+      "Length of the session; the simulated hand mills in the first half and holds still in the second");
   add_rate_option(*command, options->trial.milling.setup.tick_s);
-  command->add_option("--record", options->record, "Recording (HDF5) of every tick to write")
+  command->add_option("--record", options->record, "Recording (HDF5) to write, with every tick")
       ->type_name("FILE");
   add_device_option(*command, options->device);
-  command->add_flag("--spindle", options->spindle, "Turn the spindle on without a button of the device");
+  command->add_flag("--spindle", options->spindle,
+                    "Switch the spindle on at the start, without the device's button");
   add_send_options(*command, options->send);
   add_quiet_option(*command);
   command->callback([=] {

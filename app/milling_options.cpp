@@ -126,7 +126,7 @@ void add_named_settings(CLI::App& command, HapticSettings& haptics) {
             std::erase_if(haptics.named, [](const auto& named) { return !named.algorithm.empty(); });
             for (const std::string& text : texts) set_named(haptics, text);
           },
-          "ALGORITHM.SETTING=VALUE, any setting of docs/settings.md; may repeat")
+          "Value of any algorithm's setting (docs/settings.md), as ALGORITHM.SETTING=VALUE; may repeat")
       ->type_name("SETTING");
 }
 
@@ -184,13 +184,13 @@ void settle_law(const CLI::App& command, MillingSetup& setup) {
 
 void add_algorithm_option(CLI::App& command, AlgorithmDescription& algorithm) {
   add_choice(command, "algorithm", algorithm_names(), algorithm.id.name, "NAME",
-             fmt::format("{}", fmt::join(algorithm_names(), ", ")),
+             fmt::format("Haptic algorithm: {}", fmt::join(algorithm_names(), ", ")),
              [&algorithm](const std::string& name) { algorithm = algorithm_named(name); });
 }
 
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms) {
   const std::string all = algorithms.size() > 1 ? "all" : algorithms.front().id.name;
-  std::string what = fmt::format("{}", fmt::join(algorithm_names(), ", "));
+  std::string what = fmt::format("Haptic algorithm: {}", fmt::join(algorithm_names(), ", "));
   if (algorithms.size() > 1) what += "; may repeat";
   command
       .add_option_function<std::vector<std::string>>(

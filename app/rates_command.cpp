@@ -48,12 +48,12 @@ void run_rates(const RatesOptions& options) {
 void add_rates_command(CLI::App& program) {
   auto options = std::make_shared<RatesOptions>();
   options->trial.hand.script.milling_s = options->trial.hand.script.holding_s = 2.0;
-  CLI::App* command =
-      program.add_subcommand("rates", "Time each algorithm against resolution (section 8.1 of the paper)");
+  CLI::App* command = program.add_subcommand(
+      "rates", "Measure each algorithm's update rate against its resolution (section 8.1 of the paper)");
   add_scan_options(*command, options->scan);
   command->group("Compare and measure");
   command->option_defaults()->group("The measurement");
-  command->add_option("--out", options->out, "Folder for the tables and the figure")
+  command->add_option("--out", options->out, "Folder for the report, its tables and figure")
       ->type_name("FOLDER")
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);

@@ -24,11 +24,11 @@ void list_devices() {
     const std::string address = kind.address.empty() ? "" : fmt::format("[:{}]", kind.address);
     print_device(std::string(kind.name) + address, kind.meaning, kind.find(""));
   }
-  print_device(kMouse, "a virtual hand that mouse and keyboard move", {true, "in the window of simulate"});
+  print_device(kMouse, "a virtual hand moved by mouse and keyboard", {true, "in the window of simulate"});
   const bool space_mouse = SpaceMouse().is_present();
-  print_device(kSpaceMouse, "the same, moved by a SpaceMouse",
+  print_device(kSpaceMouse, "a virtual hand moved by a SpaceMouse",
                {space_mouse, space_mouse ? "spacenavd answers" : kNoSpaceMouse});
-  print_device(kSimulated, "a simulated operator who mills by itself", {true, "always"});
+  print_device(kSimulated, "a simulated operator that mills by itself", {true, "always"});
 }
 
 void print_settings(const AlgorithmDescription& algorithm) {
@@ -45,7 +45,7 @@ void print_settings(const AlgorithmDescription& algorithm) {
 
 void add_devices_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
-      "devices", "List the devices that can hold the tool: what is found, and why not");
+      "devices", "List the devices that can hold the tool, and whether each was found");
   command->group("Reference");
   command->callback(list_devices);
 }
@@ -59,7 +59,7 @@ void add_settings_command(CLI::App& program) {
         "# Settings of the algorithms\n\n"
         "Written by `osteomill settings`; a test compares this page with it. Set one with `--set "
         "ALGORITHM.SETTING=VALUE`, or as\na key of the table `[ALGORITHM]` in a file for `--config`. "
-        "[algorithms.md](algorithms.md) tells what each is for.\n");
+        "[algorithms.md](algorithms.md) explains them.\n");
     for (const AlgorithmDescription& algorithm : all_algorithms()) print_settings(algorithm);
   });
 }

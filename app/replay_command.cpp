@@ -322,24 +322,25 @@ void refuse_what_is_recorded(const ReplayOptions& options) {
 void add_replay_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = program.add_subcommand(
-      "replay", "Drive one algorithm along a trajectory, or run a recording again, and log every tick");
+      "replay", "Drive one algorithm along a trajectory, or replay a recording, and log every tick");
   options->command = command;
   command->group("Recordings");
   command
       ->add_option(
           "input", options->input,
-          "A recording, or CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling; with --from CSV alone, or "
-          "nothing to repeat what was recorded from there")
+          "Recording, or trajectory as CSV with the columns time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling; with "
+          "--from only a trajectory, or nothing to repeat the rest of that recording")
       ->type_name("TRAJECTORY|RECORDING");
-  add_scan_options(*command, options->scan, "the recording's scan, or for a trajectory the built-in tooth");
+  add_scan_options(*command, options->scan,
+                   "the scan of the recording, or for a trajectory the built-in tooth");
   add_exercise_options(*command, options->exercise);
   add_branch_options(*command, options->from);
   command->option_defaults()->group("The replay");
   command->add_flag("--verify", options->verify,
-                    "Check that a recording replays to the bit, or print the first tick that differs");
+                    "Check that the recording replays bit for bit, or print the first tick that differs");
   add_algorithm_option(*command, options->milling.setup.algorithm);
-  command->add_option("--out", options->out, "Log to write, CSV, one row for each tick")->type_name("FILE");
-  command->add_option("--record", options->record, "Recording to write, of the replayed motion")
+  command->add_option("--out", options->out, "Log to write, as CSV with one row per tick")->type_name("FILE");
+  command->add_option("--record", options->record, "Recording (HDF5) of the replayed motion to write")
       ->type_name("FILE");
   add_milling_options(*command, options->milling);
   add_quiet_option(*command);

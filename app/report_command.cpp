@@ -61,9 +61,9 @@ void run_report(const ReportOptions& options) {
 
 void add_report_command(CLI::App& program) {
   auto options = std::make_shared<ReportOptions>();
-  CLI::App* command = program.add_subcommand("report", "Make the report of recordings again");
+  CLI::App* command = program.add_subcommand("report", "Write the report of existing recordings");
   command->group("Recordings");
-  command->add_option("recordings", options->recordings, "Recordings (.h5), of compare, live or the window")
+  command->add_option("recordings", options->recordings, "Recordings (.h5) made by compare, live or simulate")
       ->required();
   command->add_option("--out", options->out, "Folder for the report")
       ->type_name("FOLDER")

@@ -59,11 +59,11 @@ struct WriteOptions {
 
 void add_write_options(CLI::App& command, WriteOptions& options, const std::string& out_text) {
   command.group("Scans");
-  add_scan_source(command, options.scan, "that of --after, else the built-in tooth");
-  command.add_option("--out", options.out, "The file to write, " + out_text)->required()->type_name("FILE");
+  add_scan_source(command, options.scan, "the scan of --after, else the built-in tooth");
+  command.add_option("--out", options.out, "File to write, " + out_text)->required()->type_name("FILE");
   command
       .add_option("--after", options.recording,
-                  "A recording (HDF5) made with this scan: the bone as milled at its end")
+                  "Recording (HDF5) made with this scan; the bone is written as milled at its end")
       ->type_name("FILE");
 }
 
@@ -110,7 +110,8 @@ void run_save(const WriteOptions& options) {
 
 void add_info_command(CLI::App& program) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = program.add_subcommand("info", "Show what was read of a scan");
+  CLI::App* command =
+      program.add_subcommand("info", "Print a summary of a scan and the problems found in it");
   command->group("Scans");
   add_scan_options(*command, options->scan);
   command->add_flag("--json", options->json, "Print the summary as JSON");
@@ -121,7 +122,7 @@ void add_info_command(CLI::App& program) {
 void add_mesh_command(CLI::App& program) {
   auto options = std::make_shared<WriteOptions>();
   CLI::App* command =
-      program.add_subcommand("mesh", "Write the bone's surface as one closed mesh of triangles, in mm");
+      program.add_subcommand("mesh", "Write the bone's surface as one closed triangle mesh, in mm");
   add_write_options(*command, *options, ".stl, .ply or .obj");
   add_bone_options(*command, options->scan);
   add_quiet_option(*command);
@@ -131,7 +132,7 @@ void add_mesh_command(CLI::App& program) {
 void add_save_command(CLI::App& program) {
   auto options = std::make_shared<WriteOptions>();
   CLI::App* command =
-      program.add_subcommand("save", "Save the scan, as it was or as milled, as NRRD in the patient's frame");
+      program.add_subcommand("save", "Save the scan, original or milled, as NRRD in the patient's frame");
   add_write_options(*command, *options, ".nrrd");
   add_quiet_option(*command);
   command->callback([=] { run_save(*options); });

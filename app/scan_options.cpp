@@ -43,7 +43,8 @@ const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>() {
   using S = app::ScanOptions;
   static const std::vector<Field<S>> all = [] {
     std::vector<Field<S>> fields{
-        {{"", "density", NumberRange::finite(), "Isovalue: bone where the density is greater",
+        {{"", "density", NumberRange::finite(),
+          "Isovalue: voxels of a higher density are bone (default: suggested from the scan)",
           app::kBoneChoiceField | app::kBoneField, "iso"},
          [](const S& s) { return s.isovalue.value_or(std::numeric_limits<double>::quiet_NaN()); },
          [](S& s, double value) { s.isovalue = value; }}};
@@ -68,32 +69,30 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
   static const std::vector<Field<S, std::string>> all{
       field<S>(
           text("scan.series", "series", "SERIES", app::kSourceField,
-               "DICOM series to read if there are several: its number in what info lists (3, or 3.1 for one "
-               "of several volumes in a series), or the beginning of its UID; else the largest CT"),
+               "DICOM series to read, by its number in the list that info prints (3, or 3.1 for one of "
+               "several volumes in a series) or by the start of its UID (default: the largest CT)"),
           [](auto& s) -> auto& { return s.read.series; }),
       {text("scan.spacing", "spacing", "X,Y,Z", app::kSourceField,
-            "How far the voxels of a stack of PNG or TIFF pictures lie apart in mm: along columns, rows, "
-            "slices"),
+            "Voxel spacing of a stack of PNG or TIFF images, mm: along columns, rows and slices"),
        [](const S& s) {
          return s.read.spacing_mm ? fmt::format("{}", fmt::join(*s.read.spacing_mm, ",")) : std::string();
        },
        [](S& s, const std::string& given) { s.read.spacing_mm = spacing_of(given); }},
       {text("", "as", "scan|labels", app::kSourceField,
-            "Take the values as densities, or as labels, all of which are bone (default: by header and "
-            "content, with --iso as densities)"),
+            "Read the values as densities (scan) or as labels, all of which are bone (default: decided by "
+            "header and content; densities if --iso is given)"),
        [](const S& s) { return s.as_labels ? *s.as_labels ? "labels" : "scan" : ""; },
        [](S& s, const std::string& kind) {
          app::require_word("kind", kind, {"scan", "labels"});
          s.as_labels = kind == "labels";
        }},
       field<S>(
-          text(
-              "scan.labels", "labels", "FILE", app::kBoneChoiceField,
-              "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage, DICOM segmentation), on any grid"),
+          text("scan.labels", "labels", "FILE", app::kBoneChoiceField,
+               "Label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage, DICOM segmentation), on any grid"),
           [](auto& s) -> auto& { return s.labels.map; }),
       field<S>(
           text("scan.label_table", "label-table", "FILE", app::kBoneChoiceField,
-               "Names and colours of labels: a colour table of 3D Slicer's or a label file of ITK-SNAP's"),
+               "Names and colours of the labels: a 3D Slicer colour table or an ITK-SNAP label file"),
           [](auto& s) -> auto& { return s.labels.table; }),
       {no_go, [](const S& s) { return fmt::format("{}", fmt::join(s.labels.no_go, ",")); },
        [](S& s, const std::string& labels) {
@@ -114,10 +113,11 @@ void add_bone_options(CLI::App& command, ScanOptions& options) {
 
 void add_scan_source(CLI::App& command, ScanOptions& options, const std::string& without_one) {
   command
-      .add_option("scan", options.scan,
-                  "DICOM folder or file, NRRD, MetaImage, NIfTI, a folder of PNG or TIFF slices, or one of "
-                  "them in a zip file, or builtin:tooth, builtin:layers or builtin:mastoid; without one, " +
-                      without_one)
+      .add_option(
+          "scan", options.scan,
+          "DICOM folder or file, NRRD, MetaImage or NIfTI file, folder of PNG or TIFF slices, zip file of "
+          "any of these, or builtin:tooth, builtin:layers or builtin:mastoid; the default is " +
+              without_one)
       ->check(not_empty());
   add_texts(command, options, kSourceField);
   command
@@ -126,8 +126,8 @@ void add_scan_source(CLI::App& command, ScanOptions& options, const std::string&
           [&bytes = options.read.max_memory_bytes](double gigabytes) {
             bytes = static_cast<std::uint64_t>(gigabytes * 1e9);
           },
-          "Refuse a scan that needs more memory, including everything unpacked or made of it (default: the "
-          "memory of the machine, or the program's share of it by cgroup v2)")
+          "Memory limit for a scan and all data derived from it; a scan that needs more is refused (default: "
+          "the machine's memory, or the program's cgroup v2 limit)")
       ->check(number_of({.min = 1e-3, .max = 1e6}))
       ->type_name("GB");
 }

@@ -264,43 +264,48 @@ void run_study(const StudyOptions& options) {
 void add_study_command(CLI::App& program) {
   auto options = std::make_shared<StudyOptions>();
   CLI::App* command = program.add_subcommand(
-      "study", "Run many trials: a grid, a list or a Latin hypercube of anything that a trial takes");
+      "study", "Run many trials over a grid, a list or a Latin hypercube of any trial settings");
   command->group("Compare and measure");
   command->option_defaults()->group("The study");
   command
       ->add_option("study", options->study,
-                   "A study's file (TOML, docs/studies.md), or the folder of a study")
+                   "Study file (TOML, docs/studies.md), or the folder of a study already begun")
       ->required()
       ->check(not_empty())
       ->type_name("FILE|FOLDER");
-  command->add_option("--out", options->out, "Folder in which to begin the study")
+  command->add_option("--out", options->out, "Folder for a new study")
       ->check(not_empty())
       ->type_name("FOLDER");
-  command->add_flag("--list", options->list, "Print every trial, and run none");
-  command->add_flag("--estimate", options->estimate, "How long it would take, by three trials");
-  command->add_flag("--status", options->status, "Of a folder: what is done and what is left");
-  command->add_flag("--resume", options->resume, "Of a folder: run what is missing, and nothing else");
-  command->add_flag("--report", options->report, "Of a folder: table and maps of what is done so far");
+  command->add_flag("--list", options->list, "Print all trials without running them");
+  command->add_flag("--estimate", options->estimate,
+                    "Estimate the computing time of the study from three trials");
+  command->add_flag("--status", options->status,
+                    "Print which trials of a study folder are done and which are left");
+  command->add_flag("--resume", options->resume, "Run only the missing trials of a study folder");
+  command->add_flag("--report", options->report,
+                    "Write a table and maps of the finished trials of a study folder");
   command->add_flag("--drop-unreached", options->drop_unreached,
-                    "With --report: leave out trials that did not do all of their test; else they count, "
-                    "hatched in the maps");
-  command->option_defaults()->group("How it is run");
-  command->add_option("--on", options->on, "Submit the study to a cluster's scheduler")
+                    "With --report, leave out trials that did not complete their test; otherwise they count "
+                    "and are hatched in the maps");
+  command->option_defaults()->group("Running it");
+  command
+      ->add_option("--on", options->on,
+                   "Submit the study to this scheduler of a cluster (default: run it here)")
       ->check(one_of("scheduler", {"slurm"}))
       ->type_name("slurm");
   command
       ->add_option("--slices", options->slices,
-                   "Number of files of trials (default: about a minute of computing each, from three trials)")
+                   "Number of slices, each a file of trials (default: about one minute of computing per "
+                   "slice, estimated from three trials)")
       ->check(whole_number(1, kMaxSlices))
       ->type_name("COUNT");
   command
-      ->add_option("--slice", options->slice,
-                   "Run only this slice of a study's folder, as a task of a cluster does")
+      ->add_option("--slice", options->slice, "Run only this slice of a study folder, as a cluster task does")
       ->check(whole_number(0, kMaxSlices))
       ->type_name("NUMBER");
   add_count(*command, "--threads", options->threads, kMaxThreads,
-            "Number of trials that run in parallel (default: one for each processor that the program may "
-            "use: taskset, cgroup v2)");
+            "Number of trials to run in parallel (default: the number of processors that taskset and cgroup "
+            "v2 allow)");
   command->option_defaults()->group("Options");
   add_quiet_option(*command);
   command->callback([=] { run_study(*options); });

@@ -72,9 +72,11 @@ std::vector<Field<TrialSpec>> trial_numbers() {
       field<A>(
           {"", "N s/mm", NumberRange::positive(), "Damping of the device on a wall", 0, "device-damping"},
           &A::device_damping_Ns_per_mm),
-      field<A>({"", "", NumberRange::positive(), "Factor on the hand's stiffness and damping", 0, "grip"},
+      field<A>({"", "", NumberRange::positive(),
+                "Factor by which the hand's stiffness and damping are multiplied", 0, "grip"},
                &A::grip),
-      field<A>({"", "", NumberRange::on_or_off(), "The seed draws the hand", 0, "draw-hand"}, &A::draw_hand),
+      field<A>({"", "", NumberRange::on_or_off(), "Draw the hand at random from the seed", 0, "draw-hand"},
+               &A::draw_hand),
       field<A>(
           {"", "", {0, kMaxSeed, true}, "Seed of the hand's tremor", 0, "seed"},
           [](auto& a) -> auto& { return a.trial.seed; })};

@@ -46,9 +46,9 @@ template <>
 const std::vector<Field<TrialOptions, std::string>>& fields_of<TrialOptions, std::string>() {
   static const std::vector<Field<TrialOptions, std::string>> all{
       vector_field("entry", &TrialOptions::entry_W_mm,
-                   "Point at which the tool enters, mm (default: the top of the bone)"),
+                   "Point at which the tool enters the bone, mm (default: the top of the bone)"),
       vector_field("direction", &TrialOptions::direction_W,
-                   "Direction in which the tool enters (default: 0,0,-1)")};
+                   "Direction in which the tool enters the bone (default: 0,0,-1)")};
   return all;
 }
 

@@ -96,11 +96,12 @@ std::vector<Field<CuttingSettings>> cutting_fields() {
   using C = CuttingSettings;
   constexpr unsigned kOwn = kOfTheCutting | kOfTheRecording;
   return {
-      field<C>({"vibration.spindle_speed", "rpm", kSpeed, "Speed of the burr", kOwn, "spindle-speed"},
-               &C::spindle_speed_rpm),
+      field<C>(
+          {"vibration.spindle_speed", "rpm", kSpeed, "Rotational speed of the burr", kOwn, "spindle-speed"},
+          &C::spindle_speed_rpm),
       field<C>({"milling.cutting_energy", "N mm/mm^3", kEnergy,
-                "Work to remove bone of the reference density (--law constant-energy)", kOwn | kMayBeAbsent,
-                "cutting-energy"},
+                "Energy to remove bone of the reference density, per volume (--law constant-energy)",
+                kOwn | kMayBeAbsent, "cutting-energy"},
                &C::specific_energy_Nmm_per_mm3),
   };
 }
@@ -131,8 +132,8 @@ double usual_rpm(Handpiece handpiece) {
 // Comes before the spindle's speed, which wins if it is set as well. A speed that is not the usual one stays.
 Field<S> handpiece_field() {
   return {choice("spindle.handpiece",
-                 "Drive that slows down under load, at its own speed unless --spindle-speed is given; none "
-                 "keeps its speed",
+                 "Handpiece, which slows down under load and sets the rotational speed unless "
+                 "--spindle-speed is given; none holds the speed",
                  "handpiece", names_of(handpiece_types())),
           [](const S& s) { return static_cast<double>(s.handpiece); },
           [](S& s, double value) {
@@ -150,8 +151,8 @@ Field<S> burr_name_field() {
   names.insert(names.begin(), "own");
   const int last = static_cast<int>(names.size()) - 1;
   return {{"", "", NumberRange::count(0, last),
-           "Burr by name, with its sizes, its shaft and its kind: surgical as cutting-2 or diamond-2.5 (mm), "
-           "dental as dental-014 (ISO size); docs/exercises.md lists all",
+           "Named burr, which sets burr size, shaft and kind of burr: surgical, such as cutting-2 or "
+           "diamond-2.5 (mm), or dental, such as dental-014 (ISO size); docs/exercises.md lists all",
            kOfTheTool | kOfTheRecording, "burr-name", std::move(names)},
           [](const S& s) {
             const NamedBurr* burr = find_burr(s.tool, s.burr);
@@ -173,24 +174,27 @@ Field<S> chip_field(const char* name, const char* unit, const NumberRange& range
 std::vector<Field<S>> law_fields() {
   return {
       handpiece_field(),
-      field<S>(choice("milling.law", "Energy of the removed bone: constant, or more for thinner chips", "law",
-                      {"constant-energy", "chips"}),
+      field<S>(choice("milling.law",
+                      "Cutting law: constant energy per volume of bone, or chips, which take more energy the "
+                      "thinner they are",
+                      "law", {"constant-energy", "chips"}),
                &S::law),
-      field<S>(choice("milling.burr", "Kind of burr, for --law chips", "burr", names_of(burr_types())),
+      field<S>(choice("milling.burr", "Kind of burr (--law chips)", "burr", names_of(burr_types())),
                &S::burr),
-      chip_field("milling.wear", "cuts", {0, 1000},
-                 "Cuts that the burr has made before; 20 take 20 % of its rate (--law chips)", "wear",
-                 &S::wear_cuts),
       chip_field(
-          "milling.chip_energy", "N mm/mm^3", {0, 1e6},
-          "Work to remove bone of the reference density in chips of 48 um, as scripts/fit-cutting fits it "
-          "(--law chips); 0: that of the burr",
-          "chip-energy", &S::chip_energy_Nmm_per_mm3),
+          "milling.wear", "cuts", {0, 1000},
+          "Number of cuts made before with the burr; every 20 lower its removal rate by 20 % (--law chips)",
+          "wear", &S::wear_cuts),
+      chip_field("milling.chip_energy", "N mm/mm^3", {0, 1e6},
+                 "Energy to remove bone of the reference density in chips of 48 um, per volume, as fitted by "
+                 "scripts/fit-cutting (--law chips); 0 takes the burr's own",
+                 "chip-energy", &S::chip_energy_Nmm_per_mm3),
       chip_field("milling.chip_exponent", "", {0, 0.95},
-                 "Exponent by which that energy grows in thinner chips (--chip-energy)", "chip-exponent",
-                 &S::chip_exponent),
+                 "Exponent with which the energy of --chip-energy grows as chips get thinner",
+                 "chip-exponent", &S::chip_exponent),
       chip_field("milling.chip_edges", "", {1, 100},
-                 "Edges that cut in a turn: 1 if a burr runs out, 2 of a twist drill (--law chips)",
+                 "Number of edges that cut per revolution: 1 for a burr with run-out, 2 for a twist drill "
+                 "(--law chips)",
                  "chip-edges", &S::chip_edges),
   };
 }
@@ -198,20 +202,20 @@ std::vector<Field<S>> law_fields() {
 std::vector<Field<S>> removal_fields() {
   return {
       {{"milling.removal_rate", "mm^3/(N s)", kRate,
-        "Bone removed per time and force (default: computed from burr, spindle speed and cutting energy)",
+        "Volume of bone removed per time and force (default: computed from burr, spindle speed and cutting "
+        "energy)",
         kOfTheCutting | kOfTheRecording | kFollows, "removal-rate"},
        [](const S& s) { return milling_settings(s).removal_rate_mm3_per_Ns; },
        [](S& s, double value) { s.removal_rate_mm3_per_Ns = value; }},
-      field<S>(
-          {"", "", kSwitch, "Let the hand feel the burr pull along its rim; the burr's pole then cuts less",
-           kOfTheCutting, "cutting-reaction"},
-          &S::cutting_reaction),
+      field<S>({"", "", kSwitch, "Render the tangential cutting force of the burr; its pole then cuts less",
+                kOfTheCutting, "cutting-reaction"},
+               &S::cutting_reaction),
       field<S>({"milling.drag", "", kSwitch,
-                "Let the hand feel the spinning burr and shaft drag on bone that they do not cut",
+                "Render the friction of the spinning burr and shaft on bone that they do not cut",
                 kOfTheCutting | kMayBeAbsent, "drag"},
                &S::drag),
       {{"milling.reaction_share", "", kNotNegative,
-        "Share of the burr's force with which the burr pulls; 0: not felt"},
+        "Rendered tangential force as a share of the burr's force; 0 if none is rendered"},
        [](const S& s) { return milling_settings(s).reaction_share; },
        [](S& s, double value) {
          s.cutting_reaction = value != 0;
@@ -224,38 +228,45 @@ std::vector<Field<GuardSettings>> guard_fields() {
   using G = GuardSettings;
   return {
       field<G>(
-          {"limit.force", "N", kForce, "Largest force that the device is asked for", kOfTheLimits,
-           "force-limit"},
+          {"limit.force", "N", kForce, "Limit of the force sent to the device", kOfTheLimits, "force-limit"},
           [](auto& g) -> auto& { return g.limits.force_N; }),
       field<G>(
-          {"limit.torque", "N mm", kTorque, "Largest torque that the device is asked for", kOfTheLimits,
+          {"limit.torque", "N mm", kTorque, "Limit of the torque sent to the device", kOfTheLimits,
            "torque-limit"},
           [](auto& g) -> auto& { return g.limits.torque_Nmm; }),
       field<G>({"passivity_controller", "", kSwitch,
-                "Damp a contact that has given the hand more energy than it took", kOfTheLimits,
-                "passivity-controller"},
+                "Passivity controller: damp a contact that has given the hand more energy than it took",
+                kOfTheLimits, "passivity-controller"},
                &G::passivity_controller),
       field<G>(
-          {"guard.max_force_rate", "N/s", kLimit, "Fastest change of the force sent"},
+          {"guard.max_force_rate", "N/s", kLimit, "Limit of the rate of change of the force sent"},
           [](auto& g) -> auto& { return g.rates.force_N_s; }),
       field<G>(
-          {"guard.max_torque_rate", "N mm/s", kLimit, "Fastest change of the torque sent"},
+          {"guard.max_torque_rate", "N mm/s", kLimit, "Limit of the rate of change of the torque sent"},
           [](auto& g) -> auto& { return g.rates.torque_Nmm_s; }),
-      field<G>({"guard.blend", "s", kNotNegative, "Time in which a wrench rises from zero"}, &G::blend_s),
-      field<G>({"guard.max_move", "mm", kLimit, "Farthest move of the device in a tick"}, &G::max_move_mm),
-      field<G>({"guard.max_turn", "rad", kLimit, "Widest turn of the device in a tick"}, &G::max_turn_rad),
-      field<G>({"guard.max_tick", "s", kLimit, "Longest tick"}, &G::max_tick_s),
+      field<G>({"guard.blend", "s", kNotNegative, "Time over which a discontinuous wrench is blended in"},
+               &G::blend_s),
+      field<G>({"guard.max_move", "mm", kLimit,
+                "Device translation in a tick beyond which the wrench falls to zero"},
+               &G::max_move_mm),
+      field<G>({"guard.max_turn", "rad", kLimit,
+                "Device rotation in a tick beyond which the wrench falls to zero"},
+               &G::max_turn_rad),
+      field<G>({"guard.max_tick", "s", kLimit, "Length of a tick beyond which the wrench falls to zero"},
+               &G::max_tick_s),
   };
 }
 
 std::vector<Field<VibrationSettings>> vibration_fields() {
   using V = VibrationSettings;
   return {
-      field<V>({"vibration", "", kSwitch, "Let the hand feel the burr cut", kOfTheCutting, "vibration"},
-               &V::on),
-      field<V>({"vibration.force_share", "", kNotNegative, "Share of the burr's force that vibrates"},
+      field<V>(
+          {"vibration", "", kSwitch, "Render the vibration of the cutting burr", kOfTheCutting, "vibration"},
+          &V::on),
+      field<V>({"vibration.force_share", "", kNotNegative,
+                "Amplitude of the vibration as a share of the burr's force"},
                &V::force_share),
-      field<V>({"vibration.max_force", "N", kNotNegative, "Largest force of the vibration"}, &V::max_N),
+      field<V>({"vibration.max_force", "N", kNotNegative, "Limit of the vibration's force"}, &V::max_N),
   };
 }
 
@@ -266,13 +277,13 @@ namespace {
 std::vector<Field<ContactTransientSettings>> transient_fields() {
   using C = ContactTransientSettings;
   return {
-      field<C>({"contact_transient", "", kSwitch, "Let the hand feel a knock as a fast tool meets bone",
+      field<C>({"contact_transient", "", kSwitch, "Render a knock when a fast tool meets bone",
                 kOfTheCutting | kMayBeAbsent, "contact-transient"},
                &C::on),
-      field<C>({"contact_transient.damping", "N s/mm", kNotNegative, "Amplitude of the knock per speed",
-                kMayBeAbsent},
+      field<C>({"contact_transient.damping", "N s/mm", kNotNegative,
+                "Amplitude of the knock per speed of the impact", kMayBeAbsent},
                &C::damping_N_s_per_mm),
-      field<C>({"contact_transient.max_force", "N", kNotNegative, "Largest force of the knock", kMayBeAbsent},
+      field<C>({"contact_transient.max_force", "N", kNotNegative, "Limit of the knock's force", kMayBeAbsent},
                &C::max_N),
   };
 }

@@ -20,24 +20,25 @@ const Fields& fields() {
   static const Fields all{
       field<Settings>(coupling_stiffness(kStiffness), &Settings::translational_stiffness_N_per_mm),
       field<Settings>(coupling_torsion(kTorsion), &Settings::torsional_stiffness_Nmm_per_rad),
-      field<Settings>({"skin-width", "mm", kSkin,
-                       "Distance from the tool's cores at which bone is felt; smaller in proportion with a "
-                       "reduced rounding"},
-                      &Settings::skin_width_mm),
+      field<Settings>(
+          {"skin-width", "mm", kSkin,
+           "Distance from the tool's cores at which bone is felt; reduced in proportion if the rounding is"},
+          &Settings::skin_width_mm),
       field<Settings>({"rounding", "mm", kRounding,
-                       "Distance of the cores below the tool's surface; at most half of its smallest radius"},
+                       "Depth of the cores below the tool's surface; reduced to at most half of the tool's "
+                       "smallest radius"},
                       &Settings::rounding_mm),
       field<Settings>({"pressure", "N/mm2", kPressure,
-                       "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2 for the default burr; for "
-                       "another, inversely proportional to its cross-section"},
+                       "p0 in the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2 for the default burr; "
+                       "scaled inversely with the cross-section for other burrs"},
                       &Settings::pressure_N_per_mm2),
       field<Settings>({"point-spacing", "mm", kSpacing,
-                       "Largest distance between points of bone, whatever the scan's voxels; smaller for a "
-                       "thin tool, and doubled at a thick shaft on flat bone"},
+                       "Largest distance between the bone's points, regardless of the scan's voxel size; "
+                       "smaller for a thin tool, doubled at a thick shaft on flat bone"},
                       &Settings::point_spacing_mm),
       field<Settings>({"release-time", "s", kReleaseTime,
-                       "Time in which a stretch of the coupling that nothing holds any more falls to a "
-                       "third, unless release and release-turn are faster"},
+                       "Time in which the coupling's stretch falls to a third once contact no longer holds "
+                       "it, unless release and release-turn are faster"},
                       &Settings::release_time_s),
       field<Settings>({"release", "mm/s", kReleaseSpeed,
                        "Speed limit of the tool's translation beyond the device's own motion"},
@@ -54,7 +55,7 @@ const Fields& fields() {
 AlgorithmDescription description() {
   return with_settings<BarrierShell, Settings>(
       {.id = {"barrier-shell", "4 barrier-shell", "#1565c0"},
-       .summary = "The tool rests on a soft skin of the bone's points that nothing pushes through",
+       .summary = "The tool rests on a soft skin around the bone's points that no force can push it through",
        .resolution_setting = "point-spacing",
        .resolution_name = "spacing",
        .has_guards = true},

@@ -10,12 +10,13 @@ namespace osteomill {
 namespace {
 
 constexpr std::array kKinds{
-    HardwareKind{"dhd", "NUMBER", "Force Dimension and Falcon, by the maker's libdhd", &probe_force_dimension,
-                 &open_force_dimension},
-    HardwareKind{"haply", "HOST:PORT", "Haply Inverse3, by the maker's service", &probe_haply, &open_haply},
-    HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, by the maker's libHD", &probe_touch,
+    HardwareKind{"dhd", "NUMBER", "Force Dimension and Falcon, through the maker's libdhd",
+                 &probe_force_dimension, &open_force_dimension},
+    HardwareKind{"haply", "HOST:PORT", "Haply Inverse3, through the maker's service", &probe_haply,
+                 &open_haply},
+    HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, through the maker's libHD", &probe_touch,
                  &open_touch},
-    HardwareKind{"udp", "HOST:PORT", "a laboratory's own device, by datagrams (docs/udp-device.md)",
+    HardwareKind{"udp", "HOST:PORT", "a laboratory's own device, through UDP datagrams (docs/udp-device.md)",
                  &probe_udp, &open_udp},
 };
 

@@ -79,9 +79,10 @@ constexpr NumberRange kPositive = NumberRange::positive(), kNotNegative = Number
 std::vector<Field<HandSettings>> hand_fields() {
   using H = HandSettings;
   return {
-      field<H>({"hand.push", "N", kPositive, "Largest push of the hand", 0, "push"}, &H::push_N),
+      field<H>({"hand.push", "N", kPositive, "Largest force with which the hand pushes", 0, "push"},
+               &H::push_N),
       field<H>({"hand.push_lever", "mm", kNotNegative,
-                "Lever of the hand's largest torque: it is the push times this"},
+                "Lever arm of the hand's largest torque, which is the largest push times this"},
                &H::push_lever_mm),
       field<H>({"hand.stiffness", "N/mm", kPositive, "Stiffness of the hand", 0, "hand-stiffness"},
                &H::stiffness_N_per_mm),
@@ -106,9 +107,9 @@ std::vector<Field<HandleSettings>> handle_fields() {
       field<H>(
           {"device.inertia", "kg m^2", kPositive, "Moment of inertia of the handle", 0, "device-inertia"},
           &H::inertia_kg_m2),
-      field<H>({"device.position_step", "mm", kNotNegative, "Step of the encoder, translation"},
+      field<H>({"device.position_step", "mm", kNotNegative, "Encoder resolution in translation"},
                &H::position_step_mm),
-      field<H>({"device.rotation_step", "rad", kNotNegative, "Step of the encoder, rotation"},
+      field<H>({"device.rotation_step", "rad", kNotNegative, "Encoder resolution in rotation"},
                &H::rotation_step_rad),
       field<H>({"device.force_delay", "s", kPositive, "Delay from sending a wrench to its effect", 0,
                 "device-delay"},
@@ -127,14 +128,15 @@ std::vector<Field<HandleSettings>> handle_fields() {
 std::vector<Field<ScriptSettings>> script_fields() {
   using S = ScriptSettings;
   return {
-      {{"", "s", kPositive, "Length of each phase (in compare approximate; docs/algorithms.md)", 0,
+      {{"", "s", kPositive,
+        "Duration of each phase, milling and holding (approximate in compare; docs/algorithms.md)", 0,
         "seconds"},
        [](const S& s) { return s.milling_s; },
        [](S& s, double value) { s.milling_s = s.holding_s = value; }},
-      field<S>({"script.milling", "s", kNotNegative, "Length of the milling"}, &S::milling_s),
+      field<S>({"script.milling", "s", kNotNegative, "Duration of the milling"}, &S::milling_s),
       field<S>({"script.until-leant", "", NumberRange::on_or_off(), "Mill until the shaft has leant on bone"},
                &S::until_leant),
-      field<S>({"script.holding", "s", kNotNegative, "Length of the holding"}, &S::holding_s),
+      field<S>({"script.holding", "s", kNotNegative, "Duration of the holding"}, &S::holding_s),
       field<S>({"script.settle", "s", kNotNegative,
                 "Time for the hand to settle before the holding is measured", kMayBeAbsent},
                &S::settle_s),

@@ -29,7 +29,7 @@ inline FieldDescription coupling_stiffness(const NumberRange& range) {
   return {.name = "translational-stiffness",
           .unit = "N/mm",
           .range = range,
-          .doc = "Stiffness of the spring between the device and the simulated tool, against translation",
+          .doc = "Translational stiffness of the virtual coupling between the device and the simulated tool",
           .option = "stiffness"};
 }
 
@@ -38,7 +38,7 @@ inline FieldDescription coupling_torsion(const NumberRange& range) {
   return {.name = "torsional-stiffness",
           .unit = "N mm/rad",
           .range = range,
-          .doc = "Stiffness of the spring between the device and the simulated tool, against rotation",
+          .doc = "Torsional stiffness of the virtual coupling between the device and the simulated tool",
           .option = "torsional-stiffness"};
 }
 

@@ -34,12 +34,13 @@ const Fields& fields() {
 }  // namespace
 
 AlgorithmDescription description() {
-  return with_settings<LineProxy, Settings>({.id = {"line-proxy", "1 line-proxy", "#c8102e"},
-                                             .summary = "The tool as a line of vertices; a proxy of tip and "
-                                                        "shaft stays on the surface, springs pull to it",
-                                             .resolution_setting = "vertices",
-                                             .resolution_name = "vertices"},
-                                            fields());
+  return with_settings<LineProxy, Settings>(
+      {.id = {"line-proxy", "1 line-proxy", "#c8102e"},
+       .summary = "The tool as a line of vertices; a proxy of tip and shaft stays on the surface, and "
+                  "springs pull the tool to it",
+       .resolution_setting = "vertices",
+       .resolution_name = "vertices"},
+      fields());
 }
 
 }  // namespace osteomill::line_proxy

@@ -30,8 +30,8 @@ const Fields& fields() {
                       &Settings::slices),
       field<Settings>({.name = "sphere-vertices",
                        .range = NumberRange::count(4, 500),
-                       .doc = "Number of vertices on the burr's sphere: 24 form a snub cube, another number "
-                              "spreads like equal charges"},
+                       .doc = "Number of vertices on the burr's sphere: 24 form a snub cube, other numbers "
+                              "are spread like equal charges"},
                       &Settings::sphere_vertices),
       field<Settings>({.name = "circle-vertices",
                        .range = NumberRange::count(3, 100),
@@ -46,8 +46,8 @@ const Fields& fields() {
 AlgorithmDescription description() {
   return with_settings<SurfacePoints, Settings>(
       {.id = {"surface-points", "2 surface-points", "#3fae49"},
-       .summary =
-           "Vertices on the tool's surface, each a spring towards its centre, sent straight to the hand",
+       .summary = "Vertices on the tool's surface; each in bone is a spring back to the surface, and their "
+                  "sum goes directly to the hand",
        .resolution_setting = "slices",
        .resolution_name = "slices"},
       fields());
