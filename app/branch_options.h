@@ -15,7 +15,7 @@
 
 namespace osteomill::app {
 
-/// The tick of a recording from which a command goes on.
+/// The recording and the time in it at which a command continues.
 struct BranchOptions {
   std::string recording;
   double at_s = 0;
@@ -25,11 +25,11 @@ struct BranchOptions {
 /// Adds --from and --at, each of which needs the other.
 void add_branch_options(CLI::App& command, BranchOptions& options);
 
-/// Throws CLI::ValidationError if an option was given whose value a recording has: its scan's, its tool's,
-/// its algorithm's.
+/// Throws CLI::ValidationError if an option of the scan, the tool or the algorithm was given, because the
+/// recording defines these.
 void refuse_recorded_options(const CLI::App& command);
 
-/// A recording with its scan, as it was read for it, and its exercise, if it is of one.
+/// A recording with its scan, read as for the recording, and its exercise if it has one.
 struct RecordedWork {
   Recording recording;
   LoadedBone bone;
@@ -37,12 +37,12 @@ struct RecordedWork {
   std::optional<PlacedExercise> placed;
   std::optional<RecordedExercise> exercise;
 };
-/// Reads them. The scan and the exercise that are named in `scan` and `exercise` go before the recorded ones.
-/// Throws InputError that names the recording if it is of another scan or exercise than are there.
+/// Reads a recording with its scan and exercise. Those named in `scan` and `exercise` take precedence over
+/// the recorded ones. Throws InputError naming the recording if it was made with another scan or exercise.
 RecordedWork read_recorded_work(const std::string& recording, const ScanOptions& scan,
                                 const ExerciseOptions& exercise);
 
-/// A recording that was resumed, for a command that goes on from it.
+/// A resumed recording that a command continues.
 struct Branch {
   RecordedWork work;
   ResumedRecording resumed;

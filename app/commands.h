@@ -9,14 +9,14 @@ namespace osteomill::app {
 
 class WindowDriver;
 
-/// Makes the command line: the program with every command. `command_line` is how the program was called, for
-/// recordings to say. `driver`, if there is one, works the window of `simulate`.
+/// Makes the command line: the program with every command. `command_line`, the program's call, is stored in
+/// recordings. `driver`, if not null, operates the window of `simulate`.
 std::unique_ptr<CLI::App> make_program(const std::string& command_line, WindowDriver* driver = nullptr);
 
-/// Runs the program and returns its exit code. `driver`, if there is one, works the window of `simulate`.
+/// Runs the program and returns its exit code. `driver`, if not null, operates the window of `simulate`.
 int run_osteomill(int argc, char** argv, WindowDriver* driver = nullptr);
 
-/// Each adds a command to the program, which runs when the command line has been parsed.
+/// Each function adds a command to the program; the command runs once the command line is parsed.
 void add_compare_command(CLI::App& program, const std::string& command_line);
 void add_debrief_command(CLI::App& program);
 void add_devices_command(CLI::App& program);

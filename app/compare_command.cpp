@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The exact test of 200 pairs takes a hundredth of a second, and more trials would take too long.
+// The exact test of 200 pairs takes 10 ms; the trials would take too long.
 constexpr int kMaxSeeds = 200;
 
 struct CompareOptions {
@@ -51,12 +51,12 @@ struct CompareOptions {
   int threads = static_cast<int>(allowed_threads());
   bool no_stability = false;
   bool match_stiffness = false;
-  /// Stiffness that is to be felt on a flat wall with every algorithm, N/mm; 0 for that of the softest.
+  /// Felt stiffness to match on a flat wall, N/mm; 0 for that of the softest algorithm.
   double matched_N_per_mm = 0;
   std::string out = "osteomill-comparison";
 };
 
-// Returns a trial of every algorithm with the first seed.
+// Returns one trial per algorithm, with the first seed.
 std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone& bone,
                                  const std::string& command_line) {
   TrialPlan plan = trial_plan(bone, options.trial, command_line);
@@ -72,19 +72,19 @@ std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone
   return trials;
 }
 
-// Those that carry no 0.5 N do not count.
+// Ignores algorithms that cannot carry 0.5 N.
 double softest_felt_N_per_mm(const std::vector<TrialPlan>& trials, const Volume& wall) {
   double softest = std::numeric_limits<double>::infinity();
   for (const TrialPlan& trial : trials) {
     const double felt = felt_stiffness_N_per_mm(trial.settings, wall);
     if (felt > 0) softest = std::min(softest, felt);
   }
-  if (std::isinf(softest)) throw std::invalid_argument("no algorithm carries 0.5 N on a flat wall");
+  if (std::isinf(softest)) throw std::invalid_argument("no algorithm can carry 0.5 N on a flat wall");
   return softest;
 }
 
-// Leaves out the algorithms that cannot be matched: beside those that are, they would be compared by their
-// stiffness. Throws std::invalid_argument if none is left, or one of several.
+// Removes the algorithms that cannot be matched, because a comparison with them would only show their
+// stiffness. Throws std::invalid_argument if none is left, or only one of several.
 void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& trials) {
   const Volume wall = flat_wall(trials.front().settings.tool);
   const double felt_N_per_mm =
@@ -107,13 +107,13 @@ void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& tria
   trials = std::move(matched);
 }
 
-// Adds trials of other grips: with the paper's algorithm 2 every hand tries them too.
+// Adds trials of other grips, which every hand also tries with the paper's algorithm 2.
 void add_other_grips(std::vector<TrialPlan>& others, const TrialPlan& trial) {
   if (trial.settings.algorithm.id != kPapersAlgorithms[1]) return;
   for (const TrialPlan& grip : trials_in_other_grips(trial)) others.push_back(grip);
 }
 
-// The trials beside those that are recorded.
+// Returns the trials that are not recorded.
 std::vector<TrialPlan> other_hands(const CompareOptions& options, const std::vector<TrialPlan>& trials) {
   std::vector<TrialPlan> others;
   for (const TrialPlan& trial : trials) {
@@ -130,7 +130,7 @@ std::vector<TrialPlan> other_hands(const CompareOptions& options, const std::vec
   return others;
 }
 
-// Events whose progress is that of a part of the whole, between two shares.
+// Returns events that map progress 0..1 to the range from `from` to `to`.
 RunEvents events_of_a_part(double from, double to) {
   RunEvents events = events_on_terminal();
   events.progress = [=](std::string_view what, double fraction) {
@@ -139,7 +139,7 @@ RunEvents events_of_a_part(double from, double to) {
   return events;
 }
 
-// In the hands of `seeds`, the first of which is the comparison's own.
+// Runs the test for every seed; the first hand is the comparison's own.
 std::vector<MeasuredRun> hold_in_one_hole(const CompareOptions& options, const std::vector<TrialPlan>& trials,
                                           const RunEvents& events) {
   const auto own = std::ranges::find(trials, default_algorithm().id,
@@ -187,14 +187,14 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
                                events_on_terminal(), !options.scan.scan.empty());
   std::vector<fs::path> paths;
   ReportExtras extras;
-  // The walls take about as long as the first hand's trials.
+  // For progress: the walls take about as long as the first hand's trials.
   const std::vector<TrialPlan> others = other_hands(options, trials);
   const double threads = options.threads;
   const double recorded = static_cast<double>(trials.size()), walls = options.no_stability ? 0 : recorded;
   const double holes = trials.size() > 1 ? options.seeds : 0;
   const double whole = recorded + (static_cast<double>(others.size()) + holes + walls) / threads;
   const double until_walls = 1 - walls / threads / whole, until_holes = until_walls - holes / threads / whole;
-  // An earlier comparison's files there go when this one is done, and not before.
+  // Files of an earlier comparison are removed only when this one is complete.
   write_folder_atomically(
       options.out,
       [&](const fs::path& beside) {
@@ -227,7 +227,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   fmt::print("{}\n", page.string());
 }
 
-// A study draws its hands, so one hand cannot be asked for as well.
+// Several seeds draw their hands at random, so the hand's settings cannot be given as well.
 void refuse_a_hand(const CLI::App& command) {
   for (const char* option :
        {"--hand-stiffness", "--hand-damping", "--hand-torsional-stiffness", "--hand-torsional-damping"}) {

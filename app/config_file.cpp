@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kConfigOption = "--config";
 constexpr const char* kSetOption = "--set";
 
-// Returns the keys of the file: the options without their dashes, and tables named after algorithms.
+// Returns the keys that a file may have: options without their dashes, and tables named after algorithms.
 std::vector<std::string> keys_of(const CLI::App& command) {
   std::vector<std::string> keys;
   for (const std::string& name : option_names(command)) {
@@ -34,7 +34,7 @@ void set_option(CLI::App& command, const std::string& name, const std::vector<st
   CLI::Option& option = *command.get_option(name);
   option.clear();
   for (const std::string& text : texts) {
-    // For "--no-something", true means false.
+    // "--no-something" inverts true and false.
     const bool turns_off = is_switch(option) && (text == "true" || text == "false");
     option.add_result(turns_off ? option.get_flag_value(name.substr(2), text) : text);
   }
@@ -59,7 +59,7 @@ void apply_config_file(CLI::App& command) {
   if (config->count() == 0) return;
   const auto file = config->as<std::string>();
   const std::vector<std::string> said_before = command.get_option(kSetOption)->results();
-  // A burr's name sets sizes that have options of their own, so what the command line gave is set once more.
+  // A burr's name in the file also sets sizes, so the options of the command line are applied once more.
   const std::vector<CLI::Option*> given = given_tool_options(command);
   std::vector<std::string> own;
   const toml::table table = read_toml(file);
@@ -85,7 +85,7 @@ void apply_config_file(CLI::App& command) {
   }
   for (CLI::Option* option : given) option->run_callback();
   if (own.empty()) return;
-  // The command line's come last and so win.
+  // Settings of the command line come last and take precedence.
   own.insert(own.end(), said_before.begin(), said_before.end());
   set_option(command, kSetOption, own);
 }

@@ -11,16 +11,16 @@ namespace osteomill::app {
 /// dashes. The command line wins over the file.
 void add_config_option(CLI::App& command);
 
-/// Gives the options that the command line left out what the file says. Call it after parsing, before the
-/// command. Throws InputError naming the file, and the line if there is one, for a file that is not there,
-/// is not TOML, or has a key or value that the command does not know.
+/// Sets the options missing on the command line from the file. Call it after parsing, before the command
+/// runs. Throws InputError naming the file, and the line if there is one, if the file is missing or not TOML,
+/// or has a key or value that the command does not accept.
 void apply_config_file(CLI::App& command);
 
-/// Returns the options about the tool and its cutting that were given.
+/// Returns the given options of the groups Tool and Cutting.
 std::vector<CLI::Option*> given_tool_options(CLI::App& command);
 
-/// Replaces the values that an option was given before; `name` is with its dashes, or a positional's. Throws
-/// CLI::Error if it does not take these.
+/// Replaces an option's values. `name` includes the dashes, or is the name of a positional. Throws CLI::Error
+/// if the option does not accept the values.
 void set_option(CLI::App& command, const std::string& name, const std::vector<std::string>& texts);
 
 }  // namespace osteomill::app

@@ -36,7 +36,7 @@ struct DebriefOptions {
   bool anonymous = false;
 };
 
-// Returns the exercise's file: the one that is named, else the recording's.
+// Returns the exercise's file: the one of --exercise, otherwise the recording's.
 std::string exercise_of(const DebriefOptions& options, const Recording& recording) {
   const auto recorded = recorded_exercise(recording.description);
   if (!recorded && options.exercise.empty())
@@ -52,7 +52,7 @@ void warn_of_changes(const std::string& file, const Recording& recording) {
   }
 }
 
-// Returns the recordings that are named, and those that lie in the folders that are named.
+// Returns the named recordings and those in the named folders.
 std::vector<fs::path> recordings_in(const std::vector<std::string>& named) {
   std::vector<fs::path> paths;
   for (const fs::path path : named) {
@@ -62,7 +62,7 @@ std::vector<fs::path> recordings_in(const std::vector<std::string>& named) {
     }
     const std::size_t before = paths.size();
     for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
-      // Others are being written, or were when their program ended.
+      // Skips unfinished files, which are being written or left by a program that ended.
       const std::string name = entry.path().filename().string();
       if (name.ends_with(".h5") && !name.ends_with(".part.h5") && !name.starts_with("."))
         paths.push_back(entry.path());
@@ -70,7 +70,7 @@ std::vector<fs::path> recordings_in(const std::vector<std::string>& named) {
     if (paths.size() == before) throw InputError(path.string(), "holds no recordings (.h5)");
     std::sort(paths.begin() + static_cast<std::ptrdiff_t>(before), paths.end());
   }
-  // Each once, however it is named.
+  // Removes duplicates.
   std::set<fs::path> seen;
   std::erase_if(paths, [&](const fs::path& path) { return !seen.insert(fs::weakly_canonical(path)).second; });
   return paths;
@@ -89,7 +89,7 @@ void leave_names_out(DebriefedAttempt& attempt, const std::string& name) {
   attempt.trainee = name;
 }
 
-// The page of one attempt, beside those of the same person before it.
+// Writes the page of one attempt, compared with the earlier ones of the same person.
 void write_attempt(const DebriefOptions& options, const LoadedExercise& loaded, const Recording& recording,
                    std::vector<DebriefedAttempt> before) {
   const Attempt attempt = make_attempt(loaded.placed, loaded.bone.volume, recording);
@@ -104,9 +104,9 @@ void write_attempt(const DebriefOptions& options, const LoadedExercise& loaded, 
   write_debriefing(options.out, attempt, recording, own, peers);
   fmt::print("{}\n", loaded.placed.exercise.title);
   if (const auto from = branch_point(recording.description))
-    fmt::print("goes on from {} at {:.3f} s, after {} ticks\n",
+    fmt::print("continues {} at {:.3f} s, after {} ticks\n",
                options.anonymous ? "another recording" : from->recording, from->time_s, from->ticks);
-  if (!peers.no_first.empty()) warn("without the recording that it goes on from: " + peers.no_first);
+  if (!peers.no_first.empty()) warn("without the recording that it continues: " + peers.no_first);
   for (const MeasuredValue& row : own.rows)
     if (!row.limit.empty()) fmt::print("{}\n", row_text(row));
 }
@@ -118,7 +118,7 @@ void debrief_one(const DebriefOptions& options) {
   write_attempt(options, load_exercise(file, {}, &recording), recording, {});
 }
 
-// The exercises of recordings, each loaded when one of it is read first. Safe in several threads.
+// Cache of the recordings' exercises. Thread-safe.
 class Exercises {
  public:
   std::shared_ptr<const LoadedExercise> of(const DebriefOptions& options, const Recording& recording) {
@@ -138,12 +138,12 @@ class Exercises {
   std::map<std::string, std::shared_ptr<const LoadedExercise>> loaded_;
 };
 
-// An attempt, or why there is none.
+// An attempt, or the reason why it could not be read.
 struct ReadAttempt {
   std::shared_ptr<const LoadedExercise> exercise;
   DebriefedAttempt attempt;
   std::string fault;
-  /// The recording that this one goes on from, which is no attempt of its own then.
+  /// The recording that this one continues, which then is not an attempt of its own.
   fs::path continues;
 };
 
@@ -171,7 +171,7 @@ std::vector<ReadAttempt> read_attempts(const DebriefOptions& options, const std:
   return read;
 }
 
-// Returns the exercise of most attempts; null if there are none.
+// Returns the most frequent exercise; null if there are no attempts.
 std::shared_ptr<const LoadedExercise> common_exercise(const std::vector<ReadAttempt>& read) {
   std::shared_ptr<const LoadedExercise> common;
   std::ptrdiff_t most = 0;
@@ -182,7 +182,7 @@ std::shared_ptr<const LoadedExercise> common_exercise(const std::vector<ReadAtte
   return common;
 }
 
-// The attempts of one exercise, by time, and why other recordings are none.
+// The attempts of one exercise, by time, and the faults of the other recordings.
 struct Attempts {
   std::shared_ptr<const LoadedExercise> exercise;
   std::vector<DebriefedAttempt> attempts;
@@ -196,7 +196,7 @@ Attempts attempts_of(std::vector<ReadAttempt> read, const std::vector<fs::path>&
     if (!read[n].exercise) {
       all.faults.push_back(std::move(read[n].fault));
     } else if (read[n].exercise != all.exercise) {
-      all.faults.push_back(fmt::format("{}: is of another exercise ({})", paths[n].string(),
+      all.faults.push_back(fmt::format("{}: belongs to another exercise ({})", paths[n].string(),
                                        read[n].exercise->placed.exercise.title));
     } else if (!continued.contains(fs::weakly_canonical(paths[n]))) {
       all.attempts.push_back(std::move(read[n].attempt));
@@ -206,7 +206,7 @@ Attempts attempts_of(std::vector<ReadAttempt> read, const std::vector<fs::path>&
   return all;
 }
 
-// Numbers the names in the order of the attempts' times.
+// Replaces names by numbers in the order of the attempts.
 void number_names(std::vector<DebriefedAttempt>& attempts) {
   std::map<std::string, std::string> names;
   for (DebriefedAttempt& attempt : attempts) {

@@ -13,13 +13,13 @@
 
 namespace osteomill::app {
 
-/// Hands that need no haptic hardware.
+/// Devices that need no haptic hardware.
 inline constexpr const char* kMouse = "mouse";
 inline constexpr const char* kSpaceMouse = "spacemouse";
 inline constexpr const char* kSimulated = "simulated";
 inline constexpr const char* kNoSpaceMouse = "the daemon spacenavd does not answer";
 
-/// The device that holds the tool, and the settings of its workspace that replace those kept for it.
+/// The device that holds the tool, and workspace settings that replace those stored for it.
 struct DeviceOption {
   /// NAME or NAME:ADDRESS.
   std::string device;
@@ -31,10 +31,10 @@ struct DeviceOption {
   bool is_device(const char* name) const { return device == name; }
 };
 
-/// Adds --device, whose default is `option.device`, and the options of its workspace.
+/// Adds --device, with the default `option.device`, and the options of the workspace.
 void add_device_option(CLI::App& command, DeviceOption& option);
 
-/// The program to which the bone and the tool are sent while it is milled (BoneSender).
+/// The receiver of the bone and the tool during milling (BoneSender).
 struct SendOption {
   /// HOST:PORT; empty to send nothing.
   std::string address;
@@ -44,15 +44,15 @@ struct SendOption {
 /// Adds --send-bone and --send-rate.
 void add_send_options(CLI::App& command, SendOption& option);
 
-/// Makes the sender; null if nothing is to be sent. Throws as BoneSender does.
+/// Makes the sender; null if the address is empty. Throws as BoneSender does.
 std::unique_ptr<BoneSender> send_bone(const BoneFollower& bone, const SendOption& option);
 
-/// Opens the haptic hardware that was asked for and names it on standard error; null for a hand without
-/// hardware. Its workspace is the one kept under the device's name, changed by what the option gives, and
-/// that is then kept. Throws InputError if the device, or the daemon that a SpaceMouse needs, is not there.
+/// Opens the requested haptic hardware and prints its name on standard error; null for a device without
+/// hardware. Its workspace is the one stored under the device's name, changed by the given options and stored
+/// again. Throws InputError if the device, or the daemon that a SpaceMouse needs, is missing.
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option);
 
-/// Writes into a recording's description which hand and device held the tool.
+/// Writes the device that held the tool, or `hand` if `device` is null, into a recording's description.
 void describe_device(RunDescription& run, const std::string& hand, const ConnectedDevice* device);
 
 }  // namespace osteomill::app

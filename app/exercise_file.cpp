@@ -191,7 +191,7 @@ class ExerciseReader {
     if (const toml::node* node = table.get("recordings")) {
       region.shapes.push_back(recorded(table, *node));
     } else if (const toml::node* alone = table.get("at_least")) {
-      refuse(*alone, "at_least is of recordings, of which there are none");
+      refuse(*alone, "at_least needs recordings");
     }
     return region;
   }
@@ -223,7 +223,7 @@ class ExerciseReader {
     structure.region = region(table);
     if (structure.region.shapes.empty()) structure.region.shapes.push_back(LabelShape{structure.name});
     structure.warn_mm = number(table, "warn_mm", NumberRange::not_negative()).value_or(structure.warn_mm);
-    // Distances from voxels are known to 12 mm, which leaves room for the widest burr.
+    // Distances are known up to 12 mm from a structure, which leaves room for the widest burr.
     constexpr NumberRange kGuard{.min = 0, .max = 5};
     structure.guard_mm = number(table, "guard_mm", kGuard);
     return structure;
@@ -266,14 +266,14 @@ class ExerciseReader {
     return step;
   }
 
-  // Returns the structure or step of an item; empty if it names none.
+  // Returns the structure or step that an item names; empty if none.
   std::string part_of(const toml::table& table, const Measure& measure, const Exercise& exercise) const {
     const Keys parts = parts_of(measure, exercise);
     for (const auto& [key, each] :
          {std::pair("structure", Measure::Each::structure), std::pair("step", Measure::Each::step)}) {
       const toml::node* node = table.get(key);
       if (node == nullptr) continue;
-      if (measure.each != each) refuse(*node, fmt::format("{} is not of a {}", measure.name, key));
+      if (measure.each != each) refuse(*node, fmt::format("{} does not take a {}", measure.name, key));
       std::string part = each == Measure::Each::step
                              ? fmt::format("{:g}", number_in(*node, key, NumberRange::count(1)))
                              : text(table, key);

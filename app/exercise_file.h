@@ -7,8 +7,8 @@
 namespace osteomill::app {
 
 /// Reads an exercise (docs/exercises.md). Throws InputError, naming the file and the line, for an unknown
-/// key, a value of another kind or out of range, or a missing one. Shapes and labels are held against the
-/// scan later (place_exercise).
+/// key, a missing value, or one of the wrong type or out of range. place_exercise later checks shapes and
+/// labels against the scan.
 Exercise read_exercise_file(const std::string& file);
 
 }  // namespace osteomill::app

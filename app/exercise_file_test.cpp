@@ -50,7 +50,7 @@ class ExerciseFile : public ::testing::Test {
     std::ofstream(file()) << text;
     return read_exercise_file(file());
   }
-  /// The fault of the whole file in which `line` stands in the place of `replaced`; without the path.
+  /// Returns the fault, without the path, of kWhole with `replaced` replaced by `line`.
   std::string fault(const std::string& replaced, const std::string& line) {
     std::string text = kWhole;
     text.replace(text.find(replaced), replaced.size(), line);
@@ -122,8 +122,7 @@ TEST_F(ExerciseFile, NamesTheLineAndTheNearestKeyOfAFault) {
   EXPECT_EQ(fault("structure = \"nerve\"", "structure = \"nerv\""),
             "line 29: there is no no_go nerv; did you mean nerve?");
   EXPECT_EQ(fault("title = \"Access cavity\"", ""), "line 1: an exercise needs title");
-  EXPECT_EQ(fault("cylinder =", "at_least = 1 #"),
-            "line 9: at_least is of recordings, of which there are none");
+  EXPECT_EQ(fault("cylinder =", "at_least = 1 #"), "line 9: at_least needs recordings");
   EXPECT_EQ(fault("cylinder =", "#"),
             "line 8: target needs a label, box, sphere, cylinder, outside_cone, shell or recordings");
   EXPECT_EQ(fault("[target]", "[targets]"), "line 8: an exercise has no targets; did you mean target?");

@@ -14,11 +14,11 @@
 
 namespace osteomill::app {
 
-/// The options of a command that can be worked as an exercise.
+/// The exercise options of a command.
 struct ExerciseOptions {
   std::string file;
   std::string trainee;
-  /// Whether steps, colours and distances are shown, which only the window does.
+  /// Whether the window shows steps, colours and distances.
   bool has_guidance = false;
 
   bool given() const { return !file.empty(); }
@@ -26,45 +26,45 @@ struct ExerciseOptions {
 
 /// Adds --exercise and --trainee.
 void add_exercise_options(CLI::App& command, ExerciseOptions& options);
-/// Adds --no-guidance to a command that shows guidance otherwise.
+/// Adds --no-guidance and turns guidance on by default.
 void add_guidance_option(CLI::App& command, ExerciseOptions& options);
 
-/// An exercise on its scan.
+/// An exercise with its scan.
 struct LoadedExercise {
   LoadedBone bone;
   PlacedExercise placed;
 };
-/// Reads an exercise and its scan, prints the scan's warnings to standard error, and places the exercise. If
-/// structures of the label map must not be touched, the bone's labels say so. Throws InputError, naming the
-/// file and the line, if the exercise is at fault; and as `scan_of` and `load_bone`. If there is a recording,
-/// the scan is read as it was for it, and InputError names the recording if it is of another scan.
+/// Reads an exercise and its scan, prints the scan's warnings to standard error, and places the exercise.
+/// Marks no-go structures of the label map in the bone's labels. With a recording, reads the scan as for the
+/// recording. Throws InputError naming the file and the line if the exercise is invalid, or the recording if
+/// it was made with another scan; also throws as `scan_of` and `load_bone` do.
 LoadedExercise load_exercise(const std::string& file, const ScanOptions& options,
                              const Recording* recording = nullptr);
 
-/// The bone of a command that works on an exercise or on a scan.
+/// The bone to mill, from an exercise or a scan.
 struct BoneToMill {
   LoadedBone bone;
-  /// How the bone was read.
+  /// The options with which the bone was read.
   ScanOptions scan;
-  /// Both are nothing without an exercise: the text that recordings have of it, and where it is entered.
+  /// The exercise's entry for recordings, and its entry point; both empty without an exercise.
   std::optional<RecordedExercise> exercise;
   std::optional<Vec3> entry_W_mm;
 };
-/// Loads the exercise's bone if one is given, else the scan's. Throws as `load_exercise`,
-/// `require_allowed_burr` and `load_bone`.
+/// Loads the bone of the exercise if one is given, otherwise of the scan. Throws as `load_exercise`,
+/// `require_allowed_burr` and `load_bone` do.
 BoneToMill load_bone_to_mill(const ExerciseOptions& exercise, const ScanOptions& options,
                              const MillingSetup& setup);
 
-/// Returns `options` with the exercise's scan, isovalue and labels in the place of the user's own. Throws
-/// CLI::ValidationError if the user has named any of these.
+/// Returns `options` with the exercise's scan, isovalue and labels. Throws CLI::ValidationError if the user
+/// has given any of these.
 ScanOptions scan_of(const Exercise& exercise, const ScanOptions& options);
 
 /// Throws InputError, naming the exercise, if its burrs do not include the setup's.
 void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup);
-/// Puts that burr of the exercise into the setup which is nearest to its own, unless it has one of them.
+/// Replaces the setup's burr by the exercise's burr of the nearest radius, unless the exercise allows it.
 void take_allowed_burr(const Exercise& exercise, MillingSetup& setup);
 
-/// Returns what a recording says of the exercise.
+/// Returns the exercise's entry for a recording.
 RecordedExercise to_be_recorded(const Exercise& exercise, const ExerciseOptions& options);
 
 }  // namespace osteomill::app

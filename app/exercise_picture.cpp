@@ -12,8 +12,7 @@ namespace osteomill::app {
 
 namespace {
 
-// Returns the bone without the half in front of a plane, but with all of the structures, dense enough to be
-// drawn.
+// Returns the bone without the half in front of a plane. Keeps all structures, at a density that is drawn.
 Volume cut_open(const PlacedExercise& placed, const Volume& scan, const BoneDensities& densities,
                 const ClipPlane& front) {
   const GridGeometry& grid = scan.geometry();

@@ -65,7 +65,7 @@ void print_timing(const TimingSummary& timing) {
   print_times("whole tick", timing.tick);
 }
 
-// Collects the figures of the ticks that are printed at the end.
+// Totals over all ticks, printed at the end.
 struct LiveFigures {
   LabelCount labels;
   FaultCount faults = {};
@@ -83,7 +83,7 @@ void end_recording(LiveMilling& milling, LiveFigures& figures) {
   }
 }
 
-// Who holds the tool: hardware, a SpaceMouse or the simulated operator.
+// The source of the tool's motion: hardware, a SpaceMouse or the simulated operator.
 class LiveToolSource {
  public:
   explicit LiveToolSource(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
@@ -92,7 +92,7 @@ class LiveToolSource {
   }
 
   const ConnectedDevice* hardware() const { return hardware_.get(); }
-  // Puts the tool before the entry, and the hardware's limits into the setup.
+  // Places the tool in front of the entry, and applies the hardware's limits to the setup.
   Device& take_tool(const TrialOptions& trial, MillingSetup& setup, const MillingEntry& entry) {
     const Pose X_WT = pose_above(entry, setup.tool, kStartHeight_mm);
     if (hardware_) {
@@ -113,7 +113,7 @@ class LiveToolSource {
     virtual_->pull_to(X_W_target_);
   }
 
-  // Warns if its maker's software does not end.
+  // Warns if the maker's software does not stop.
   void close() {
     if (!hardware_) return;
     if (const std::string message = hardware_->close(); !message.empty())
@@ -133,8 +133,7 @@ class LiveToolSource {
  private:
   static constexpr double kStartHeight_mm = 1;
 
-  // Warns once when a fault has lasted for a while, and says once when it is over; shorter ones are only
-  // counted.
+  // Warns once when a fault persists, and once when it is over; shorter faults are only counted.
   void warn_of(const DeviceReport& report) {
     constexpr double kLasting_s = 0.1;
     const bool well = report.state == DeviceReport::State::ok;
@@ -183,7 +182,8 @@ LiveFigures run_for(LiveMilling& milling, double seconds, const std::shared_ptr<
   return figures;
 }
 
-// Resumes the recording that was named, if one was. The setup is then as recorded, except for the guard.
+// Resumes the recording of --from, if given, and replaces the setup by the recorded one, except for the
+// guard.
 std::optional<Branch> take_branch(LiveOptions& options) {
   if (!options.from.given()) return std::nullopt;
   const WorkProgress progress([](double share) { show_progress("resume", share); });

@@ -30,7 +30,7 @@ Limit limit_now() {
   return limit;
 }
 
-// The sum of the numbers that follow these words in a file of /proc, where they are in kB.
+// Returns the sum of the numbers after these words in a file of /proc, which are in kB.
 std::uint64_t bytes_in(const char* path, std::initializer_list<std::string_view> words) {
   std::ifstream file(path);
   std::uint64_t bytes = 0;
@@ -41,7 +41,7 @@ std::uint64_t bytes_in(const char* path, std::initializer_list<std::string_view>
   return bytes;
 }
 
-// A page that two copies of the bone share counts once; the program's own files do not.
+// Counts a page shared by two copies of the bone once, and excludes the program's own files.
 std::uint64_t memory_taken() {
   return bytes_in("/proc/self/smaps_rollup", {"Pss_Anon:", "Pss_Shmem:"});
 }
@@ -64,19 +64,20 @@ void check_memory_taken() {
   const Limit allowed = limit_now();
   if (allowed.scan.empty()) return;
   next = std::chrono::steady_clock::now() + kEvery;
-  // Each page whole is never less, and is counted already; the pages' shares are counted one by one.
+  // The resident size is an upper bound that the kernel keeps up to date; proportional shares cost a walk
+  // over all pages.
   if (bytes_in("/proc/self/status", {"RssAnon:", "RssShmem:"}) <= allowed.taken_before + allowed.bytes)
     return;
   const std::uint64_t taken = memory_taken();
   if (taken <= allowed.taken_before + allowed.bytes) return;
   throw InputError(
       allowed.scan,
-      fmt::format("takes {:.3g} GB with what is made of it so far, over the {:.3g} GB that it may take",
+      fmt::format("takes {:.3g} GB so far, with the data derived from it, and the limit is {:.3g} GB",
                   gigabytes(taken - allowed.taken_before), gigabytes(allowed.bytes)));
 }
 
 std::string out_of_memory_text() {
-  const std::string reason = fmt::format("not enough memory: {:.3g} GB were taken when more was asked for",
+  const std::string reason = fmt::format("not enough memory: the program used {:.3g} GB when it needed more",
                                          gigabytes(bytes_in("/proc/self/status", {"VmHWM:"})));
   const std::string scan = limit_now().scan;
   return scan.empty() ? reason : scan + ": " + reason;

@@ -5,15 +5,15 @@
 
 namespace osteomill::app {
 
-/// Allows the scan of this name, with all that is made of it, this many bytes of memory more than the program
-/// takes now. From any thread, as all functions here.
+/// Limits the memory of the named scan and all data derived from it to `bytes` more than the program uses
+/// now. All functions here are safe in any thread.
 void limit_memory(const std::string& scan, std::uint64_t bytes);
 
-/// Throws InputError, naming scan and amounts, if more is taken. Cheap, so that a listener of WorkProgress
-/// can call it often.
+/// Throws InputError, naming the scan and the amounts, if the limit is exceeded. Cheap enough for frequent
+/// calls from a WorkProgress listener.
 void check_memory_taken();
 
-/// Returns the line to print if memory ran out before the limit was reached.
+/// Returns the message for an allocation that failed below the limit.
 std::string out_of_memory_text();
 
 }  // namespace osteomill::app

@@ -22,7 +22,7 @@ namespace osteomill::app {
 
 namespace {
 
-// `take` gets one of the names, which are all that may be given; if none is, the option shows `usual`.
+// Adds an option that accepts one of `names` and passes it to `take`; help shows `usual` as the default.
 void add_choice(CLI::App& command, const std::string& kind, const std::vector<std::string>& names,
                 std::string_view usual, const std::string& type, const std::string& what,
                 const std::function<void(const std::string&)>& take) {
@@ -98,7 +98,7 @@ std::vector<std::string> shared_options() {
 
 namespace {
 
-// "1 line-proxy: k of (6) and (10) (N/mm); 3 point-shell: ..."
+// Returns "line-proxy: Stiffness of ... (N/mm); point-shell: ...".
 std::string meaning_of_option(const std::string& option) {
   std::string text;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
@@ -110,7 +110,7 @@ std::string meaning_of_option(const std::string& option) {
   return text;
 }
 
-// "point-shell.scale=2"
+// Parses "point-shell.scale=2".
 void set_named(HapticSettings& haptics, const std::string& text) {
   const std::size_t dot = text.find('.'), equals = text.find('=');
   if (dot == std::string::npos || equals == std::string::npos || equals < dot)
@@ -130,7 +130,7 @@ void add_named_settings(CLI::App& command, HapticSettings& haptics) {
       ->type_name("SETTING");
 }
 
-// Adds one option for all settings that name it, so that only the algorithms' descriptions define it.
+// Adds one option for all settings that name it; only the algorithms' descriptions define them.
 void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
   for (const std::string& option : shared_options()) {
     const auto has_it = [&](const AlgorithmDescription& one) {
@@ -177,7 +177,7 @@ void settle_law(const CLI::App& command, MillingSetup& setup) {
   for (const char* option : {"--removal-rate", "--cutting-energy"}) {
     if (command.count(option) == 0 || setup.law == CuttingLaw::constant_energy) continue;
     if (command.count("--law") > 0)
-      throw CLI::ValidationError(option, "is of --law constant-energy, not of chips");
+      throw CLI::ValidationError(option, "applies to --law constant-energy, not to chips");
     setup.law = CuttingLaw::constant_energy;
   }
 }

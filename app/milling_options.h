@@ -10,37 +10,36 @@
 
 namespace osteomill::app {
 
-/// The options that every command that mills has.
+/// The options of every milling command.
 struct MillingOptions {
   MillingSetup setup;
 };
 
-/// Copies from `given` into `setup` those of its fields whose options stand on the command line, and no
-/// others.
+/// Copies from `given` to `setup` only the fields whose options were given on the command line.
 void take_given_options(const CLI::App& command, const MillingSetup& given, MillingSetup& setup);
 
-/// Sets the algorithms' setting "ALGORITHM.SETTING" to what stands in `text`. Throws CLI::ValidationError,
-/// and sets nothing, if there is no such setting or it has another range.
+/// Sets the setting "ALGORITHM.SETTING" to the number in `text`. Throws CLI::ValidationError, and sets
+/// nothing, if the setting is unknown or the value out of range.
 void set_own(HapticSettings& haptics, const std::string& name, const std::string& text);
-/// Sets an option that algorithms share, "stiffness". Throws CLI::ValidationError if no algorithm takes that
-/// number; one that does not says so when it is made.
+/// Sets an option shared by algorithms, such as "stiffness". Throws CLI::ValidationError if the value is out
+/// of range for every algorithm; an algorithm with a narrower range throws when it is made.
 void set_shared(HapticSettings& haptics, const std::string& option, double value);
-/// Returns these options, without dashes.
+/// Returns the shared options, without dashes.
 std::vector<std::string> shared_options();
 
 /// Adds the tool, the algorithms' settings, milling, limits and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);
 
-/// Takes the law of constant energy if only its options were given. Throws CLI::ValidationError if one of
-/// them was given with --law chips. Call it when all options are read.
+/// Switches to the law of constant energy if one of its options was given without --law. Throws
+/// CLI::ValidationError if one was given with --law chips. Call it when all options are read.
 void settle_law(const CLI::App& command, MillingSetup& setup);
 
 /// Adds --rate, which sets the length of a tick.
 void add_rate_option(CLI::App& command, double& tick_s);
 
-/// Adds --algorithm for a command that works with one.
+/// Adds --algorithm for one algorithm.
 void add_algorithm_option(CLI::App& command, AlgorithmDescription& algorithm);
-/// Adds --algorithm, which may repeat; none given means all of `algorithms`.
+/// Adds --algorithm, which may repeat; the default is all of `algorithms`.
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms);
 
 }  // namespace osteomill::app

@@ -17,11 +17,11 @@
 namespace osteomill::app {
 namespace {
 
-// Anything but what the option is if nothing is said.
+// Returns arguments that set the option to another value than its default.
 std::vector<std::string> words_for(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (option.get_expected_max() == 0) return {name};
-  // The last of a choice's names.
+  // Takes the last name of a choice.
   if (const std::string type = option.get_type_name(); type.find('|') != type.npos)
     return {name, type.substr(type.rfind('|') + 1)};
   if (name == "--direction") return {name, "0.1,0,-1"};
@@ -37,7 +37,7 @@ void parse(CLI::App& command, std::vector<std::string> words) {
   command.parse(std::move(words));
 }
 
-// Returns the settings of the runs in recordings of all algorithms.
+// Returns the recorded settings of runs with all algorithms.
 std::vector<RunSetting> recorded(const std::vector<std::string>& words) {
   CLI::App command;
   TrialOptions options;

@@ -18,7 +18,7 @@ namespace osteomill::app {
 
 namespace {
 
-// Levenshtein 1966: how many letters have to be put in, taken away or changed to make one of the other.
+// Levenshtein 1966: number of letters to insert, delete or replace to turn one word into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -42,7 +42,7 @@ std::string without_leading_dashes(std::string_view word) {
   return bare;
 }
 
-// Returns how far two words differ. If one begins with the other, the rest of the longer one costs little.
+// Returns the edit distance of two words; 1 if one is a prefix of the other.
 std::size_t distance(const std::string& word, const std::string& known) {
   constexpr std::size_t kMaxDistance = 3;
   const std::size_t common = std::min(word.size(), known.size());
@@ -82,7 +82,7 @@ std::string see_help(const std::string& hint, const std::string& of) {
   return hint.empty() ? fmt::format("; {} --help lists them", of) : hint;
 }
 
-// "-0.5" is a number and "--" ends the options.
+// Excludes "-0.5", a number, and "--", which ends the options.
 bool is_option(std::string_view word) {
   if (word.size() < 2 || word[0] != '-') return false;
   return word[1] == '-' ? word.size() > 2 : std::isalpha(static_cast<unsigned char>(word[1])) != 0;
@@ -116,7 +116,7 @@ CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& n
   return with_choices(std::move(check), names);
 }
 
-// A check has a name, which nothing shows.
+// Stored in the check's name, which is not displayed.
 CLI::Validator with_choices(CLI::Validator check, const std::vector<std::string>& names) {
   check.name(fmt::format("{}", fmt::join(names, "|")));
   return check;
@@ -206,7 +206,7 @@ CLI::Validator number_of(const NumberRange& range) {
 
 namespace {
 
-// Returns the unit as one word of a help text: "mm³/(N.s)".
+// Returns the unit as one word for help: "mm³/(N.s)".
 std::string help_unit(std::string unit) {
   if (unit.empty()) return "NUMBER";
   std::replace(unit.begin(), unit.end(), ' ', '.');
@@ -221,7 +221,7 @@ std::string help_unit(std::string unit) {
 
 void add_number(CLI::App& command, const FieldDescription& field, const std::string& shown_default,
                 const std::function<void(double)>& take) {
-  // A longer list would push the help aside.
+  // A longer list would push the description out of its column.
   constexpr std::size_t kListed = 8;
   const std::string name = "--" + field.option;
   if (!field.choices.empty()) {
@@ -280,7 +280,7 @@ CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {
 
 namespace {
 
-// Decides by the option's type, as add_option or type_name has it; CLI11 appends its check behind a colon.
+// Decides by the option's type name, to which CLI11 appends its check after a colon.
 bool takes_words(const CLI::Option& option) {
   constexpr std::string_view kWords[] = {
       "TEXT",   "FILE",      "FOLDER", "FILE|FOLDER", "TRAJECTORY|RECORDING",

@@ -14,48 +14,48 @@
 
 namespace osteomill::app {
 
-/// Returns the end of a message about a word that is not known: "; did you mean point-shell?", or if none of
-/// the known words is near and they are few, "; there are milling and wall", else nothing.
+/// Returns the end of a message about an unknown word: "; did you mean point-shell?" if a known word is
+/// similar, otherwise "; there are milling and wall" if the known words are few, otherwise empty.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
-/// Throws std::invalid_argument, "there is no algorithm x; did you mean ...", if `word` is none of `names`.
+/// Throws std::invalid_argument, "there is no algorithm x; did you mean ...", if `word` is not one of
+/// `names`.
 void require_word(const std::string& kind, const std::string& word, const std::vector<std::string>& names);
-/// Makes a check that refuses a text that is none of `names`; `kind` says what they are ("algorithm").
+/// Makes a check that accepts only `names`; `kind` is used in its message ("algorithm").
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names);
-/// Makes a check remember the names that it takes, for choices_of.
+/// Stores the accepted names in a check, for choices_of.
 CLI::Validator with_choices(CLI::Validator check, const std::vector<std::string>& names);
-/// Returns the names that an option takes if its first check remembers them, as that of one_of does.
+/// Returns the names that an option accepts, if its first check stores them as that of one_of does.
 std::vector<std::string> choices_of(CLI::Option& option);
 
-/// Returns a number as an option shows its default: "0.3".
+/// Formats a default value for help: "0.3".
 std::string number_text(double value);
 
 /// Returns the names of a command's options, with their dashes.
 std::vector<std::string> option_names(const CLI::App& command);
 
-/// Throws CLI::ParseError if the command, or any option of it, is not known, naming it and the nearest that
-/// is. Called before parsing, which would name a missing option first.
+/// Throws CLI::ParseError, naming the most similar known word, if the command or one of its options is
+/// unknown. Call it before parsing, which would report a missing option first.
 void require_known_words(const CLI::App& program, int argc, const char* const* argv);
 
-/// Returns what is wrong with a text as a number of this range, "-1 is not a positive number"; empty for
-/// nothing, and `value` is then the number.
+/// Parses a number of this range into `value`. Returns an error message, "-1 is not a positive number", or an
+/// empty text.
 std::string number_fault(const std::string& text, const NumberRange& range, double& value);
-/// Returns the value of a number or a choice from its text. Throws std::invalid_argument, one line, if it is
-/// none.
+/// Parses a number or the name of a choice. Throws std::invalid_argument, one line, if the text is neither.
 double value_of(const FieldDescription& field, const std::string& text);
-/// Returns the value as an option shows it: a choice by its name.
+/// Formats a value for help; a choice by its name.
 std::string value_text(const FieldDescription& field, double value);
-/// Makes a check that refuses a text that is not a number of this range.
+/// Makes a check that accepts only numbers of this range.
 CLI::Validator number_of(const NumberRange& range);
 inline CLI::Validator positive_number() {
   return number_of(NumberRange::positive());
 }
 
-/// Adds an option for a number, or a switch that --no-NAME turns off.
+/// Adds an option for a number or a choice, or a switch that --no-NAME turns off.
 void add_number(CLI::App& command, const FieldDescription& field, const std::string& shown_default,
                 const std::function<void(double)>& take);
-/// Adds every field of `s` that has an option, or those with one of `flags` (0: any), and shows each value as
-/// its default.
+/// Adds every field of `s` that has an option and one of `flags` (0: any). Help shows the current value as
+/// the default, except for fields with the flag `without_default`.
 template <typename Struct>
 void add_fields(CLI::App& command, Struct& s, unsigned flags = 0, unsigned without_default = 0) {
   for (const Field<Struct>& field : fields_of<Struct>()) {
@@ -64,35 +64,35 @@ void add_fields(CLI::App& command, Struct& s, unsigned flags = 0, unsigned witho
                [&s, &field](double value) { field.set(s, value); });
   }
 }
-/// Adds an option for a text that is not empty, or a list of them, which may repeat. `take` gets a list with
-/// commas, and throws std::invalid_argument for what cannot be.
+/// Adds an option for a non-empty text or a list of such texts, which may repeat. `take` receives a list
+/// joined with commas, and throws std::invalid_argument if the text is invalid.
 void add_text(CLI::App& command, const FieldDescription& field,
               const std::function<void(const std::string&)>& take);
-/// Adds every text of `s`, or those with one of `flags` (0: any).
+/// Adds every text field of `s` that has one of `flags` (0: any).
 template <typename Struct>
 void add_texts(CLI::App& command, Struct& s, unsigned flags = 0) {
   for (const Field<Struct, std::string>& field : fields_of<Struct, std::string>())
     if (flags == 0 || field.has(flags))
       add_text(command, field, [&s, &field](const std::string& text) { field.set(s, text); });
 }
-/// Makes a check that refuses a text that is not a whole number within these bounds.
+/// Makes a check that accepts only whole numbers from `min` to `max`.
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max);
-/// Returns whether an option is a switch: it takes no value, or true or false.
+/// Returns whether an option is a switch, which needs no value but accepts true or false.
 bool is_switch(const CLI::Option& option);
-/// Adds checks to the options of this command: numbers must be finite, and a switch takes only true or false.
-/// Call it when all options are there.
+/// Adds checks to all options of the command: numbers must be finite, switches must be true or false. Call it
+/// after all options have been added.
 void check_values(CLI::App& command);
 /// Makes a check that refuses an empty text.
 CLI::Validator not_empty();
 
-/// Adds an option that holds a positive number in this unit, showing its default.
+/// Adds an option for a positive number in this unit; help shows its default.
 template <typename T>
 void add_positive(CLI::App& command, const std::string& name, T& value, const std::string& unit,
                   const std::string& what) {
   command.add_option(name, value, what)->check(positive_number())->type_name(unit)->capture_default_str();
 }
 
-/// Adds an option that holds a whole number from 1 to `max`, showing its default.
+/// Adds an option for a whole number from 1 to `max`; help shows its default.
 template <typename T>
 void add_count(CLI::App& command, const std::string& name, T& value, std::uint64_t max,
                const std::string& what) {

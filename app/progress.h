@@ -11,17 +11,17 @@
 
 namespace osteomill::app {
 
-/// Adds --quiet: nothing but errors and no-go contacts on standard error.
+/// Adds --quiet, which leaves only errors and no-go contacts on standard error.
 void add_quiet_option(CLI::App& command);
 
-/// Words how far a piece of work is, and decides when that is worth a line.
+/// Formats the progress of a task and decides when to print a line.
 class ProgressText {
  public:
-  /// Notes that the work `what` is so far at a time of a clock in s. Less than before, or another work,
-  /// begins again. Returns "compare  40 %, 12 s left"; empty in the work's first second.
+  /// Records the progress of the task `what` at `now_s`, a monotonic time. Restarts if the task changes or
+  /// the fraction decreases. Returns "compare  40 %, 12 s left", or an empty text in the first second.
   std::string at(std::string_view what, double fraction_done, double now_s);
-  /// Returns whether the text last returned is worth a line that stays: at each tenth, and after a minute
-  /// without one. Then counts it as written.
+  /// Returns whether to print the text last returned as a permanent line: at each tenth, and after a minute
+  /// without one. If so, counts it as printed.
   bool take_line();
 
  private:
@@ -33,27 +33,26 @@ class ProgressText {
   int tenths_written_ = 0;
 };
 
-/// Says on standard error how far the work `what` is and how long it still takes: on a terminal in one line
-/// that is written over, else in a line each tenth and at least each minute. Silent in the work's first
-/// second. From one thread at a time.
+/// Prints the progress of the task `what` and the time left on standard error: on a terminal in one line that
+/// is overwritten, otherwise in a new line at each tenth and at least each minute. Silent in the first
+/// second. Not thread-safe.
 void show_progress(std::string_view what, double fraction_done);
-/// Clears the line on a terminal when the work is done.
+/// Ends the task; clears its line on a terminal.
 void end_progress();
 
-/// Writes to standard error. A text that cannot be written is dropped: that is no reason to end the program.
+/// Writes to standard error and ignores write errors.
 void print_error(std::string_view text);
 
-/// Writes a warning, one line on standard error, which --quiet silences.
+/// Writes a warning as one line on standard error, unless --quiet.
 void warn(std::string_view line);
 
 /// Writes tables to standard error, unless --quiet.
 void print_tables(const std::vector<Table>& tables);
 
-/// Writes a warning that --quiet does not silence: a burr that has come into a no-go structure, a recording
-/// that cannot go on.
+/// Writes a warning even with --quiet, for example about a no-go contact or a failed recording.
 void warn_always(std::string_view line);
 
-/// Returns events that report progress and warnings as the functions above do.
+/// Returns events that call the functions above.
 RunEvents events_on_terminal();
 
 }  // namespace osteomill::app

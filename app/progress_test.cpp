@@ -7,7 +7,7 @@
 namespace osteomill::app {
 namespace {
 
-// Returns the lines of work that goes on evenly, told each second.
+// Returns the lines of a task that progresses evenly and reports each second.
 std::vector<std::string> lines_of(double seconds, double fraction_per_s) {
   ProgressText text;
   std::vector<std::string> lines;

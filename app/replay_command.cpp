@@ -46,18 +46,18 @@ struct ReplayOptions {
   std::string out;
   std::string record;
   bool verify = false;
-  // The command whose options these are.
+  // The command that owns these options.
   const CLI::App* command = nullptr;
 
   bool is_given(const std::string& option) const { return command->count(option) > 0; }
 };
 
-// Keeps the replay's ticks for the log, warns of no-go contacts, and counts what is told at the end.
+// Stores the replay's ticks for the log, warns of no-go contacts, and counts faults and labels.
 class Log {
  public:
   Log(const ReplayOptions& options, std::size_t ticks, const Volume& bone)
       : options_(options), ticks_(ticks), labels_(bone.labels()) {
-    // Checks the output before the replay, and not only at its end.
+    // Checks the output path before the replay.
     if (!options.out.empty()) output_path(options.out);
     log_.reserve(ticks);
   }
@@ -126,8 +126,7 @@ void replay_trajectory(ReplayOptions options, const std::string& command_line) {
   end_recorder(recorder, options.record);
 }
 
-// Puts the structures into the bone off which the burr was held, if any were, as the recording's exercise has
-// them.
+// Restores the no-go structures of the recording's exercise if the burr was held off them.
 void put_guards(const Recording& recording, Volume& bone) {
   const auto exercise = recorded_exercise(recording.description);
   if (!exercise || find_setting<double>(recording.description, kGuardsKey) == nullptr) return;
@@ -138,7 +137,7 @@ void put_guards(const Recording& recording, Volume& bone) {
   bone.set_no_go(place_exercise(read_exercise_file(exercise->file), bone).distances);
 }
 
-// Reads the scan that is named, or else the recording's, as it was read for the recording.
+// Reads the given scan, otherwise the recording's, with the recorded options.
 Volume recorded_bone(const ReplayOptions& options, const Recording& recording) {
   LoadedBone bone = read_bone(scan_of(recording.description, options.scan));
   require_made_with(recording, bone.volume);
@@ -164,8 +163,8 @@ void verify(const Volume& scan, const Recording& recording) {
              verified.compared_bones);
 }
 
-// The settings of the command line, each under this algorithm's own name, so that they come after the
-// recorded ones and win.
+// Returns the settings of the command line under this algorithm's name, so that they override the recorded
+// ones.
 HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticSettings& settings) {
   HapticSettings own;
   for (const HapticSettings::Named& named : settings.named) {
@@ -187,7 +186,7 @@ RunDescription run_as(const ReplayOptions& options, RunDescription run, const Gr
   SessionSettings session = session_settings(run, options.input);
   MillingSetup& setup = session.setup;
   setup.algorithm = *algorithm;
-  // Settings of another algorithm mean nothing here.
+  // Drops settings that were recorded for another algorithm.
   if (!(run.algorithm == algorithm->id)) setup.haptics = {};
   setup.haptics.named.insert(setup.haptics.named.end(), chosen.named.begin(), chosen.named.end());
   take_given_options(*options.command, given, setup);
@@ -226,7 +225,7 @@ void replay_with_changes(const ReplayOptions& options, const std::string& comman
   end_recorder(recorder, options.record);
 }
 
-// Begins a recording of what follows a tick of another, which has to lie beside it.
+// Begins a recording that continues another one in the same folder after a tick.
 void begin_branch(std::optional<Recorder>& recorder, const ReplayOptions& options, const Recording& recording,
                   const BranchPoint& from, const std::string& command_line) {
   if (options.record.empty()) return;
@@ -245,10 +244,10 @@ void require_beside(const ReplayOptions& options) {
   };
   if (!options.record.empty() && folder_of(options.record) != folder_of(options.from.recording))
     throw InputError(options.record,
-                     "has to lie beside " + options.from.recording + ", from which it goes on");
+                     "must be in the folder of " + options.from.recording + ", which it continues");
 }
 
-// Goes on from a tick of a recording along a trajectory, or else as that recording does.
+// Continues a recording at a tick along a trajectory, or without one, with its own remaining ticks.
 void replay_from(const ReplayOptions& options, const std::string& command_line) {
   require_beside(options);
   const std::vector<TrajectoryPoint> trajectory =
@@ -291,7 +290,7 @@ void replay_from(const ReplayOptions& options, const std::string& command_line) 
 void run_replay(const ReplayOptions& options, const std::string& command_line) {
   if (!std::filesystem::exists(options.input)) throw InputError(options.input, "no such file");
   if (!is_hdf5(options.input)) {
-    if (options.verify) throw InputError(options.input, "is no recording, so there is nothing to verify");
+    if (options.verify) throw InputError(options.input, "is not a recording, so there is nothing to verify");
     if (options.out.empty() && options.record.empty()) throw CLI::RequiredError("--out or --record");
     return replay_trajectory(options, command_line);
   }

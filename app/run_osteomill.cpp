@@ -40,7 +40,7 @@ int report_error(const char* reason, int code) {
   return code;
 }
 
-// A stream that is closed would lend its number to the next file that is opened, and messages would go there.
+// Prevents that a file opened later gets the descriptor of a closed standard stream and receives messages.
 void open_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDWR);
@@ -52,7 +52,7 @@ int end_output(int code) {
   return report_error(osteomill::with_reason("standard output: cannot be written").c_str(), kBadInput);
 }
 
-// Returns how the program was called, as it would be typed into a shell, the program as "osteomill".
+// Returns the call as it would be typed into a shell, with "osteomill" as the program.
 std::string command_line_of(int argc, const char* const* argv) {
   std::string line = "osteomill";
   for (int n = 1; n < argc; ++n) line += " " + osteomill::quoted(argv[n]);
@@ -62,7 +62,7 @@ std::string command_line_of(int argc, const char* const* argv) {
 constexpr std::size_t kWidth = 80;
 constexpr std::size_t kColumn = 28;
 
-// Words put into lines, each but the first after `indent` blanks; the first has room from `column` on.
+// Wraps text to kWidth. The first line starts at `column`; later lines are indented by `indent`.
 std::string wrapped(const std::string& text, std::size_t column, std::size_t indent) {
   std::istringstream words(text);
   std::string lines, word;
@@ -87,8 +87,8 @@ std::string entry(const std::string& name, const std::string& text) {
 
 constexpr const char* kLast = "Options";
 
-// Help for a terminal of 80 columns: options in their groups, those of the program itself last, descriptions
-// wrapped, what an option takes as a unit or in one word, and what it is without being given in brackets.
+// Help for a terminal of 80 columns: options in groups, general options last, values as a unit or one word,
+// defaults in square brackets.
 class HelpText : public CLI::Formatter {
  public:
   std::string make_description(const CLI::App* app) const override {
@@ -160,7 +160,7 @@ int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
   } catch (const std::filesystem::filesystem_error& error) {
     return report_error((error.path1().string() + ": " + error.code().message()).c_str(), kBadInput);
   } catch (const std::system_error& error) {
-    // That is told at the end.
+    // end_output reports it.
     if (std::ferror(stdout) != 0) return kSuccess;
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
     return report_error(no_thread ? "no more threads can be started (ulimit -u)" : error.what(), kBadInput);
@@ -198,8 +198,7 @@ std::unique_ptr<CLI::App> osteomill::app::make_program(const std::string& comman
 
 int osteomill::app::run_osteomill(int argc, char** argv, WindowDriver* driver) {
   open_closed_streams();
-  // A file as long as a limit allows, or a pipe whose reader has gone, is one that cannot be written, as on a
-  // full disk.
+  // Makes writes beyond a file size limit or to a closed pipe fail with an error, as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   const CrashStop crash_stop;

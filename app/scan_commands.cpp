@@ -49,7 +49,7 @@ void run_info(const InfoOptions& options) {
   fmt::print("{}", options.json ? to_json(summary) : to_text(summary));
 }
 
-// Options of the commands that write a bone to a file, as it was scanned or as a recording left it.
+// Options of the commands that write a bone to a file, as scanned or as milled at the end of a recording.
 struct WriteOptions {
   ScanOptions scan;
   std::string out;
@@ -67,7 +67,7 @@ void add_write_options(CLI::App& command, WriteOptions& options, const std::stri
       ->type_name("FILE");
 }
 
-// The isovalue is the one given, else the recording's, else a suggested one.
+// Uses the given isovalue, otherwise the recording's, otherwise a suggested one.
 LoadedBone load_milled_bone(const WriteOptions& options) {
   if (options.recording.empty()) return load_bone(options.scan);
   const Recording recording = read_recording_chain(options.recording);
@@ -79,14 +79,14 @@ LoadedBone load_milled_bone(const WriteOptions& options) {
 
 void run_mesh(const WriteOptions& options) {
   const std::string& out = options.out;
-  // Before the scan is read.
+  // Throws for an unknown extension before the scan is read.
   const MeshFormat format = mesh_format_of(out);
   const LoadedBone bone = load_milled_bone(options);
   const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
-  if (mesh.empty()) throw InputError(bone.name, "no bone is left to be meshed");
+  if (mesh.empty()) throw InputError(bone.name, "no bone is left to mesh");
   const LabelMap* const labels = bone.volume.labels().get();
   if (labels != nullptr && !holds_colours(format))
-    warn(out + ": STL holds no colours, so the labels are left out; .ply and .obj keep them");
+    warn(out + ": STL has no colours, so labels are not written; .ply and .obj keep them");
   write_mesh(out, mesh, labels);
   fmt::print("{}\n", out);
 }
@@ -96,7 +96,7 @@ void run_save(const WriteOptions& options) {
     throw InputError(options.out, "a scan is saved as .nrrd");
   }
   if (options.recording.empty()) {
-    // No isovalue matters.
+    // Writes the densities, so no isovalue is needed.
     const Scan scan = open_scan(options.scan);
     for (const std::string& warning : scan.warnings) warn(scan.name + ": " + warning);
     write_nrrd(options.out, scan.grid);

@@ -155,7 +155,8 @@ bool is_builtin_tooth(const std::string& scan) {
   return scan.empty() || scan == fmt::format("{}tooth", kBuiltinPrefix);
 }
 
-// Returns the phantom of this name, null for another scan. Throws InputError for a name that none has.
+// Returns the built-in phantom of this name; null for the tooth and other scans. Throws InputError if
+// "builtin:" is followed by an unknown name.
 const BuiltinPhantom* phantom_of(const std::string& scan) {
   if (is_builtin_tooth(scan) || !is_builtin(scan)) return nullptr;
   const std::string name = scan.substr(kBuiltinPrefix.size());
@@ -164,10 +165,10 @@ const BuiltinPhantom* phantom_of(const std::string& scan) {
     if (phantom.name == name) return &phantom;
     names.emplace_back(phantom.name);
   }
-  throw InputError(scan, "is no built-in scan" + did_you_mean(name, names));
+  throw InputError(scan, "is not a built-in scan" + did_you_mean(name, names));
 }
 
-// Looks at its values unless the user or the file says it.
+// Examines the values unless the options or the file's header decide.
 LabelGuess guess_content(const ScanOptions& options, const Scan& scan) {
   const auto of = [](bool labels) { return labels ? LabelGuess::labels : LabelGuess::densities; };
   if (options.as_labels) return of(*options.as_labels);
@@ -196,14 +197,13 @@ Scan open_scan(const ScanOptions& options) {
     scan.warnings.insert(scan.warnings.begin(), std::move(warning));
   };
   if (scan.is_labels) {
-    warn_first(fmt::format("{} a label map: what it labels is taken for bone of one density{}",
+    warn_first(fmt::format("{} a label map: all labelled voxels are read as bone of one density{}",
                            kind_is_known ? "is" : "looks like",
-                           kind_is_known ? "" : "; --as scan takes its values for densities"));
+                           kind_is_known ? "" : "; --as scan reads its values as densities"));
   } else if (guess == LabelGuess::unclear && !scan.in_hounsfield_units) {
     warn_first(
-        "may be a label map: its values are few whole numbers, which are taken for densities; --as labels "
-        "takes "
-        "them for labels");
+        "may be a label map: its values are few whole numbers, which are read as densities; --as labels "
+        "reads them as labels");
   }
   return scan;
 }
@@ -286,7 +286,7 @@ LoadedBone read_bone(const ScanOptions& options) {
   }
   const std::vector<std::string> of_isovalue = isovalue_warnings(scan.grid, isovalue.value);
   if (!is_within(scan.grid, isovalue.value)) throw InputError(scan.name, of_isovalue.front());
-  // A phantom is cut off on purpose.
+  // Phantoms reach the border of the scan on purpose.
   if (phantom_of(options.scan) == nullptr)
     warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
   for (std::string& warning : warnings) warning = scan.name + ": " + warning;
@@ -297,7 +297,7 @@ LoadedBone read_bone(const ScanOptions& options) {
   auto [bone, left_out] = bone_of(std::move(scan), isovalue.value, options.pieces);
   if (left_out.pieces > 0) {
     warnings.push_back(fmt::format(
-        "{}: {} pieces of bone of {:g} mm^3 in all are left out, {} kept", name, left_out.pieces,
+        "{}: {} pieces of bone, {:g} mm^3 in total, were removed and {} kept", name, left_out.pieces,
         static_cast<double>(left_out.voxels) * bone.geometry().voxel_volume_mm3(), left_out.kept));
   }
   bone.set_labels(std::move(labels.map));

@@ -17,30 +17,30 @@
 
 namespace osteomill::app {
 
-/// The options that choose the bone to work on.
+/// The options that select the bone.
 struct ScanOptions {
   /// The scan: a path, or "builtin:" and a name; empty for the built-in tooth.
   std::string scan;
-  /// The isovalue; if not given, the built-in tooth's own, or one suggested from the scan's values.
+  /// The isovalue; if empty, the built-in tooth's own, or one suggested from the scan's values.
   std::optional<double> isovalue;
   ReadOptions read;
-  /// A label map beside the scan, and which of its labels are no-go.
+  /// The label map of the scan, and its no-go labels.
   LabelFiles labels{};
-  /// Whether the scan holds labels in the place of densities. If not given, the file's header or its values
-  /// decide; with an isovalue given it holds none.
+  /// Whether the scan holds labels instead of densities. If empty, the file's header or values decide, or it
+  /// holds densities if an isovalue is given.
   std::optional<bool> as_labels{};
-  /// The pieces of bone that are kept.
+  /// The pieces of bone to keep.
   PieceChoice pieces{};
-  /// The fingerprint (fingerprint_of) of the bone that an earlier run made of this scan, 0 for none. It tells
-  /// whether the scan was then taken for densities or for labels.
+  /// Fingerprint (fingerprint_of) of the bone that an earlier run made of this scan, or 0. It identifies
+  /// whether that run read densities or labels.
   std::uint64_t bone_fingerprint = 0;
   /// The refinement of the built-in tooth (builtin_tooth).
   double refinement = 1;
 };
 
-/// Flags of the fields of a ScanOptions, and of structs that have one. kSourceField: how the scan is read.
-/// kBoneChoiceField: which part of it is bone. kNoGoField: what the burr must not touch. kBoneField: another
-/// value makes another bone.
+/// Flags of the fields of ScanOptions and of structs that contain it. kSourceField: reading of the scan.
+/// kBoneChoiceField: selection of bone in it. kNoGoField: structures the burr must not touch. kBoneField: the
+/// value affects the bone.
 inline constexpr unsigned kSourceField = 1u << 8, kBoneChoiceField = 1u << 9, kNoGoField = 1u << 10,
                           kBoneField = 1u << 11;
 
@@ -48,7 +48,7 @@ inline constexpr unsigned kSourceField = 1u << 8, kBoneChoiceField = 1u << 9, kN
 
 namespace osteomill {
 
-/// Return the numbers and the texts of a scan's options, without the scan itself.
+/// Return the numeric and the text fields of ScanOptions, except the scan itself.
 template <>
 const std::vector<Field<app::ScanOptions>>& fields_of<app::ScanOptions>();
 template <>
@@ -58,45 +58,43 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
 
 namespace osteomill::app {
 
-/// The bone's name if no scan is named.
+/// The name of the bone if no scan is given.
 inline constexpr const char* kBuiltinTooth = "built-in tooth";
 
-/// Returns whether this is a scan that the program makes: "builtin:" and a name, or empty for the tooth.
+/// Returns whether the program generates this scan: "builtin:" and a name, or empty for the tooth.
 bool is_builtin(const std::string& scan);
 
-/// Adds SCAN and what it takes to read it: --series, --as, --max-memory.
-/// `without_one` says in the help which scan is taken if none is named.
+/// Adds SCAN, --series, --spacing, --as and --max-memory. `without_one` is the default scan in the help text.
 void add_scan_source(CLI::App& command, ScanOptions& options,
                      const std::string& without_one = "the built-in tooth");
 
-/// Adds the options for which part of it is bone and for its labels: --iso, --keep-largest, --min-piece,
-/// --labels, --label-table.
+/// Adds the options that select bone, and the labels: --iso, --keep-largest, --min-piece, --labels,
+/// --label-table.
 void add_bone_options(CLI::App& command, ScanOptions& options);
 
-/// All of these and --no-go.
+/// Adds the options of add_scan_source and add_bone_options, and --no-go.
 void add_scan_options(CLI::App& command, ScanOptions& options,
                       const std::string& without_one = "the built-in tooth");
 
-/// Reads the scan, or makes the built-in tooth. If it is taken for labels, the first of its warnings says so.
-/// Throws InputError as `read_scan` does.
+/// Reads the scan, or generates a built-in one. Its first warning reports if it is read as labels. Throws
+/// InputError as `read_scan` does.
 Scan open_scan(const ScanOptions& options);
 
-/// Returns the isovalue for this scan if the user has given none.
+/// Returns the isovalue to use if the user gives none.
 SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan);
 
-/// A bone, and what was left out of it.
+/// A bone, and the pieces removed from it.
 struct ChosenBone {
   Volume volume;
   PiecesLeftOut left_out;
 };
-/// Makes the bone of a scan: its densities with the isovalue, or, if it holds labels, all voxels labelled
-/// above the isovalue, at one density; without the pieces that are not chosen. Throws InputError if none is
-/// left.
+/// Makes the bone of a scan: its densities with the isovalue, or for a label map, all voxels with labels
+/// above the isovalue, at one density. Removes the pieces that `pieces` excludes; throws InputError if none
+/// is left.
 ChosenBone bone_of(Scan scan, double isovalue, const PieceChoice& pieces);
 
-/// Reads the labels of a scan, if it has any: those of the label map that is named, or, if the scan is itself
-/// a label map, its own. Their warnings name the file.
-/// Throws InputError as `read_labels` does.
+/// Reads the labels of a scan, if it has any: from the given label map, or the scan's own if it is one
+/// itself. The warnings name the file. Throws InputError as `read_labels` does.
 LabelsRead labels_of(const ScanOptions& options, const Scan& scan);
 
 /// A bone ready to be milled, with its labels.
@@ -104,25 +102,25 @@ struct LoadedBone {
   Volume volume;
   /// The scan as the user named it, or kBuiltinTooth.
   std::string name;
-  /// The source of its isovalue: "given", or how it was suggested; half a sentence.
+  /// The source of the isovalue: "given", or the phrase that explains the suggestion.
   std::string isovalue_from;
   /// Warnings about the scan and the isovalue, each naming the scan.
   std::vector<std::string> warnings;
   bool in_hounsfield_units = false;
 };
 
-/// Returns the settings of a run that say how its scan was read, from which `scan_of` reads it again. The
-/// scan's name and the isovalue are attributes of every recording.
+/// Returns the settings to record so that `scan_of` can read the scan again. The scan's name and the isovalue
+/// are attributes of every recording and not included.
 std::vector<RunSetting> scan_settings(const ScanOptions& options);
-/// Returns the options that read the scan of a run again. Those that are set in `given` go before the
-/// recorded.
+/// Returns the options to read the scan of a run again. Those set in `given` take precedence over the
+/// recorded ones.
 ScanOptions scan_of(const RunDescription& run, ScanOptions given = {});
 
-/// Reads the bone with its labels. Throws InputError if the scan or the isovalue is at fault.
+/// Reads the bone with its labels. Throws InputError if the scan or the isovalue is invalid.
 LoadedBone read_bone(const ScanOptions& options);
 
-/// Reads the scan of a recording again, for reports. Throws InputError as `read_bone` and
-/// `require_made_with`.
+/// Reads the scan of a recording again, for reports. Throws InputError as `read_bone` and `require_made_with`
+/// do.
 std::shared_ptr<const Volume> recorded_scan(const Recording& recording);
 
 /// Reads the bone as `read_bone` does and prints its warnings to standard error, one line each.

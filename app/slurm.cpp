@@ -59,11 +59,11 @@ void write_submit_script(const fs::path& folder) {
 
 }  // namespace
 
-// A line of #SBATCH ends with the line, and its quotation mark with the next one.
+// A #SBATCH line can contain neither a line break nor a quotation mark.
 void require_submittable(const fs::path& folder) {
   const std::string name = fs::absolute(folder).lexically_normal().string();
   if (name.find('"') != std::string::npos || in_one_line(name) != name)
-    throw InputError(name, "has a quotation mark or a line's end in its name, which sbatch cannot be told");
+    throw InputError(name, "has a quotation mark or a line break in its name, which sbatch cannot handle");
 }
 
 std::string ranges_text(const std::vector<std::size_t>& numbers) {

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t kMaxSlices = 1'000'000;
-// A scheduler takes a second or two for a task; a slice that is lost is run again as a whole.
+// A scheduler needs a second or two per task, and a lost slice runs again as a whole.
 constexpr double kSlice_s = 60;
 
 struct StudyOptions {
@@ -49,14 +49,14 @@ struct BegunStudy {
       : folder{path, record_in(path)}, trials((path / "study.toml").string(), folder.record.scans_from) {
     folder.test = trials.design().test;
     if (folder.record.trials != trials.design().trial_count())
-      throw InputError((path / "study.h5").string(), "is of a study with another number of trials");
+      throw InputError((path / "study.h5").string(), "belongs to a study with another number of trials");
     trials.expect(folder.record.bones);
     if (hash_of_file(path / "study.toml") != folder.record.study_hash)
       throw InputError((path / "study.toml").string(), "has changed since the study was begun");
   }
   static StudyRecord record_in(const fs::path& path) {
     if (auto record = read_study_record(path)) return *std::move(record);
-    throw InputError(path.string(), "is no folder of a study: it has no study.h5");
+    throw InputError(path.string(), "is not the folder of a study: it has no study.h5");
   }
 
   StudyFolder folder;
@@ -85,7 +85,7 @@ void check_every_trial(StudyTrials& study) {
   if (const std::string warning = study.settings_warning(); !warning.empty()) warn(warning);
 }
 
-// The CPU time of three trials spread over the study, the shortest first.
+// Returns the CPU times of three trials spread over the study, in ascending order.
 std::vector<double> time_three_trials(StudyTrials& study) {
   const std::size_t count = study.design().trial_count();
   std::vector<double> taken_s;
@@ -127,14 +127,14 @@ void status(const StudyFolder& folder) {
              100 * static_cast<double>(now.trials_done) / static_cast<double>(record.trials), now.done.size(),
              record.slices());
   for (const fs::path& file : now.damaged)
-    fmt::print("{} cannot be used: cut short, damaged, or of another study\n", file.string());
+    fmt::print("{} cannot be used: truncated, damaged, or from another study\n", file.string());
   for (const fs::path& file : now.locked)
     fmt::print("{} is locked by another program, and cannot be read now\n", file.string());
   if (now.missing.empty()) return;
   fmt::print("left: slices {}", ranges_text(now.missing));
   if (now.trials_done > 0) {
     const double trial_s = now.cpu_s / static_cast<double>(now.trials_done);
-    fmt::print(", {} of CPU by what the others took",
+    fmt::print(", {} of CPU, estimated from the others",
                shown_time(trial_s * static_cast<double>(record.trials - now.trials_done)));
   }
   fmt::print("\n");
@@ -180,12 +180,12 @@ void create_study_folder(const StudyOptions& options) {
                      .trials = study.design().trial_count()};
   if (const auto there = read_study_record(out)) {
     throw InputError(options.out, there->study_hash == record.study_hash
-                                      ? "holds this study already; osteomill study " + options.out +
-                                            " --resume goes on with it"
+                                      ? "already holds this study; osteomill study " + options.out +
+                                            " --resume continues it"
                                       : "holds another study");
   }
   if (fs::exists(out / "study.toml") && hash_of_file(out / "study.toml") != record.study_hash)
-    throw InputError((out / "study.toml").string(), "is there already, and would be written over");
+    throw InputError((out / "study.toml").string(), "already exists and would be overwritten");
   check_every_trial(study);
   const std::size_t wanted =
       options.slices > 0 ? (record.trials + options.slices - 1) / options.slices
@@ -236,15 +236,14 @@ void go_on(BegunStudy& study, const StudyOptions& options) {
 }
 
 void run_study(const StudyOptions& options) {
-  // A trial's large blocks go back to the system when it ends; glibc would come to keep them in its heap,
-  // where the few bytes that stay of each trial hinder the next from taking the same place (6 GB after 300 on
-  // a wall).
+  // Returns a trial's large blocks to the system when it ends. Otherwise glibc raises the threshold and keeps
+  // them in its heap, which small leftovers of each trial fragment (6 GB after 300 trials on a wall).
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   if (options.drop_unreached && !options.report)
-    throw CLI::ValidationError("--drop-unreached", "goes with --report");
+    throw CLI::ValidationError("--drop-unreached", "needs --report");
   if (fs::is_directory(options.study)) {
     if (!options.status && !options.report && !options.resume && !options.slice)
-      throw CLI::ValidationError("study", "of a folder takes --status, --resume, --report or --slice");
+      throw CLI::ValidationError("study", "is a folder, which needs --status, --resume, --report or --slice");
     BegunStudy study(options.study);
     return go_on(study, options);
   }
@@ -254,7 +253,7 @@ void run_study(const StudyOptions& options) {
     return options.list ? list(study.design()) : estimate(study, options.threads);
   }
   if (options.status || options.report || options.resume || options.slice)
-    throw InputError(options.study, "is no folder of a study");
+    throw InputError(options.study, "is not the folder of a study");
   if (options.out.empty()) throw CLI::ValidationError("--out", "is required to begin a study");
   begin(options);
 }

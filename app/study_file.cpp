@@ -37,7 +37,7 @@ class Reader {
     try {
       StudyDesign design(std::move(fixed), std::move(grid), std::move(hypercube));
       if (design.varied().empty())
-        throw std::invalid_argument("tries nothing: it has neither a grid, a list nor a latin-hypercube");
+        throw std::invalid_argument("has no trials: it needs a grid, a list or a latin-hypercube");
       describe(file, design);
       return design;
     } catch (const std::invalid_argument& error) {
@@ -69,7 +69,7 @@ class Reader {
              fmt::format("a trial has no option {}{}", option.key, did_you_mean(option.key, known)));
   }
 
-  // Returns the value as on the command line: "0,0,-1".
+  // Returns the value in the form of the command line: "0,0,-1".
   std::string text(const TomlEntry& entry) const {
     require_known(entry);
     return fmt::format("{}", fmt::join(option_values(*entry.value, file_, entry.key), ","));
@@ -80,11 +80,11 @@ class Reader {
     const toml::node* node = table.get(key);
     if (node == nullptr) return otherwise;
     const auto found = node->value<Value>();
-    if (!found) refuse(*node, fmt::format("{} is not of its kind", key));
+    if (!found) refuse(*node, fmt::format("{} has the wrong type", key));
     return *found;
   }
 
-  // Returns the range of a table {from, to}; nothing if the entry is no such table.
+  // Returns the range of a table {from, to}; empty if the entry is not such a table.
   std::optional<StudyRange> range(const TomlEntry& entry) const {
     const toml::table* range_table = entry.value->as_table();
     if (range_table == nullptr || !range_table->contains("from")) return std::nullopt;
@@ -152,7 +152,7 @@ class Reader {
     const auto test = std::find(tests.begin(), tests.end(), choice(file, "test", tests));
     design.test = static_cast<StudyTest>(test - tests.begin());
     if (design.findings && design.test != StudyTest::milling)
-      refuse(*file.get("findings"), "findings are of the test milling");
+      refuse(*file.get("findings"), "findings need the test milling");
     const toml::node* maps = file.get("map");
     if (maps == nullptr) return;
     if (!maps->is_array_of_tables()) refuse(*maps, "map is not a list of tables, [[map]]");
@@ -178,7 +178,7 @@ class Reader {
     return map;
   }
 
-  // The first if nothing is said.
+  // Returns the value of `key`; the first choice if it is missing.
   std::string choice(const toml::table& table, const char* key, const Keys& choices) const {
     const std::string chosen = value(table, key, choices.front());
     if (std::find(choices.begin(), choices.end(), chosen) == choices.end())
@@ -201,7 +201,7 @@ class Reader {
   }
 
   std::string file_;
-  // Keys of a trial's options, except the algorithms' own settings.
+  // Names of a trial's options, except for the algorithms' own settings.
   Keys keys_;
 };
 

@@ -28,15 +28,15 @@ std::string tool_text(const MillingTool& tool) {
   return fmt::format("{} {} {}", tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm);
 }
 
-// Returns what is poor of its settings. Throws std::invalid_argument if the trial itself would when it
-// begins: a setting is out of its range, or does not go with the bone.
+// Returns warnings about poor settings. Throws std::invalid_argument as the trial itself would at its start:
+// if a setting is out of range or incompatible with the bone.
 std::vector<std::string> trial_warnings(StudyTest test, const TrialPlan& trial) {
   const TrialSettings& settings = trial.settings;
   if (test != StudyTest::milling) {
     require_valid(settings.hand_and_device.handle);
     if (setting_of_option(settings.algorithm, kStiffnessOption) == nullptr)
       throw std::invalid_argument(settings.algorithm.id.name + " has no stiffness");
-    // Beyond the wall nothing is felt, so the shaft may be wider.
+    // Only contact with the wall matters, so the shaft may be wider than the grid.
     return make_algorithm(settings.algorithm, settings.haptics)
         ->setting_warnings(settings.tool, trial.bone.geometry());
   }
@@ -63,7 +63,7 @@ std::vector<Text> trial_texts() {
 }
 
 std::vector<Field<TrialSpec>> trial_numbers() {
-  // Whole numbers beyond this are not numbers of their own in a double.
+  // A double represents every whole number up to this.
   constexpr double kMaxSeed = 1ull << 53;
   using A = TrialSpec;
   const std::vector<Field<A>> own{
@@ -205,7 +205,7 @@ TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
 
 std::string StudyTrials::settings_warning() const {
   if (warned_trials_.size() < 2) return first_warning_;
-  return fmt::format("{}; {} of the trials are in doubt", first_warning_, warned_trials_.size());
+  return fmt::format("{}; {} trials have such warnings", first_warning_, warned_trials_.size());
 }
 
 std::vector<TrialPlan> StudyTrials::make(std::size_t first, std::size_t count) {

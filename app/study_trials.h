@@ -17,11 +17,11 @@
 
 namespace osteomill::app {
 
-/// The settings of a trial: the options of `compare`, and those that only a study has.
+/// The settings of a trial: the options of `compare`, and options that only studies have.
 struct TrialSpec {
   ScanOptions scan;
   TrialOptions trial;
-  /// The voxel size of the built-in tooth.
+  /// Voxel size of the built-in tooth.
   double voxel_mm = 0.125;
   double rate_hz = 1000;
   double device_damping_Ns_per_mm = 0.005;
@@ -29,23 +29,22 @@ struct TrialSpec {
   bool draw_hand = false;
 };
 
-/// Returns the numbers and the texts of a trial, each under its option.
+/// Return the numeric and the text fields of a trial that have an option.
 const std::vector<Field<TrialSpec>>& numbers_of_a_trial();
 const std::vector<Field<TrialSpec, std::string>>& texts_of_a_trial();
 
-/// Returns the settings that a study gives a trial. Throws std::invalid_argument, or a CLI::Error, if a value
-/// is out of its range.
+/// Returns the trial that a study's settings describe. Throws std::invalid_argument or CLI::Error if a value
+/// is out of range.
 TrialSpec trial_spec(const StudySettings& settings);
 
-/// Returns which bone a trial has: its fields that have kBoneField, in words. Trials whose words are the same
-/// share a bone.
+/// Returns a key for the trial's bone, made from its fields with kBoneField. Trials with the same key share a
+/// bone.
 std::string bone_text(const TrialSpec& asked);
 
-/// A study as its file describes it, and its trials, each made of what is set of it. Opens every
-/// bone once.
+/// A study from a file, and its trials. Loads each bone once.
 class StudyTrials {
  public:
-  /// Scans are sought from the folder `scans_from`. Throws as read_study_file does.
+  /// Relative paths of scans start at `scans_from`. Throws as read_study_file does.
   StudyTrials(const std::string& file, std::filesystem::path scans_from);
   StudyTrials(const StudyTrials&) = delete;
   StudyTrials& operator=(const StudyTrials&) = delete;
@@ -53,18 +52,17 @@ class StudyTrials {
   const std::string& file() const { return file_; }
   const StudyDesign& design() const { return design_; }
 
-  /// Sets the fingerprints that bones must have from then on, by their words (bone_text).
+  /// Sets the fingerprints that bones must have from now on, by key (bone_text).
   void expect(const std::vector<std::pair<std::string, std::uint64_t>>& bones) {
     fingerprints_ = {bones.begin(), bones.end()};
   }
   const std::map<std::string, std::uint64_t>& fingerprints() const { return fingerprints_; }
 
-  /// Returns trials that follow each other. They refer to this object's bones, until the next call. Throws
-  /// InputError, naming the file and the trial, if a setting is out of its range or does not go with the
-  /// others, or if its scan is at fault or has changed.
+  /// Returns `count` consecutive trials. They refer to this object's bones and are valid until the next call.
+  /// Throws InputError, naming the file and the trial, if settings are out of range or incompatible, or if
+  /// the scan is invalid or has changed.
   std::vector<TrialPlan> make(std::size_t first, std::size_t count);
-  /// Returns a line on the poor settings of trials that were made (setting_warnings); empty if there are
-  /// none.
+  /// Returns one warning about poor settings of the trials made so far (setting_warnings), or an empty text.
   std::string settings_warning() const;
 
  private:
@@ -72,7 +70,7 @@ class StudyTrials {
     Volume volume;
     std::string name;
     BoneDensities densities;
-    // By tool, place and direction.
+    // By tool, entry point and direction.
     std::map<std::string, MillingEntry> entries;
   };
 
@@ -83,8 +81,7 @@ class StudyTrials {
   std::string file_;
   std::filesystem::path scans_from_;
   StudyDesign design_;
-  // By the fields that make a bone (bone_text); walls by the tool. A bone's fingerprint stays when the bone
-  // itself is let go.
+  // Bones and fingerprints by bone_text, walls by tool. Fingerprints stay when their bones are freed.
   std::map<std::string, std::unique_ptr<Bone>> bones_;
   std::map<std::string, Volume> walls_;
   std::map<std::string, std::uint64_t> fingerprints_;

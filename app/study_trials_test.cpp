@@ -59,7 +59,7 @@ class StudyOfScans : public ::testing::Test {
     }
   }
 
-  // The bones of all trials of such a study, by fingerprint.
+  // Returns the fingerprints of the bones of all trials of a study with these axes.
   std::vector<std::uint64_t> bones_of(const std::string& axes) {
     std::ofstream(folder_ / "study.toml") << "[fixed]\nseconds = 1\n" << axes;
     StudyTrials study((folder_ / "study.toml").string(), folder_.path());
@@ -72,7 +72,7 @@ class StudyOfScans : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-// Whatever else is set of them, and in whichever order they are made.
+// Regardless of the other settings and of the order of the trials.
 TEST_F(StudyOfScans, EachTrialHasTheBoneThatItsAxesName) {
   const std::vector<std::uint64_t> bones = bones_of(
       "[grid]\niso = [500, 600]\npush = [1, 2]\nscan = [\"ball-4.nrrd\", \"ball-5.nrrd\", \"built-in\"]\n");

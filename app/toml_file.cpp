@@ -14,8 +14,8 @@ namespace osteomill::app {
 
 namespace {
 
-// The library reads the parts of a dotted name by recursion: too many of them would overflow the stack. And
-// it takes many times the memory of the file.
+// The library recurses over the parts of a dotted name, so too many would overflow the stack; and it uses
+// many times the file's size in memory.
 void require_readable(const std::string& file) {
   constexpr std::ptrdiff_t kMaxDots = 1000;
   constexpr std::uintmax_t kMaxBytes = 16'000'000;
@@ -35,7 +35,7 @@ void require_readable(const std::string& file) {
 toml::table parse_toml(const std::string& file) {
   const std::filesystem::file_status status = std::filesystem::status(file);
   if (!std::filesystem::exists(status)) throw InputError(file, "no such file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(file, "is no regular file");
+  if (!std::filesystem::is_regular_file(status)) throw InputError(file, "is not a regular file");
   require_readable(file);
   try {
     return toml::parse_file(file);

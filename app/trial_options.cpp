@@ -18,7 +18,7 @@ using app::TrialOptions;
 
 namespace {
 
-// Reads a vector of the command line: "0,0,-1".
+// Parses a vector: "0,0,-1".
 Vec3 three_numbers(const std::string& text) {
   const std::vector<std::string_view> parts = csv_fields(text);
   Vec3 numbers;

@@ -15,7 +15,8 @@
 
 namespace osteomill::app {
 
-/// The options that the commands that run section 8.2 share: milling, and the simulated hand with its task.
+/// The options shared by the commands that run section 8.2 of the paper: milling, and the simulated hand with
+/// its task.
 struct TrialOptions {
   MillingOptions milling;
   OperatorSettings hand;
@@ -28,7 +29,7 @@ struct TrialOptions {
 
 namespace osteomill {
 
-/// Returns the texts of a trial's options: where the tool enters.
+/// Returns the text fields of a trial's options: entry point and direction.
 template <>
 const std::vector<Field<app::TrialOptions, std::string>>& fields_of<app::TrialOptions, std::string>();
 
@@ -42,18 +43,17 @@ void add_trial_options(CLI::App& command, TrialOptions& options);
 
 TrialSettings trial_settings(const TrialOptions& options);
 
-/// Returns where the tool enters the bone of the scan of this name. Throws InputError if it cannot.
+/// Returns the tool's entry into the bone. Throws InputError naming `scan` if there is none.
 MillingEntry entry_into(const Volume& bone, const std::string& scan, const TrialOptions& options);
 
-/// Returns the same place as entry_into, and warns on standard error if it is unlikely to be what the user
-/// wants.
+/// Returns the same entry as entry_into, and warns on standard error if it is probably not intended.
 MillingEntry place_entry(const Volume& bone, const std::string& scan, const TrialOptions& options);
 
-/// Warns of settings that are poor in a scan of this grid (setting_warnings), and throws as that does.
+/// Warns of settings that are poor for a scan of this grid; throws as setting_warnings does.
 void warn_of_settings(const MillingSetup& setup, const GridGeometry& scan);
 
-/// Returns the plan of a trial on a bone, which outlives it. Throws std::invalid_argument if the tool cannot
-/// work in that bone, and as entry_into.
+/// Returns the plan of a trial on a bone, which must outlive it. Throws std::invalid_argument if the tool
+/// cannot work in that bone, and as entry_into does.
 TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const std::string& command_line);
 
 }  // namespace osteomill::app

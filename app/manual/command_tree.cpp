@@ -22,7 +22,7 @@ bool is_word(const std::string& text) {
   return std::ranges::all_of(text, [](unsigned char c) { return std::islower(c) != 0; });
 }
 
-// Decides by the word that stands for the value. Of "N/mm|softest", softest is typed as it is.
+// Decides by the value's placeholder. In "N/mm|softest", the lower-case word is a literal.
 void set_completion(OptionText& text) {
   const std::vector<std::string> parts = CLI::detail::split(text.value, '|');
   const auto has = [&](const char* part) { return std::ranges::find(parts, part) != parts.end(); };
@@ -47,7 +47,7 @@ OptionText option_text(CLI::Option& option) {
     if (text.value == kAnyText) text.value = text.names.front();
   }
   text.description = option.get_description();
-  // Some defaults depend on the machine; their descriptions say how.
+  // Some descriptions state the default themselves, because it depends on the machine.
   if (text.description.find("(default:") == std::string::npos) text.usual = option.get_default_str();
   text.group = option.get_group();
   text.is_required = option.get_required();

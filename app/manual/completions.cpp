@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kWritten = "# Written from the command line of osteomill by osteomill_manual.\n";
 
-// Puts a backslash before each of `special`.
+// Escapes each character of `special` with a backslash.
 std::string escaped(std::string_view text, std::string_view special) {
   std::string out;
   for (const char c : text) {
@@ -40,7 +40,7 @@ std::string zsh_quoted(std::string_view text) {
   return out + "'";
 }
 
-// ":mm:" or ":FILE:_files": what follows an option's explanation.
+// Returns ":mm:" or ":FILE:_files", which follows an option's description.
 std::string zsh_value(const OptionText& option) {
   if (option.value.empty()) return "";
   std::string action;
@@ -62,7 +62,7 @@ std::vector<std::string> zsh_arguments(const CommandText& command) {
   return specs;
 }
 
-// "-x -a 'one two'": what an option takes.
+// Returns the arguments for an option's values: "-x -a 'one two'".
 std::string fish_value(const OptionText& option) {
   if (option.value.empty()) return "";
   if (option.completion == Completion::kWords) return fmt::format(" -x -a '{}'", joined(option.words));
@@ -82,7 +82,7 @@ std::string fish_option(const std::string& condition, const OptionText& option) 
   return lines;
 }
 
-// Returns the shell code that offers values of an option.
+// Returns the shell code that completes the values of an option.
 std::string bash_value(const OptionText& option) {
   if (option.completion == Completion::kWords) return fmt::format("words='{}'", joined(option.words));
   if (option.completion == Completion::kFile) return "kind=-f";
@@ -90,7 +90,7 @@ std::string bash_value(const OptionText& option) {
   return "return";
 }
 
-// Returns the cases of "COMMAND --OPTION"; one for all commands if an option takes the same in each.
+// Returns the cases of "COMMAND --OPTION"; a single case if an option takes the same values in every command.
 std::string bash_value_cases(const std::vector<CommandText>& commands) {
   std::map<std::string, std::map<std::string, std::vector<std::string>>> commands_by_name_and_code;
   for (const CommandText& command : commands) {

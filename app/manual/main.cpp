@@ -24,7 +24,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-// Writes the manual pages and the completions of osteomill's command line:
+// Writes the manual pages and shell completions of osteomill:
 //   osteomill_manual VERSION DATE FOLDER
 int main(int argc, char** argv) {
   using namespace osteomill::app;
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     const std::filesystem::path folder = argv[3];
     const std::unique_ptr<CLI::App> program = make_program("osteomill");
     const std::vector<CommandText> commands = command_texts(*program);
-    // A command that is gone leaves no page behind.
+    // Removes pages of commands that no longer exist.
     std::filesystem::remove_all(folder / "man1");
     write(folder / "man1/osteomill.1", program_page(commands, edition));
     for (std::size_t n = 1; n < commands.size(); ++n)

@@ -10,7 +10,7 @@ namespace osteomill::app {
 
 namespace {
 
-// Returns the code point of a character of UTF-8, and moves `at` behind it.
+// Returns the next code point of UTF-8 text and advances `at` past it.
 unsigned next_code_point(std::string_view text, std::size_t& at) {
   const auto byte = [&] { return static_cast<unsigned char>(text[at++]); };
   const unsigned first = byte();
@@ -21,7 +21,7 @@ unsigned next_code_point(std::string_view text, std::size_t& at) {
   return code;
 }
 
-// Returns a text as roff: a hyphen that can be copied, and every character beyond ASCII by its code point.
+// Escapes text for roff, with plain ASCII hyphens and other characters by code point.
 std::string roff(std::string_view text) {
   std::string out;
   if (text.starts_with('.') || text.starts_with('\'')) out = "\\&";
@@ -65,7 +65,7 @@ std::string option_entry(const OptionText& option) {
   return text;
 }
 
-// Each group of options under a heading of its own.
+// Formats each group of options under its own heading.
 std::string option_section(const std::vector<OptionText>& options) {
   std::string text = ".SH OPTIONS\n";
   const std::vector<std::string> groups = groups_of(options);
@@ -80,31 +80,29 @@ std::string option_section(const std::vector<OptionText>& options) {
 constexpr std::string_view kExitStatus = R"(.SH EXIT STATUS
 .TP
 0
-The command did what it was asked for.
+Success.
 .TP
 1
-The input is at fault: a file, a device or a limit of the system, in one line on standard error.
+Invalid input: a file, a device or a system limit. Standard error has one line with the reason.
 .TP
 2
-The command line is at fault.
+Invalid command line.
 )";
 
 constexpr std::string_view kEnvironment = R"(.SH ENVIRONMENT
 .TP
 \fBOSTEOMILL_DHD_LIBRARY\fR, \fBOSTEOMILL_HD_LIBRARY\fR
-Files of the device makers\(aq libraries, libdhd of Force Dimension and libHD of 3D Systems, if the system does not find them by
-their names.
+Paths of the device makers\(aq libraries, libdhd of Force Dimension and libHD of 3D Systems, if the system does not find them by name.
 .TP
 \fBSPNAV_SOCKET\fR
 Socket of the daemon spacenavd, which a SpaceMouse needs.
 .SH FILES
 .TP
 \fI$XDG_CONFIG_HOME/osteomill/devices/NAME.toml\fR
-How the motion of a haptic device moves the tool (\fI~/.config\fR if the variable is not set).
+Workspace settings of a haptic device (\fI~/.config\fR if the variable is not set).
 .TP
 \fI$XDG_STATE_HOME/osteomill/\fR
-Copies of milled bone that is not saved yet, and whether the window has explained its controls (\fI~/.local/state\fR if the
-variable is not set).
+Autosaved copies of milled bone, and whether the window has explained its controls (\fI~/.local/state\fR if the variable is not set).
 )";
 
 }  // namespace
@@ -119,7 +117,7 @@ std::string program_page(const std::vector<CommandText>& program_and_commands, c
   text +=
       "osteomill mills bone with a haptic device, a mouse or a simulated hand: a CT scan in, force and "
       "torque out "
-      "at 1000 Hz.\nEach command has a page of its own, \\fBosteomill\\-\\fICOMMAND\\fR(1), and "
+      "at 1000 Hz.\nEach command has its own page, \\fBosteomill\\-\\fICOMMAND\\fR(1), and "
       "\\fB\\-\\-help\\fR.\n"
       "Research software, not a medical device.\n.SH COMMANDS\n";
   std::string see_also;

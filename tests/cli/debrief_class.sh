@@ -43,7 +43,7 @@ mkdir all; echo "my notes" >all/progress.csv
 debrief() { local code=0; "$osteomill" debrief "$@" --quiet >said 2>error || code=$?; echo $code; }
 [ "$(debrief class --out all)" = 1 ] || fault "exit code"
 [ "$(cat all/progress.csv)" = "my notes" ] || fault "a user's file is gone"
-[ "$(wc -l <error)" -eq 2 ] && grep -q "^osteomill: class/cut.h5: " error && grep -q "^osteomill: class/0.h5: is of another exercise" error ||
+[ "$(wc -l <error)" -eq 2 ] && grep -q "^osteomill: class/cut.h5: " error && grep -q "^osteomill: class/0.h5: belongs to another exercise" error ||
   fault "$(cat error)"
 /usr/bin/python3 - <<'CHECK' || fault "the class's table or page"
 import csv, json, re

@@ -69,7 +69,7 @@ echo '# later' >>tasks/hole.toml
 grep -q "tasks/hole.toml: is not the exercise as it was" error || fault "$(cat error)"
 
 refused "tasks/hole.toml: its tools are burrs of 1 mm" replay good.csv --exercise tasks/hole.toml --record x.h5
-refused "good.csv: is no recording" replay good.csv --verify
+refused "good.csv: is not a recording" replay good.csv --verify
 "$osteomill" save --out tooth.nrrd --quiet >/dev/null
 sed -i 's/^scan = .*/scan = "..\/ball.nrrd"/' tasks/other.toml
 "$osteomill" save --after good.h5 --out ball.nrrd --quiet >/dev/null

@@ -119,7 +119,7 @@ printf '#!/bin/sh\necho MaxArraySize = 100\n' >bin/scontrol
 printf '#!/bin/sh\necho 1\n' >bin/sbatch
 chmod +x bin/*
 export PATH=$PATH:$folder/bin
-runs 1 "sbatch cannot be told" "$osteomill" study study.toml --out $'two\nlines' --on slurm
+runs 1 "sbatch cannot handle" "$osteomill" study study.toml --out $'two\nlines' --on slurm
 [ ! -e $'two\nlines' ] || fault "a folder that cannot be submitted was made"
 mv s/slice-0.h5 kept.h5
 mkfifo s/slice-0.h5

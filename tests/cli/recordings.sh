@@ -35,7 +35,7 @@ refused() { local reason=$1; shift; "$osteomill" replay "$@" --quiet >/dev/null 
 same c/line-proxy-milling.h5 tooth.nrrd
 refused "another scan" c/line-proxy-milling.h5 milled.nrrd --verify
 refused "recording's own" c/line-proxy-milling.h5 --burr-radius 2 --out x.csv
-refused "is no recording" other.csv --verify
+refused "is not a recording" other.csv --verify
 refused "nosuch.h5: no such file" nosuch.h5 --verify
 mv c/line-proxy-milling.h5 c/away.h5
 refused "line-proxy-milling.h5, which is missing" c/line-proxy-holding.h5 --verify
