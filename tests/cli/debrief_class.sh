@@ -70,7 +70,7 @@ awk 'BEGIN { print "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling"
 work ways/first.h5 hole Ann 0.8
 "$osteomill" replay up.csv --from ways/first.h5 --at 0.25 --record ways/again.h5 --quiet >/dev/null
 [ "$(debrief ways/again.h5 --out both)" = 0 ] && [ ! -s error ] || fault "$(cat error)"
-grep -q "^goes on from ways/first.h5 at 0.250 s, after 251 ticks" said || fault "$(cat said)"
+grep -q "^continues ways/first.h5 at 0.250 s, after 251 ticks" said || fault "$(cat said)"
 [ "$(debrief ways/first.h5 --out alone)" = 0 ] && [ "$(debrief ways/again.h5 --out nameless --anonymous)" = 0 ] || fault "exit code"
 ! grep -oE 'first\.h5|again\.h5|ways/(first|again)|[:>"]Ann' nameless/* said || fault "a name is left"
 cp ways/again.h5 ways/far.h5

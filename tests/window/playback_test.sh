@@ -91,7 +91,7 @@ work() {
   is again recording true; is again exercise "A trench in layered bone"; is again spindle false
   "$osteomill" replay "$branch" --verify --quiet | grep -q ^same || fail "the branch does not replay"
   "$osteomill" debrief "$branch" --out branch --quiet >told
-  grep -q "^goes on from $first at $(value chosen time_s | cut -c1-5)" told || fail "$(cat told)"
+  grep -q "^continues $first at $(value chosen time_s | cut -c1-5)" told || fail "$(cat told)"
   /usr/bin/python3 - "$first" "$branch" "$(value chosen tick)" "$(value chosen bone)" "$(value fast bone)" <<'CHECK' || fail "the branch does not begin where it was chosen"
 import sys, h5py
 tick = int(sys.argv[3])
