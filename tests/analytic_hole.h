@@ -8,9 +8,9 @@
 
 namespace osteomill::testing_support {
 
-/// Stands in for an algorithm and for milling in tests of the operator: a floor across the entry's direction
-/// that recedes under the burr's force while the spindle turns, walls that keep the burr's centre within 0.1
-/// mm of the axis, and a rim that stops the shaft when it leans further than 0.2 rad. All of it springs.
+/// Replaces algorithm and milling in tests of the operator: a floor perpendicular to the entry direction that
+/// recedes under the burr's force while the spindle turns, walls that keep the burr's centre within 0.1 mm of
+/// the axis, and a rim that stops the shaft at a tilt of 0.2 rad. All contacts are springs.
 class AnalyticHole {
  public:
   struct Step {
@@ -20,8 +20,8 @@ class AnalyticHole {
   };
   enum class Kind { direct, line_proxy };
 
-  /// `line_proxy`: as the paper's first algorithm has it, the device's centre (not the burr's surface) meets
-  /// the floor, and the tool is shown resting on it.
+  /// `line_proxy`: as in the paper's first algorithm, the device's centre (not the burr's surface) contacts
+  /// the floor, and the tool is drawn resting on it.
   AnalyticHole(const MillingEntry& entry, double burr_radius_mm, Kind kind, double yield_mm_per_Ns)
       : entry_(entry), burr_radius_mm_(burr_radius_mm), kind_(kind), yield_mm_per_Ns_(yield_mm_per_Ns) {}
 
@@ -33,7 +33,7 @@ class AnalyticHole {
     Step step;
     step.floor_force_N = kStiffness * sunk_mm;
     step.X_WT = X_WD;
-    // The line's point is shown on the floor with the burr's radius above it.
+    // Draws the tool resting on the floor, with its centre one burr radius above.
     if (kind_ == Kind::line_proxy && sunk_mm > 0) {
       step.X_WT.position_mm -= (sunk_mm + burr_radius_mm_) * entry_.direction_W;
     }

@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 
 constexpr int kSize = 20;
 
-// All that a scanner writes of who lay in it.
+// The DICOM attributes that identify a patient.
 const std::vector<std::pair<DcmTagKey, std::string>> kPatient{
     {DCM_PatientName, "Zzyzx^Quilla"},          {DCM_PatientID, "QX-7719302"},
     {DCM_PatientBirthDate, "19510203"},         {DCM_OtherPatientNames, "Zzyzx"},
     {DCM_PatientAddress, "Zzyzx Road 7719302"}, {DCM_ReferringPhysicianName, "Zzyzx^Doctor"}};
 const std::vector<std::string> kSecrets{"Zzyzx", "Quilla", "7719302", "19510203"};
 
-// A slice of a ball of bone.
+// Writes slice k of a ball of bone.
 void write_slice(const fs::path& file, int k, const std::string& spacing = "0.5\\0.5") {
   DcmFileFormat dicom;
   DcmDataset& data = *dicom.getDataset();
@@ -67,7 +67,7 @@ class Anonymous : public ::testing::Test {
     for (int k = 0; k < kSize; ++k) write_slice(folder_ / "scan" / ("slice" + std::to_string(k)), k);
   }
 
-  // In `out`, what it says too.
+  // Writes outputs and messages into `out`.
   int run(const std::string& arguments) const {
     const std::string line =
         "cd '" + (folder_ / "out").string() + "' && " OSTEOMILL_PROGRAM " " + arguments + " >> said.txt 2>&1";

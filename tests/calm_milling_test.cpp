@@ -1,5 +1,5 @@
-// Section 8.2's milling on a real tooth with the settings that a user gets: the load is a real one, and the
-// wrench is calm under it.
+// Milling as in section 8.2 of the paper on a real tooth with default settings: the load is realistic, and
+// the wrench stays calm under it.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -77,9 +77,9 @@ TEST_P(CalmMilling, IsCalmUnderARealLoad) {
 
 INSTANTIATE_TEST_SUITE_P(
     RealTooth, CalmMilling,
-    // At 3 N the burr breaks through, which steps: verification.md misses its goal there.
+    // At 3 N the burr breaks through, which causes a step; verification.md reports the missed goal.
     ::testing::Values(Goal{1.5, 0.02, 0.1, 0.02}, Goal{3.0, 0.01, 0.8, 0.06},
-                      // At other rates; in a tick twice as long the wrench may step twice as far.
+                      // At other rates: in a tick twice as long the wrench may step twice as far.
                       Goal{1.5, 0.02, 0.2, 0.04, 2e-3}, Goal{3.0, 0.01, 0.8, 0.06, 0.5e-3}));
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 namespace osteomill::testing_support {
 
-/// A hand that comes down along z from free space at 8 mm/s and then holds the burr where the test wants it,
-/// as every device that begins to be driven has to. Put elsewhere it stays there.
+/// A device that descends along z from free space, 8 mm/s at 1 kHz, to a given height; a session drives a
+/// device only once it was out of bone. After put_at it stays at that pose.
 class ComingDown : public Device {
  public:
   static constexpr double kFrom_mm = 3;
@@ -25,7 +25,7 @@ class ComingDown : public Device {
     X_WD = X_WD_put;
     is_put_ = true;
   }
-  /// It begins above again.
+  /// Restarts the descent.
   void lift() {
     X_WD.position_mm.z() = kFrom_mm;
     is_put_ = false;

@@ -3,8 +3,8 @@
 #include <cerrno>
 #include <cstddef>
 
-// Stands in for the allocator and hands on to glibc's own. Sanitizers bring their own allocator, so there
-// operator new is counted alone.
+// Replaces the allocator and forwards to glibc's. Sanitizers have their own allocator, so with them only
+// operator new is counted.
 
 namespace {
 thread_local long allocations = 0;

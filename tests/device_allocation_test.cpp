@@ -19,7 +19,7 @@ TEST(DeviceAllocation, NothingThatTheHapticThreadCallsAllocates) {
   for (int n = 0; n < 3000; ++n) {
     hardware.now_s += 1e-3;
     hardware.input.X_BH.position_mm.x() = std::sin(0.1 * n);
-    // Silent, clutched, turned, put elsewhere, lost and opened again meanwhile.
+    // Meanwhile the device is silent, clutched, turned, moved, lost and reopened.
     hardware.silent = n % 100 > 80;
     hardware.input.buttons = n % 150 > 130 ? ConnectedDevice::kClutchButton : 1;
     hardware.gone = n > 1000 && n < 1500;

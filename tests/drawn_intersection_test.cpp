@@ -1,4 +1,4 @@
-// The whole way of line-proxy's intersection point, from the bone by the session to the picture.
+// End-to-end test of line-proxy's intersection point, from the bone through the session to the picture.
 #include <memory>
 #include <utility>
 
@@ -16,7 +16,7 @@
 namespace osteomill {
 namespace {
 
-// Bone below z = 0, whose edge lies along y; the shaft comes down on it, with the tip beyond.
+// Bone below z = 0 with an edge along y; the shaft descends on the edge, with the tip beyond it.
 ViewScene shaft_on_a_plane() {
   Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
                                               [](const Vec3& p) { return std::max(p.z(), p.x()); });

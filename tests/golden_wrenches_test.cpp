@@ -12,9 +12,9 @@
 #include "tests/poses.h"
 #include "tests/shapes.h"
 
-// Equal input must give equal wrenches to the last bit, whatever the optimisation: every preset (-O0,
-// -O1, -O2, with sanitizers and without) runs this test against the same numbers. If an algorithm was
-// changed on purpose, the number that the failure shows takes the place of the old one.
+// Equal input must give bit-identical wrenches at any optimisation level: every preset (-O0, -O1, -O2, with
+// and without sanitizers) runs this test against the same hashes. After an intended change of an algorithm,
+// replace its hash by the one that the failure prints.
 namespace osteomill {
 namespace {
 
@@ -23,7 +23,7 @@ struct Golden {
   std::uint64_t hash;
 };
 
-// FNV-1a over the bits of six numbers.
+// Extends an FNV-1a hash by the bits of a wrench.
 std::uint64_t hashed(std::uint64_t hash, const Wrench& wrench) {
   for (const Vec3& vector : {wrench.force_N, wrench.torque_Nmm}) {
     for (const double number : vector) {

@@ -7,7 +7,7 @@
 
 namespace osteomill::testing_support {
 
-/// Every set of vector instructions that this processor has and a kernel was compiled for.
+/// Returns the vector instruction sets that this processor supports and a kernel was compiled for.
 inline std::vector<std::int64_t> instruction_sets_here(std::int64_t compiled) {
   std::vector<std::int64_t> sets;
   const std::int64_t both = hwy::SupportedTargets() & compiled;
@@ -18,7 +18,7 @@ inline std::vector<std::int64_t> instruction_sets_here(std::int64_t compiled) {
   return sets;
 }
 
-/// Has kernels use one set while it lives.
+/// Makes kernels use one instruction set during its lifetime.
 struct ForcedInstructionSet {
   explicit ForcedInstructionSet(std::int64_t set) { hwy::SetSupportedTargetsForTest(set); }
   ~ForcedInstructionSet() { hwy::SetSupportedTargetsForTest(0); }

@@ -1,4 +1,4 @@
-// Opening a scan says how far it is, evenly enough, and can be ended at any moment.
+// Opening a scan reports progress evenly enough, and can be cancelled at any moment.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -85,7 +85,7 @@ TEST_P(LongWork, CanBeStoppedAtAnyMomentAndGivesItsMemoryBack) {
     });
     EXPECT_THROW(open(), WorkStopped) << at;
   }
-  // Eight times the densities alone would be 130 MB; the allocator keeps some for later.
+  // The densities of all eight runs would be 130 MB; the allocator keeps some memory for reuse.
   EXPECT_LT(resident_kB(), before_kB + 40'000);
 }
 

@@ -6,8 +6,8 @@
 
 namespace osteomill::testing_support {
 
-/// Makes every start of a thread in this process fail, as it does at a system's limit, while it lives: a new
-/// thread's stack would be larger than the address space.
+/// Makes every thread start of this process fail during its lifetime, as at a system limit: a new thread's
+/// stack would exceed the address space.
 class NoMoreThreads {
  public:
   NoMoreThreads() {

@@ -7,7 +7,7 @@
 
 namespace osteomill::testing_support {
 
-/// Returns the memory that only this process holds, MiB; 0 if the system does not report it.
+/// Returns the private memory of this process, MiB; 0 if the system does not report it.
 inline double own_memory_MiB() {
   std::ifstream in("/proc/self/status");
   for (std::string word; in >> word;) {
@@ -17,8 +17,8 @@ inline double own_memory_MiB() {
   return 0;
 }
 
-/// Returns the size of the process's own pages in the mapping of this address, MiB: for a private mapping of
-/// a file, the pages written since; -1 if the system does not report it.
+/// Returns the size of the private pages in the mapping of this address, MiB; for a private file mapping,
+/// these are the pages written since. -1 if the system does not report it.
 inline double copied_MiB(const void* address) {
   std::ifstream in("/proc/self/smaps");
   const auto place = reinterpret_cast<std::uintptr_t>(address);

@@ -7,8 +7,8 @@
 
 namespace osteomill::testing_support {
 
-/// A tool that comes down on the top of a ball about the origin of W, mills into it to `depth_mm`, and leans
-/// over: touches with the burr, then with the shaft. `progress` runs from 0 to 1.
+/// Returns the pose of a tool that descends on top of a ball around the origin of W, mills into it to
+/// `depth_mm` and tilts, so that first the burr and then the shaft touches. `progress` runs from 0 to 1.
 inline Pose down_and_lean(double ball_radius_mm, double burr_radius_mm, double depth_mm, double progress) {
   const double down = std::min(1.0, 1.5 * progress);
   const double lean = std::max(0.0, progress - 0.6);

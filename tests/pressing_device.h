@@ -6,8 +6,8 @@
 
 namespace osteomill::testing_support {
 
-/// A device that is pressed along a line with a given force: it goes on at `mm_per_Ns` times what the force
-/// that it is sent leaves of the push, and no faster than kFastest_mm_s.
+/// A device pushed along a line with a given force. It moves at `mm_per_Ns` times the push minus the force
+/// sent to it, limited to kFastest_mm_s.
 class PressingDevice final : public Device {
  public:
   static constexpr double kFastest_mm_s = 50;

@@ -1,4 +1,4 @@
-// Surfaces of scans from files.
+// Surfaces of real scans.
 #include <gtest/gtest.h>
 
 #include "osteomill/ct/read_scan.h"
@@ -30,7 +30,7 @@ TEST(SurfaceMesh, OfARealToothIsClosedAndOfItsSize) {
   EXPECT_NEAR(enclosed_volume_mm3(whole), expected_mm3, 0.005 * expected_mm3);
 }
 
-// A skull that the scan cuts off.
+// The skull extends beyond the scan.
 TEST(SurfaceMesh, OfARealSkullIsClosedAtTheBorderOfTheScan) {
   OSTEOMILL_NEEDS_SHARED("cranium/cranium_256x256x108_i16.nrrd");
   EXPECT_TRUE(is_sound(mesh_in_one_piece(DensityView(scanned("cranium/cranium_256x256x108_i16.nrrd", 300)))));

@@ -10,7 +10,7 @@
 
 namespace osteomill::testing_support {
 
-/// Haptic hardware in simulated time, whose faults a test scripts, and what its hand got.
+/// Haptic hardware in simulated time with scripted faults. Logs the wrenches that its hand receives.
 struct ScriptedDevice {
   struct Got {
     double at_s;
@@ -19,8 +19,8 @@ struct ScriptedDevice {
   DeviceCapabilities can;
   double now_s = 10;
   DeviceInput input;
-  /// It gives no input; takes no wrench; says that it is lost, but takes wrenches; is gone, and cannot be
-  /// opened.
+  /// Faults: gives no input; accepts no wrench; reports that it is lost but accepts wrenches; is disconnected
+  /// and cannot be opened.
   bool silent = false;
   bool busy = false;
   bool deaf = false;
@@ -42,7 +42,7 @@ struct ScriptedDevice {
   }
   const Wrench& last() const { return got.back().wrench_B; }
 
-  /// The largest steps of force and torque from one writing to the next, a millisecond apart.
+  /// Returns the largest changes of force and torque between consecutive writes, 1 ms apart.
   Wrench largest_step() const {
     Wrench largest;
     for (std::size_t n = 1; n < got.size(); ++n) {

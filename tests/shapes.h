@@ -8,9 +8,9 @@
 
 namespace osteomill::testing_support {
 
-/// Bone of a known shape: `signed_distance_mm` (negative inside) made into densities 0 (outside) to 1000
-/// (inside) with a linear edge `edge_voxels` wide about the surface, at which the density is 500, the
-/// isovalue.
+/// Returns bone of a known shape from `signed_distance_mm` (negative inside): densities 0 (outside) to 1000
+/// (inside), with a linear edge `edge_voxels` wide across the surface, at which the density is the isovalue,
+/// 500.
 inline Volume shape_volume(const GridGeometry& geometry,
                            const std::function<double(const Vec3& point_W)>& signed_distance_mm,
                            double edge_voxels = 2.0) {
@@ -28,7 +28,7 @@ inline Volume shape_volume(const GridGeometry& geometry,
   return Volume(DensityGrid(geometry, std::move(densities)), 500.0);
 }
 
-/// A cube-shaped grid of `voxels`^3 centred on the origin of W.
+/// Returns a cubic grid of `voxels`^3 centred on the origin of W.
 inline GridGeometry centred_cube(int voxels, double spacing_mm) {
   GridGeometry geometry;
   geometry.dims = {voxels, voxels, voxels};
@@ -37,12 +37,12 @@ inline GridGeometry centred_cube(int voxels, double spacing_mm) {
   return geometry;
 }
 
-/// Half-space of bone below the plane through `point_W` with the outward `normal`.
+/// Returns the signed distance of the half-space below the plane through `point_W` with the outward `normal`.
 inline std::function<double(const Vec3&)> plane(const Vec3& point_W, const Vec3& normal) {
   return [point_W, unit = normal.normalized().eval()](const Vec3& p) { return unit.dot(p - point_W); };
 }
 
-/// A ball of bone.
+/// Returns the signed distance of a ball.
 inline std::function<double(const Vec3&)> ball(const Vec3& centre_W, double radius_mm) {
   return [=](const Vec3& p) { return (p - centre_W).norm() - radius_mm; };
 }

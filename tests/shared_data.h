@@ -14,7 +14,7 @@ inline std::filesystem::path shared_data() {
 
 }  // namespace osteomill::testing_support
 
-/// Skips a test, saying why, if the real scan `relative` is not on this machine.
+/// Skips a test, with a message, if the real scan `relative` is not on this machine.
 #define OSTEOMILL_NEEDS_SHARED(relative)                                                            \
   do {                                                                                              \
     if (!std::filesystem::exists(osteomill::testing_support::shared_data() / (relative))) {         \

@@ -10,7 +10,7 @@ namespace osteomill::testing_support {
 
 inline constexpr int kSoundRate_hz = 44100;
 
-/// The strength of one frequency in the last quarter of a second, by a plain Fourier sum.
+/// Returns the amplitude of one frequency in the last quarter of a second, as an unnormalised Fourier sum.
 inline double strength(const std::vector<float>& sound, double frequency_hz) {
   double cosine = 0;
   double sine = 0;
@@ -22,7 +22,8 @@ inline double strength(const std::vector<float>& sound, double frequency_hz) {
   return std::hypot(cosine, sine);
 }
 
-/// The power in a band about 4 kHz against that of the tone, in the last quarter of a second.
+/// Returns the logarithm of the power in a band around 4 kHz relative to the tone's, in the last quarter of a
+/// second.
 inline double brightness(const std::vector<float>& sound, double tone_hz) {
   double band = 0;
   for (double frequency_hz = 3600; frequency_hz <= 4400; frequency_hz += 16)
@@ -32,10 +33,11 @@ inline double brightness(const std::vector<float>& sound, double tone_hz) {
   return std::log(band / tone);
 }
 
-/// Sounds of two kinds, each as a number.
+/// One feature value per sound, for two classes of sounds.
 using TwoKinds = std::array<std::vector<double>, 2>;
 
-/// Returns the share of `tried` that the threshold midway between the means of `learnt` tells.
+/// Returns the share of `tried` classified correctly by the threshold midway between the class means of
+/// `learnt`.
 inline double told_apart(const TwoKinds& learnt, const TwoKinds& tried) {
   const auto mean_of = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());

@@ -9,11 +9,11 @@
 
 namespace osteomill::testing_support {
 
-/// The plain way to say what a ball sweeps: on a lattice of points, the signed distance to the union of the
-/// balls about all centres of a path.
+/// Brute-force reference of the volume swept by a ball: the signed distance, on a lattice of points, to the
+/// union of balls around all centres of a path.
 class SweptPath {
  public:
-  /// Points a little less than `spacing_mm` apart about all of the path.
+  /// Builds a lattice of points `spacing_mm` apart around the whole path.
   SweptPath(const std::vector<Vec3>& centres_W, double radius_mm, double spacing_mm)
       : radius_mm_(radius_mm), spacing_mm_(spacing_mm), first_W_(centres_W.at(0)) {
     Vec3 last_W = first_W_;
@@ -29,7 +29,7 @@ class SweptPath {
     distances_mm_.assign(static_cast<std::size_t>(dims_[0]) * static_cast<std::size_t>(dims_[1]) *
                              static_cast<std::size_t>(dims_[2]),
                          kFar_mm);
-    // Between centres so close the union of balls has no ridges to speak of: a^2 / 8 r.
+    // Between centres this close, ridges of the union of balls, a^2 / 8 r high, are negligible.
     const double apart_mm = std::sqrt(0.002 * radius_mm);
     Vec3 before_W = centres_W.front();
     add(before_W);
@@ -46,7 +46,7 @@ class SweptPath {
       for (int j = 0; j < dims_[1]; ++j)
         for (int i = 0; i < dims_[0]; ++i) visit(point_W(i, j, k), static_cast<double>(distances_mm_[n++]));
   }
-  /// At the point of the lattice that is nearest, at most twice the margin.
+  /// Returns the distance at the nearest lattice point, clamped to twice the margin.
   double distance_mm(const Vec3& point_W) const {
     std::size_t at[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -93,17 +93,16 @@ class SweptPath {
   std::vector<float> distances_mm_;
 };
 
-/// Compares the cut with the swept volume, by the surface as it is seen and felt (densities interpolated),
-/// only inside bone that reached two voxels all around: without the rim, where the cut meets the earlier
-/// surface, because an edge is rounded within the voxels that it goes through. Edges that two passes leave
-/// between them are counted separately.
+/// Compares the cut with the swept volume by the interpolated densities, which define the drawn and felt
+/// surface. Ignores points within two voxels of the earlier surface, because voxels round the edge at the
+/// cut's rim. Counts edges between two passes separately.
 struct Carving {
   double swept_mm3 = 0;
   double carved_mm3 = 0;
-  /// Swept and still bone: how deep within the sweep the deepest lies.
+  /// Largest depth inside the swept volume at which bone remains.
   double left_mm = 0;
-  /// Not swept and no bone any more: how far outside the sweep the farthest lies, where the swept surface is
-  /// smooth, and on the edges between two passes.
+  /// Largest distance outside the swept volume at which bone was removed: beside a smooth swept surface, and
+  /// at edges between two passes.
   double lost_mm = 0;
   double edge_lost_mm = 0;
 
@@ -121,8 +120,8 @@ inline bool is_deep_in_bone(const Volume& volume, const Vec3& point_W) {
   return true;
 }
 
-/// Returns whether the nearest swept surfaces on two sides of the point, a voxel apart, face different ways:
-/// the distance then grows slower than the way.
+/// Returns whether the point is at an edge between two swept surfaces: the gradient of the distance, by
+/// central differences over one voxel, is then shorter than 1.
 inline bool is_at_edge(const SweptPath& path, const GridGeometry& geometry, const Vec3& point_W) {
   constexpr double kMinSlope = 0.97, kMaxSpacing_mm = 0.25;
   Vec3 slope;

@@ -40,7 +40,7 @@ struct Case {
 
 class TickAllocation : public ::testing::TestWithParam<Case> {};
 
-// A no-go structure in the middle of bone of five other labels.
+// Returns labels with a no-go structure in the middle of bone of five other labels.
 std::shared_ptr<const LabelMap> labels_of(const GridGeometry& grid) {
   std::vector<LabelMap::LabelIndex> places;
   for (int k = 0; k < grid.dims[2]; ++k) {
@@ -54,15 +54,15 @@ std::shared_ptr<const LabelMap> labels_of(const GridGeometry& grid) {
   return std::make_shared<const LabelMap>(labels, grid, grid, places);
 }
 
-// A nerve of voxels, and a ball.
+// Returns the distances from a nerve, made of voxels, and a ball.
 NoGoDistances structures_in(const GridGeometry& grid) {
   VoxelSet nerve(VoxelBox{{30, 0, 20}, {31, 63, 21}});
   for_each(nerve.box(), [&](const VoxelIndex& v) { nerve.insert(v); });
   return {{StructureDistance(nerve, grid)}, {StructureDistance(SphereShape{{0, 0, -4}, 1})}};
 }
 
-// Comes down, mills, leans the shaft on the edge; also a jump across the bone, a pose that is not finite, and
-// a reset.
+// Descends, mills and leans the shaft on the edge; also jumps across the bone, sends a non-finite pose, and
+// resets.
 TEST_P(TickAllocation, NoTickAllocates) {
   constexpr double kBallRadius_mm = 6;
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
@@ -86,7 +86,7 @@ TEST_P(TickAllocation, NoTickAllocates) {
     if (n == 2500) pose.position_mm.x() = std::numeric_limits<double>::quiet_NaN();
     if (n == 2600) pose.position_mm = {0, 0, -20};
     device.put(pose);
-    // The last ticks only tell of labels for which there was no room before.
+    // The last ticks only report labels that did not fit into earlier records.
     const TickRecord record = session.tick(device, {.time_s = n * 1e-3, .spindle_on = n < kTicks - 3});
     touching += record.contacts > 0 ? 1 : 0;
     removed_mm3 = record.removed_mm3;
@@ -142,8 +142,7 @@ TEST(TickAllocation, AGuardThatHoldsTheBurrAllocatesNothing) {
   EXPECT_GT(strongest_N, 2);
 }
 
-// The whole loop of the haptic thread, with the hand-over to the follower, the vibration, and commands coming
-// in.
+// The whole loop of the haptic thread, with the queue to the follower, vibration, and incoming commands.
 TEST(TickAllocation, NoTickOfAHapticThreadAllocates) {
   constexpr double kBallRadius_mm = 6;
   const auto bone = std::make_shared<Volume>(testing_support::shape_volume(

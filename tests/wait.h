@@ -5,8 +5,8 @@
 
 namespace osteomill::testing_support {
 
-/// Returns whether the condition comes true, looked at every few milliseconds; false when it has not after a
-/// time that is long also on a busy machine.
+/// Polls the condition every few milliseconds. Returns true as soon as it holds, or false after a timeout
+/// that is long enough for a busy machine.
 template <typename Condition>
 bool comes_true(const Condition& condition) {
   using namespace std::chrono_literals;

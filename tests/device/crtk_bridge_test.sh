@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# osteomill mills by way of the CRTK bridge in the hand of what stands in for an arm, over a real roscore:
+# osteomill mills through the CRTK bridge with a stand-in for an arm, over a real roscore:
 #   crtk_bridge_test.sh OSTEOMILL
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

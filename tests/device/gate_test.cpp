@@ -1,5 +1,5 @@
-// Whatever lets a device be driven while its tool is sunk in bone, the hand feels nothing until the tool is
-// out, and then what it touches after that: each back end against what stands in for its device.
+// If a device becomes driven while its tool is inside bone, the hand feels no force until the tool is out;
+// contacts after that are rendered. Tests each back end with a stand-in for its device.
 
 #include <algorithm>
 #include <chrono>
@@ -31,15 +31,15 @@ namespace {
 
 constexpr double kTick_s = 1e-3;
 
-// A device that stands still, whose gate a test opens and closes.
+// A resting device whose gate (whether it may be driven) the test opens and closes.
 class Rig {
  public:
   virtual ~Rig() = default;
   virtual OpenConnection way() = 0;
   virtual void set_gate(bool is_open) = 0;
-  // Force as the hand has it.
+  // Returns the force on the hand.
   virtual Vec3 felt_N() const = 0;
-  // Once a tick, before the device's thread has its turn.
+  // Called once per tick, before the device's exchange.
   virtual void pass(double /*now_s*/) {}
 };
 
@@ -87,7 +87,7 @@ class DhdRig : public LibraryRig<DhdStandIn> {
   }
 };
 
-// Only the device's own watchdog closes it, and the connection opens it again by itself.
+// Only the device's watchdog closes the gate, and the connection reopens it by itself.
 class DhdWatchdogRig final : public DhdRig {
  public:
   void set_gate(bool is_open) override {
@@ -197,7 +197,7 @@ std::unique_ptr<Rig> rig_named(const std::string& name) {
 using Case = std::tuple<std::string, std::string>;
 class Gate : public ::testing::TestWithParam<Case> {
  protected:
-  // Above the bone below z = 0.
+  // Free space above the bone, which is below z = 0.
   static constexpr double kFree_mm = 3;
 
   void tick() {
@@ -207,7 +207,7 @@ class Gate : public ::testing::TestWithParam<Case> {
     record_ = session_.tick(device_, {.time_s = now_s_, .dt_s = kTick_s, .spindle_on = spindle_on_});
     max_N_ = std::max(max_N_, rig_->felt_N().norm());
   }
-  // Some of the devices have threads of their own, and may be slow.
+  // Some devices have their own threads and may be slow.
   template <typename Condition>
   bool comes_true(const Condition& condition) {
     for (int n = 0; n < 3000 && !condition(); ++n) tick();
@@ -225,7 +225,7 @@ class Gate : public ::testing::TestWithParam<Case> {
     for (int n = 0; n < 250 && !felt(); ++n) move_to(z_mm_ - 0.02, 0.02);
     EXPECT_TRUE(comes_true(felt));
   }
-  // Nothing is felt in bone, nor on the way out of it; then what is touched is.
+  // Expects no force in bone and on the way out, and contact forces after that.
   void expect_contact_only_from_outside() {
     spindle_on_ = true;
     for (int n = 0; n < 150; ++n) tick();
@@ -264,7 +264,7 @@ INSTANTIATE_TEST_SUITE_P(EveryBackEnd, Gate,
                            return name;
                          });
 
-// A Falcon does this when it is calibrated by hand.
+// Happens when a Falcon is calibrated by hand.
 TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
   if (std::get<0>(GetParam()) == "dhd_watchdog") GTEST_SKIP() << "it opens by itself before the hand sinks";
   rig_->set_gate(false);
@@ -284,14 +284,14 @@ TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
   }
 }
 
-// The button for the force, pressed twice, does this, and so does the watchdog.
+// Happens when the force button is pressed twice, or the watchdog triggers.
 TEST_P(Gate, ClosesWhileItPressesAndTheHandSinks) {
   rig_->set_gate(true);
   ASSERT_TRUE(comes_true([&] { return is_finite(record_.X_WD) && record_.driven; }));
   press_until_it_is_felt();
   rig_->set_gate(false);
   ASSERT_TRUE(comes_true([&] { return !record_.driven; }));
-  // The wrench comes down in five rounds of the device.
+  // The wrench ramps down in five exchanges.
   ASSERT_TRUE(comes_true([&] { return rig_->felt_N().isZero(0); }));
   max_N_ = 0;
   removed_mm3_ = record_.removed_mm3;

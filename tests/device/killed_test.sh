@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
-# What the hand got, as its device wrote it down, when either side of the datagrams is killed:
+# Checks the force on the hand, as logged by its UDP device, when either side is killed:
 #   killed_test.sh OSTEOMILL UDP_DEVICE
-# The device writes a line for every millisecond: the time, when it last heard a wrench, the force and the torque that it
-# drove.
+# The device logs a line every millisecond: the time, the time of the last wrench received, and the force and torque driven.
 set -euo pipefail
 osteomill=$1 udp_device=$2
 folder=$(mktemp -d)
@@ -13,7 +12,7 @@ cd "$folder"
 export XDG_CONFIG_HOME=$folder/config
 port=$((20000 + $$ % 20000))
 fail() { echo "FAILED: $1"; tail -n 3 hand said errors 2>/dev/null || true; exit 1; }
-# It writes from when it listens, and is looked for once.
+# The device writes as soon as it listens; osteomill looks for it only once.
 begin_device() {
   rm -f hand
   "$udp_device" "$port" hand & device=$!
@@ -33,7 +32,7 @@ press() {  # SECONDS
   until_true 60 "pressed" pressed
 }
 pressed() { [ -s hand ] && tail -n 1 hand | awk '{ exit !($3 * $3 + $4 * $4 + $5 * $5 > 0.01) }'; }
-# No step above 4 N or 100 N mm in a millisecond, and once the last wrench is 5 ms old, zero within 5 more.
+# Allows no step above 4 N or 100 N mm in a millisecond, and requires zero within 5 ms after the last wrench is 5 ms old.
 judge() {
   awk -v lapse="$1" '
     function change(from, a, b, c) { return sqrt((a - was[from])^2 + (b - was[from + 1])^2 + (c - was[from + 2])^2) }
@@ -45,7 +44,7 @@ judge() {
           if (lapse && (old < 6 || force != 0)) { print "the last wrench never lapsed"; exit 1 } }' hand || fail "$2"
 }
 
-# osteomill is killed while the hand presses: the device's own lapse lets go of it. Until then no other program has it.
+# osteomill is killed while the hand presses: the device's timeout drops the force. Before, no other program can open the device.
 press 90
 ! "$osteomill" live --device "udp:127.0.0.1:$port" --seconds 1 >/dev/null 2>second || fail "two programs have one device"
 grep -q "udp:127.0.0.1:$port: another program has the device in use" second || fail "why: $(cat second)"
@@ -55,7 +54,7 @@ kill $device
 wait $device || fail "the device ended otherwise"
 judge 1 "osteomill killed"
 
-# It is asked to end: the hand is let go of by a wrench, before it is a matter of lapsing.
+# osteomill is terminated: it sends a zero wrench before the timeout.
 press 90
 kill -TERM $program
 sleep 0.3
@@ -63,7 +62,7 @@ kill $device
 wait $device || true
 judge 1 "osteomill ended"
 
-# The device is killed: osteomill says so, and goes on when it is there again.
+# The device is killed: osteomill reports it, and continues when the device is back.
 press 20
 kill -9 $device
 wait $device 2>/dev/null || true

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Each back end mills in `live`, and one of them (all with ALL_WINDOWS=1) in the window, against what stands in for its device:
+# Each back end mills in `live`, and one of them (all with ALL_WINDOWS=1) in the window, with a stand-in for its device:
 #   stand_ins_test.sh OSTEOMILL LIBDHD LIBHD HAPLY_SERVICE IGTL_SERVER
-# Its handle goes slowly along an axis, turned so that this is into the bone, and it writes down what it was sent.
+# Its handle moves slowly along an axis that the test turns into the bone, and it logs the wrenches it receives.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 osteomill=$1 haply_service=$4 igtl_server=$5
@@ -19,14 +19,14 @@ port=$((20000 + $$ % 20000)) slicer_port=$((20001 + $$ % 20000))
 for _ in $(seq 200); do [ ! -s listens ] || [ ! -s listens_too ] || break; sleep 0.1; done
 bash "$here/../window/ball.sh" >ball.nrrd
 
-# Checks the wrenches of a session that is over: something was felt, and zero at the end.
+# Checks the wrenches of a finished session: a force was felt, and the last one is zero.
 judge() {
   for _ in $(seq 50); do ! grep -q "closed" hand || break; sleep 0.1; done
   tail -n 1 hand | awk '{ for (n = 1; n <= NF; ++n) { if ($n == "most") most = $(n + 1); if ($n == "last") at = n } }
     END { exit !(most > 0.1 && $(at + 1) == 0 && $(at + 2) == 0 && $(at + 3) == 0) }' || fail "$1: what the hand got"
 }
 
-mills() {  # DEVICE NAME DOWN AWAY OPTIONS...: how the device is turned so that it goes down, and away from the viewer
+mills() {  # DEVICE NAME DOWN AWAY OPTIONS...: rotations of the device so that the handle moves down, or away from the viewer
   local device=$1 name=$2
   : >hand
   "$osteomill" live ball.nrrd --device "$device" --device-scale 0.2 --device-turn $3 --seconds 1.5 --spindle \
@@ -50,7 +50,7 @@ mills dhd "Force Dimension sigma.7 4711" "90 0 0" "0 180 0"
 mills hd "3D Systems Touch 0815" "0 0 -90" "0 90 0"
 mills "haply:127.0.0.1:$port" "Haply Inverse3 049D" "0 0 -90" "0 90 0" --send-bone "127.0.0.1:$slicer_port"
 
-# Ctrl-Z, and then it is killed: the service, which knows no lapse, was sent zero before.
+# Stopped by Ctrl-Z and then killed: osteomill sent zero before, because the service has no timeout.
 : >hand
 "$osteomill" live ball.nrrd --device "haply:127.0.0.1:$port" --device-scale 0.2 --device-turn 0 0 -90 --seconds 60 \
   --algorithm line-proxy --quiet >said 2>errors & program=$!
@@ -61,7 +61,7 @@ kill -9 $program
 wait $program 2>/dev/null || true
 judge "haply stopped"
 
-# A function of the maker's that never returns: `live` ends all the same, and names it.
+# A maker's function never returns: `live` still ends, and names it.
 OSTEOMILL_STAND_IN_HANGS_IN=dhdGetPositionAndOrientationFrame timeout 60 "$osteomill" live ball.nrrd --device dhd --seconds 3 \
   --quiet >said 2>errors || fail "live of a device that hangs ended with $?"
 grep -q "dhdGetPositionAndOrientationFrame does not return" errors || fail "what hangs is not named"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What readers copy from README.md and docs/: C++ compiles, studies and exercises are read, Python runs on a comparison, MATLAB reads what
-# is there, and every option of a command in an indented line is one of that command's. (CMake: the package test.)
+# Checks the code blocks of README.md and docs/: C++ compiles, studies and exercises can be read, Python runs on a comparison,
+# MATLAB reads only what exists, and commands in indented lines have the options used. (CMake: the package test.)
 #   code_blocks_test.sh SOURCE_DIR PROGRAM
 set -euo pipefail
 source=$1 osteomill=$2
@@ -10,7 +10,7 @@ faults=0
 fault() { echo "FAILED: $*"; faults=$((faults + 1)); }
 pages=("$source"/README.md "$source"/docs/*.md)
 
-# Blocks as files: PAGE.LINE.LANGUAGE
+# Writes the blocks to files PAGE.LINE.LANGUAGE
 for page in "${pages[@]}"; do
   awk -v to="$folder/$(basename "$page" .md)" '
     /^```[a-z]+$/ { file = to "." NR "." substr($0, 4); next }
@@ -22,7 +22,7 @@ flags=(-std=c++20 -fsyntax-only -w -DEIGEN_MAX_ALIGN_BYTES=16 -isystem /usr/incl
 for room in "$source"/osteomill/*/; do flags+=(-I "${room}include"); done
 shopt -s nullglob
 for block in "$folder"/*.cpp; do
-  # A part of a program has the bone, and stands in a function.
+  # Wraps a program fragment in a function that has the bone.
   if ! grep -q 'int main' "$block"; then
     { sed 's/.*/#include "&"/' <<'HEADERS'
 osteomill/session/connected_device.h
@@ -49,7 +49,7 @@ for block in "$folder"/*.toml; do
   fi
 done
 
-# In the folder with the comparison that they read.
+# Runs them in the folder with the comparison that they read.
 cd "$folder"
 "$osteomill" compare --algorithm point-shell --seconds 0.3 --out osteomill-comparison >compare.log 2>&1 ||
   { cat compare.log; fault "there is nothing to read"; }

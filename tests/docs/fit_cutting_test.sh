@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# scripts/fit-cutting finds the published energy and exponent of human femur, holds a row out, and refuses what is no table.
+# scripts/fit-cutting finds the published energy and exponent of human femur, holds a row out, and refuses files that are not
+# tables.
 #   fit_cutting_test.sh SOURCE_DIR
 set -euo pipefail
 fit=$1/scripts/fit-cutting
@@ -18,7 +19,7 @@ head -n 2 femur.csv >one.csv
 code=0; "$fit" one.csv >out.txt 2>err.txt || code=$?
 [ $code -eq 1 ] && grep -q 'needs two rows' err.txt || fault "one row: $(cat err.txt)"
 
-# The blind test on simulated raters: one who hears a difference is told from one who guesses.
+# The blind test distinguishes simulated raters who hear a difference from those who guess.
 blind=$1/scripts/blind-test
 "$blind" plan --raters 8 --seed 1 --out plan.csv
 [ "$(wc -l <plan.csv)" -eq 129 ] || fault "the plan has $(wc -l <plan.csv) lines"

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Installs the built tree into an empty folder and uses it from there alone: its headers; the examples;
-# projects that take one component, or everything; pkg-config.
+# Installs the build into an empty folder and uses only that: headers, examples, projects that use one component or all, pkg-config.
 #   installed_package_test.sh BUILD_DIR SOURCE_DIR
 set -euo pipefail
 source=$2
@@ -19,7 +18,7 @@ for file in doc/osteomill/{LICENSE,README.md,docs/architecture.md,examples/press
   [ -s "prefix/share/$file" ] || fail "not installed: $file"
 done
 
-# All headers compile from here, together; each alone: the dev preset.
+# All installed headers compile together; the dev preset compiles each alone.
 export PKG_CONFIG_PATH=$folder/prefix/lib/pkgconfig
 flags="-w $(pkg-config --cflags osteomill)"
 (cd prefix/include && find osteomill -name '*.h') | sort >headers
@@ -31,7 +30,7 @@ user() {  # NAME CMAKE_ARGUMENTS...
   cmake -S "$source/tests/package" -B "$1" -G Ninja -DCMAKE_PREFIX_PATH="$folder/prefix" \
     -DSOURCE="$source/examples/press_on_a_ball.cpp" "${@:2}" >"$1.log" 2>&1
 }
-# Haptics alone, if nothing can be found that only other components need.
+# The haptics component alone, with all packages disabled that only other components need.
 mapfile -t absent < <(packages '.*' | grep -vxF -f <(packages 'base|volume|haptics'))
 [ ${#absent[@]} -gt 3 ] || fail "the packages of haptics alone are not known"
 disabled=("${absent[@]/#/-DCMAKE_DISABLE_FIND_PACKAGE_}")
@@ -43,7 +42,7 @@ cmake --build haptics >/dev/null && haptics/user >felt
   grep -q 'component session needs the library spnav' session.log || fail "session was found without libspnav"
 ! user misspelt -DCOMPONENTS=haptix && grep -q 'no component haptix' misspelt.log || fail "haptix was found"
 
-# Everything, as CMake and as pkg-config say it; with all of every library, so that nothing can be missing.
+# All components, through CMake and pkg-config; links every library whole, so that missing symbols are found.
 user everything -DCOMPONENTS="$(printf '%s\n' "${components[@]}" | paste -sd';')" ||
   { cat everything.log; fail "not everything was found"; }
 cmake --build everything >/dev/null && everything/user | cmp - felt
@@ -54,7 +53,7 @@ g++ user.o -o whole -Wl,--whole-archive prefix/lib/libosteomill_*.a -Wl,--no-who
 g++ user.o -o by_pkg_config $(pkg-config --static --libs osteomill)
 ./by_pkg_config | cmp - felt
 
-# The examples, from where they are installed.
+# Builds the installed examples.
 cmake -S prefix/share/doc/osteomill/examples -B examples -G Ninja -DCMAKE_PREFIX_PATH="$folder/prefix" >examples.log 2>&1 &&
   cmake --build examples >>examples.log || { cat examples.log; fail "the examples cannot be built"; }
 mapfile -t examples < <(sed -nE 's/^add_executable\((\w+) .*/\1/p' "$source/examples/CMakeLists.txt")
@@ -63,7 +62,7 @@ for example in "${examples[@]}"; do
   "examples/$example" >"$example.log" || { cat "$example.log"; fail "the example $example fails"; }
 done
 
-# Configures the CMake of the documents: each find_package with the target_link_libraries that follows.
+# Configures the CMake code of the documents: each find_package with the target_link_libraries after it.
 mkdir copied
 awk '/^    find_package\(osteomill/ { found = $0; next }
   found && match($0, /^    target_link_libraries\([a-z_]+/) {
@@ -81,15 +80,14 @@ project(copied LANGUAGES CXX)'; cat "$copied"; } >"${copied%.cmake}/CMakeLists.t
     -DSOURCE="$source/examples/press_on_a_ball.cpp" >copied.log 2>&1 || { cat "$copied" copied.log; fail "is not configured"; }
 done
 
-# The table of components names only components that exist.
+# The table in library.md names only existing components.
 mapfile -t named < <(sed -n '/^| to | components |/,/^$/p' "$source/docs/library.md" | awk -F'|' '{ print $3 }' | grep -oE '`[a-z]+`' | tr -d '`' | sort -u)
 [ ${#named[@]} -gt 3 ] || fail "library.md names only ${#named[@]} components"
 for component in "${named[@]}"; do
   [[ " ${components[*]} " == *" $component "* ]] || fail "library.md names the component $component, which does not exist"
 done
 
-# A program of any flags has equal bits, although its objects bring inline functions of their own into the
-# link.
+# Programs give the same bits with any flags, although their objects contain their own copies of inline functions.
 for flags in "-O1" "-O3 -march=native -ffp-contract=fast"; do
   user bits -DCOMPONENTS=session -DSOURCE="$source/tests/package/same_bits.cpp" -DCMAKE_CXX_FLAGS="$flags" &&
     cmake --build bits >/dev/null && bits/user >"bits with $flags" || { cat bits.log; fail "same_bits fails with $flags"; }
@@ -100,6 +98,6 @@ g++ -O3 -march=native -ffp-contract=fast $(pkg-config --cflags osteomill) "$sour
 for told in "bits with -O3 -march=native -ffp-contract=fast" "bits by pkg-config"; do
   diff "bits with -O1" "$told" || fail "other bits: $told"
 done
-# Without what the package asks for, a program that could not be right is not made.
+# Without the flags that the package requires, a program with another layout must not compile.
 ! echo '#include <osteomill/base/pose.h>' | g++ -std=c++20 -march=x86-64-v3 -fsyntax-only -x c++ \
   -isystem /usr/include/eigen3 -I prefix/include - 2>/dev/null || fail "a Quat that lies otherwise is taken"

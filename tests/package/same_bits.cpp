@@ -1,5 +1,5 @@
-// A user's program that mills with every algorithm, computes beside it with what is inline in the headers,
-// and prints the bits: they must not depend on the user's flags.
+// A user's program that mills with every algorithm and also calls inline functions of the headers, and prints
+// the bits, which must not depend on the user's flags.
 #include <bit>
 #include <cmath>
 #include <cstdint>

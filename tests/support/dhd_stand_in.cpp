@@ -1,4 +1,4 @@
-// Stands in for libdhd if there is no device: the functions that osteomill uses, by the maker's names.
+// Replaces libdhd in tests without a device. Has the functions that osteomill uses, under the maker's names.
 
 #include "tests/support/dhd_stand_in.h"
 
@@ -18,7 +18,7 @@ double g_most_N = 0;
 
 DhdHang g_hang;
 
-// The environment's after a second, as a cable that breaks.
+// The function named in the environment hangs after a second, like a broken cable.
 bool hangs_in(std::string_view function) {
   using Clock = std::chrono::steady_clock;
   static const Clock::time_point start = Clock::now();
@@ -117,7 +117,7 @@ int dhdSetBrakes(int on, char) {
   g_state.status[6] = on;
   return 0;
 }
-// Behaves like the maker's own library with the device that it simulates.
+// Behaves like the maker's library with its simulated device.
 int dhdEnableForce(unsigned char on, char) {
   if (g_state.status[3] == 0) {
     g_state.status[5] = on;

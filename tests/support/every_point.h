@@ -5,13 +5,13 @@
 
 namespace osteomill {
 
-/// For tests. Meets every node of an octree.
+/// For tests. Accepts every node of an octree.
 inline BrickTree::EightBits every_node(int, const VoxelIndex&) {
   return 0xff;
 }
 
-/// Calls `f(point, origin_G)` for every point of one kind (`bricks.fine()` or `bricks.coarse()`),
-/// which lies at `origin_G` + its place in the grid's frame. Makes all bricks.
+/// Calls `f(point, origin_G)` for every point of one kind (`bricks.fine()` or `bricks.coarse()`); its
+/// position in the grid's frame G is relative to `origin_G`. Builds all bricks.
 template <typename F>
 void for_each_point(BoneBricks& bricks, const BrickPoints& kind, F&& f) {
   bricks.build_and_visit(every_node, [&](const VoxelIndex& brick, std::uint32_t slot) {

@@ -12,7 +12,7 @@
 
 namespace osteomill::testing_support {
 
-/// A test with a folder of its own, and with what reading a scan from it says.
+/// A test with its own folder, and helpers for the messages from reading a scan in it.
 class FolderTest : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
@@ -20,7 +20,7 @@ class FolderTest : public ::testing::Test {
     return folder_ / name;
   }
 
-  /// Returns why the path is refused; empty if it is read.
+  /// Returns the error message for the path; empty if it can be read.
   static std::string refusal(const std::filesystem::path& path) {
     try {
       read_scan(path);

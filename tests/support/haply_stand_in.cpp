@@ -1,4 +1,4 @@
-// Haply's service if there is none: haply_stand_in PORT
+// Replaces Haply's service in tests without a device: haply_stand_in PORT
 
 #include "tests/support/haply_stand_in.h"
 

@@ -20,8 +20,8 @@
 
 namespace osteomill::testing_support {
 
-/// Stands in for Haply's Inverse service: an inventory for who connects, then a state for each text, as
-/// docs.haply.co/inverseSDK/service/realtime/websocket-protocol has them (3.5), `status` as
+/// Replaces Haply's Inverse service: sends an inventory to each client that connects, then a state for each
+/// text, as in docs.haply.co/inverseSDK/service/realtime/websocket-protocol (3.5), and `status` as in
 /// docs.haply.co/inverseSDK/service/api/simulation.
 class HaplyStandIn {
  public:
@@ -52,43 +52,43 @@ class HaplyStandIn {
   int port() const { return port_; }
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
 
-  /// Set before a client connects.
+  /// Set these before a client connects.
   std::atomic<bool> is_3_5{true};
   const char* grip = "wireless_verse_grip";
   std::atomic<bool> has_device{true};
   std::atomic<bool> has_minverse_first{false};
   std::atomic<const char*> type{"inverse3"};
-  /// Status of the device and its grip that is sent with every state.
+  /// Status of the device and its grip, sent with every state.
   std::atomic<bool> is_calibrated{true};
   std::atomic<bool> is_awake{true};
   std::atomic<bool> is_in_use{false};
-  /// By what the service's filters change a force.
+  /// Factor by which the service's filters scale a force.
   std::atomic<double> force_scale{1};
 
-  /// Said from now on in place of a state.
+  /// Sends `text` from now on instead of states.
   void say(const std::string& text) {
     const std::lock_guard lock(mutex_);
     instead_ = text;
   }
-  /// Answers nothing from now on; or closes at the next text.
+  /// Stops answering; or closes the connection at the next text.
   std::atomic<bool> is_mute{false};
   std::atomic<bool> closes{false};
-  /// Before each answer.
+  /// Delay before each answer.
   std::atomic<int> delay_ms{0};
-  /// The handle sweeps if this is not set.
+  /// If false, the handle sweeps.
   std::atomic<bool> is_held{false};
 
-  /// The texts that came.
+  /// Returns the received texts.
   std::vector<std::string> heard() const {
     const std::lock_guard lock(mutex_);
     return heard_;
   }
-  /// Every force that was commanded, one for each text.
+  /// Returns the commanded force of each text.
   std::vector<std::array<double, 3>> forces() const {
     const std::lock_guard lock(mutex_);
     return forces_;
   }
-  /// The force last commanded, under whichever of the two keys the version has; NaN if it was another.
+  /// Returns the last commanded force, under the key of the service's version; NaN if the key was another.
   std::array<double, 3> force_N() const {
     const std::lock_guard lock(mutex_);
     return force_N_;
@@ -131,7 +131,7 @@ class HaplyStandIn {
   }
 
  private:
-  // With one client: what another did not wait for is not for the next.
+  // State of one client's connection, so that unread answers do not reach the next client.
   struct Talk {
     std::string coming;
     std::deque<std::string> going;

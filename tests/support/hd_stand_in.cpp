@@ -1,4 +1,4 @@
-// Stands in for libHD if there is no device: the functions that osteomill uses, by the maker's names.
+// Replaces libHD in tests without a device. Has the functions that osteomill uses, under the maker's names.
 
 #include "tests/support/hd_stand_in.h"
 

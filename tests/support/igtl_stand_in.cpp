@@ -1,4 +1,4 @@
-// 3D Slicer if there is none: igtl_stand_in PORT
+// Replaces 3D Slicer in tests: igtl_stand_in PORT
 
 #include "tests/support/igtl_stand_in.h"
 

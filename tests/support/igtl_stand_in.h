@@ -18,8 +18,8 @@
 
 namespace osteomill::testing_support {
 
-/// Stands in for 3D Slicer: an OpenIGTLink server made of the library's own sockets, which keeps the image
-/// and the tool that it is sent, and closes on messages that Slicer has no reader for.
+/// Replaces 3D Slicer: an OpenIGTLink server on the library's own sockets, which stores the received image
+/// and tool, and closes the connection on messages that Slicer cannot read.
 class IgtlStandIn {
  public:
   explicit IgtlStandIn(int port = 0) {
@@ -39,17 +39,17 @@ class IgtlStandIn {
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
   std::atomic<bool> closes{false};
 
-  /// An image as it has been put together of the IMAGE messages that came.
+  /// The image assembled from all received IMAGE messages.
   struct Image {
     int messages = 0;
-    /// How many values the last message had.
+    /// Number of values in the last message.
     std::size_t last_values = 0;
     std::array<int, 3> dims{};
     std::array<float, 3> spacing_mm{};
     igtl::Matrix4x4 matrix{};
     std::vector<float> values;
   };
-  /// The tool as it was last told of.
+  /// The last received tool.
   struct Tool {
     int messages = 0;
     std::string name;
@@ -78,7 +78,7 @@ class IgtlStandIn {
     }
   }
 
-  // Reads messages. Returns false if the other side is gone.
+  // Reads messages until stopped. Returns false if the client has disconnected.
   bool listen(igtl::Socket& client) {
     const auto header = igtl::MessageHeader::New();
     header->InitPack();

@@ -17,13 +17,13 @@
 #include <dcmtk/dcmjpls/djencode.h>
 #include <openjpeg.h>
 
-/// DICOM that tests and fuzzing make, in every encoding that there is an encoder for.
+/// DICOM files made by tests and fuzzing, in every encoding for which an encoder is available.
 namespace osteomill::testing_support {
 
 inline constexpr int kColumns = 7;
 inline constexpr int kRows = 5;
 
-/// One slice of a made-up series, 0.5 x 0.25 mm, 0.75 mm above the one before.
+/// One slice of a synthetic series with pixels of 0.5 x 0.25 mm, 0.75 mm above the previous one.
 struct Slice {
   std::string file = {};
   int k = 0;
@@ -34,7 +34,7 @@ struct Slice {
   std::string image_type = "ORIGINAL\\PRIMARY\\AXIAL";
   E_TransferSyntax syntax = EXS_LittleEndianExplicit;
   std::string modality = "CT";
-  /// A value's, in 8 or 16.
+  /// Bits stored, of 8 or 16 allocated.
   int bits = 12;
 };
 
@@ -83,7 +83,7 @@ inline std::unique_ptr<DcmFileFormat> made_up_slice(const Slice& slice) {
         {DCM_SeriesInstanceUID, slice.series},
         {DCM_Modality, slice.modality},
         {DCM_SeriesDescription, "made up"},
-        // A made-up name, which no message about the series may contain.
+        // A fictitious name, which no message about the series may contain.
         {DCM_PatientName, "Doe^Jane"},
         {DCM_ImageType, slice.image_type},
         {DCM_ImagePositionPatient, slice.position.empty() ? "1\\2\\" + height : slice.position},
@@ -105,7 +105,7 @@ inline std::unique_ptr<DcmFileFormat> made_up_slice(const Slice& slice) {
   return file;
 }
 
-/// Slice k with these pixels, as floats of 32 bits or of 64.
+/// Returns slice k with these pixels, as 32-bit or 64-bit floats.
 inline std::unique_ptr<DcmFileFormat> made_up_float_slice(int k, const std::vector<Float64>& values,
                                                           bool is_double) {
   auto slice = made_up_slice({.k = k});
@@ -121,14 +121,15 @@ inline std::unique_ptr<DcmFileFormat> made_up_float_slice(int k, const std::vect
   return slice;
 }
 
-/// The segment of a made-up segmentation at a voxel; 0 for none. The last slice but one has none at all.
+/// Returns the segment at a voxel of the synthetic segmentation, or 0. The last but one slice has no
+/// segments.
 inline int segment_at(int i, int j, int k) {
   if (k == 2) return 0;
   return i >= 3 && j > k ? 2 : i > 1 ? 1 : 0;
 }
 
-/// Two segments, the first of which reaches under the second, on the grid of the first four made-up slices.
-/// `second_height`: of the second frame.
+/// Returns two overlapping segments on the grid of the first four synthetic slices. `second_height`: z of the
+/// second frame, mm.
 inline std::unique_ptr<DcmFileFormat> made_up_segmentation(const std::string& second_height = "10.75") {
   auto file = made_up_slice({.series = "1.2.8", .modality = "SEG"});
   DcmDataset& data = *file->getDataset();
@@ -185,14 +186,14 @@ inline std::unique_ptr<DcmFileFormat> made_up_segmentation(const std::string& se
   return file;
 }
 
-/// Returns false if it cannot be encoded so, or not written.
+/// Returns false if encoding or writing fails.
 inline bool save(DcmFileFormat& file, const std::filesystem::path& path, E_TransferSyntax syntax) {
   register_encoders();
   return file.getDataset()->chooseRepresentation(syntax, nullptr).good() &&
          file.saveFile(path.c_str(), syntax).good();
 }
 
-/// The compressed pixels; the first item is the table of offsets.
+/// Returns the compressed pixels; the first item is the offset table.
 inline DcmPixelSequence* fragments(DcmDataset& data, E_TransferSyntax syntax) {
   DcmElement* element = nullptr;
   DcmPixelSequence* sequence = nullptr;
@@ -201,7 +202,7 @@ inline DcmPixelSequence* fragments(DcmDataset& data, E_TransferSyntax syntax) {
   return sequence;
 }
 
-/// Makes the pixels of one frame those of a compressed stream.
+/// Replaces the pixels of a one-frame image by a compressed stream.
 inline void put_fragment(DcmDataset& data, E_TransferSyntax syntax, std::span<const unsigned char> stream) {
   auto* sequence = new DcmPixelSequence(DCM_PixelSequenceTag);
   sequence->insert(new DcmPixelItem(DCM_PixelItemTag));
@@ -221,8 +222,8 @@ inline std::vector<unsigned char> bytes_of(DcmPixelItem& fragment) {
   return {bytes, bytes + fragment.getLength()};
 }
 
-/// A JPEG 2000 code stream of one grey frame, by OpenJPEG, as DCMTK has no encoder. `ratio`: how much smaller
-/// it shall be, at a loss; 0: lossless.
+/// Returns a JPEG 2000 code stream of one grey frame, made by OpenJPEG because DCMTK has no encoder. `ratio`:
+/// compression ratio; 0: lossless.
 inline std::vector<unsigned char> jpeg2000_stream(std::span<const int> values, int columns, int rows,
                                                   int bits, bool is_signed, float ratio = 0) {
   opj_image_cmptparm_t component{};

@@ -26,10 +26,10 @@ inline Vec3 normal_of(const MeshVertex& vertex) {
   return {vertex.normal[0], vertex.normal[1], vertex.normal[2]};
 }
 
-/// A whole isosurface, a piece a brick; most are empty.
+/// A whole isosurface with one mesh per brick; most are empty.
 struct SurfaceMesh {
   SurfaceBricks layout;
-  /// By the brick's number.
+  /// Indexed by brick.
   std::vector<BrickMesh> bricks;
 };
 
@@ -42,7 +42,7 @@ inline SurfaceMesh mesh_surface(const DensityView& view) {
   return mesh;
 }
 
-/// Level 0 alone.
+/// Returns only level 0.
 inline BrickMesh mesh_of(const BrickLevels& brick) {
   BrickMesh mesh{{},
                  {brick.indices.begin(), brick.indices.begin() + static_cast<long>(brick.levels[0].count)}};
@@ -52,7 +52,7 @@ inline BrickMesh mesh_of(const BrickLevels& brick) {
   return mesh;
 }
 
-/// All bricks as one mesh whose vertices are shared if their positions agree bit for bit.
+/// Merges all bricks into one mesh; vertices are shared if their positions agree bit for bit.
 inline BrickMesh welded_by_position(const SurfaceMesh& surface) {
   BrickMesh whole;
   std::map<std::array<float, 3>, std::uint32_t> known;
@@ -69,7 +69,8 @@ inline BrickMesh welded_by_position(const SurfaceMesh& surface) {
   return whole;
 }
 
-/// Each edge of each triangle, from its first vertex (upper half of the word) to its second; sorted.
+/// Returns the directed edges of all triangles, sorted: first vertex in the upper half of the word, second in
+/// the lower.
 inline std::vector<std::uint64_t> directed_edges(const BrickMesh& mesh) {
   std::vector<std::uint64_t> edges;
   edges.reserve(mesh.indices.size());
@@ -93,7 +94,7 @@ inline bool is_closed(const BrickMesh& mesh) {
   return edges == back;
 }
 
-/// Vertices - edges + triangles of a closed mesh, of the vertices that are used.
+/// Returns vertices - edges + triangles of a closed mesh; counts only used vertices.
 inline int euler_characteristic(const BrickMesh& mesh) {
   std::vector<std::uint32_t> used = mesh.indices;
   std::sort(used.begin(), used.end());
@@ -102,7 +103,7 @@ inline int euler_characteristic(const BrickMesh& mesh) {
          static_cast<int>(mesh.triangle_count());
 }
 
-/// By the divergence theorem; positive if triangles are wound anticlockwise seen from outside.
+/// Uses the divergence theorem; positive if triangles are wound anticlockwise seen from outside.
 inline double enclosed_volume_mm3(const BrickMesh& mesh) {
   double volume = 0;
   if (mesh.vertices.empty()) return volume;
@@ -116,7 +117,7 @@ inline double enclosed_volume_mm3(const BrickMesh& mesh) {
   return volume;
 }
 
-/// Twice the least area of a triangle.
+/// Returns twice the smallest triangle area.
 inline double min_area_mm2(const BrickMesh& mesh) {
   double min = 1e300;
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
@@ -132,7 +133,7 @@ inline bool is_finite(const MeshVertex& vertex) {
   return position_of(vertex).allFinite() && normal_of(vertex).allFinite() && std::isfinite(vertex.density);
 }
 
-/// Closed, wound consistently, without NaN, all normals of unit length.
+/// Returns whether the mesh is closed and consistently wound, without NaN, and with unit normals.
 inline bool is_sound(const BrickMesh& mesh) {
   return is_closed(mesh) &&
          std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const MeshVertex& vertex) {

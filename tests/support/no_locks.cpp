@@ -1,4 +1,4 @@
-// Loaded before the system's own (LD_PRELOAD): locks fail as on NFS or Lustre that is mounted without them.
+// Preloaded library (LD_PRELOAD) in which file locks fail, as on NFS or Lustre mounted without them.
 #include <cerrno>
 #include <cstdlib>
 

@@ -16,7 +16,7 @@
 
 namespace osteomill::testing_support {
 
-/// A folder of the running test's own, empty at its start and gone at its end.
+/// A folder for the running test, empty at its start and deleted at its end.
 class TestFolder {
  public:
   TestFolder() {
@@ -58,7 +58,7 @@ inline RunDescription sample_description() {
   return d;
 }
 
-/// A record in which every number differs from every other and depends on `tick` in its last bits.
+/// Returns a record in which all numbers differ from each other and depend on `tick` in their last bits.
 inline TickRecord sample_record(int tick) {
   TickRecord record;
   double number = 0.1 + tick;

@@ -12,11 +12,10 @@
 
 namespace osteomill::testing_support {
 
-/// The bytes of a small PNG: a ball of bone, with a hole if `milled`.
+/// Returns the bytes of a small PNG: a ball of bone, with a hole if `milled`.
 std::vector<unsigned char> sample_png(bool milled, int width = 320, int height = 240);
 
-/// A recording as a run might leave it, with the paper's findings in it: 1 kicks in torque, 2 buzzes, 3 is
-/// calm. No measurement of anything.
+/// Returns a synthetic recording that shows the paper's findings: 1 has torque kicks, 2 buzzes, 3 is calm.
 inline Recording sample_run(std::string_view algorithm, std::string_view phase, int ticks = 20000) {
   using std::sin;
   constexpr double kTwoPi = 2 * std::numbers::pi;
@@ -79,7 +78,7 @@ inline Recording sample_run(std::string_view algorithm, std::string_view phase, 
   return recording;
 }
 
-/// Returns a page without the names of XML's namespaces, which look like links.
+/// Returns a page without XML namespace names, which look like links.
 inline std::string without_namespaces(std::string page) {
   constexpr std::string_view kNamespace = "http://www.w3.org/";
   for (auto at = page.find(kNamespace); at != std::string::npos; at = page.find(kNamespace, at))
@@ -87,7 +86,7 @@ inline std::string without_namespaces(std::string page) {
   return page;
 }
 
-/// Three algorithms, two phases.
+/// Returns runs of three algorithms with two phases each.
 inline std::vector<Recording> sample_runs(int ticks = 20000) {
   std::vector<Recording> runs;
   for (const char* algorithm : {"line-proxy", "surface-points", "point-shell"}) {

@@ -8,8 +8,7 @@
 
 namespace osteomill::testing_support {
 
-/// Returns the position of a stand-in's handle that no test holds: ever further along an axis, and a little
-/// back and forth.
+/// Returns the position of a handle that no test holds: it advances along an axis with a small oscillation.
 inline double swept_mm() {
   using Clock = std::chrono::steady_clock;
   static const Clock::time_point start = Clock::now();
@@ -17,8 +16,7 @@ inline double swept_mm() {
   return 25 * time_s + 3 * std::sin(2 * std::numbers::pi * time_s);
 }
 
-/// Writes what a stand-in was sent as a line into the file that OSTEOMILL_STAND_IN_LOG names; does nothing
-/// without it.
+/// Appends a line with data received by a stand-in to the file named in OSTEOMILL_STAND_IN_LOG, if set.
 template <typename... Words>
 void log_of_stand_in(const Words&... words) {
   const char* const file = std::getenv("OSTEOMILL_STAND_IN_LOG");

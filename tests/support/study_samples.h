@@ -9,7 +9,7 @@
 
 namespace osteomill::testing_support {
 
-// Values by hand: what is tested is what is made of them.
+// Hand-made values; the tests check how they are evaluated.
 struct Values {
   double force_hp = 0;
   double torque_hp = 0;
@@ -35,8 +35,8 @@ inline MeasuredRun row(std::uint64_t seed, std::string_view algorithm, std::stri
   return row;
 }
 
-// Seeds from 1: 2 buzzes ten times as much as 1 and 3, which change places from seed to seed; or `buzz` times
-// that much.
+// Rows for seeds from 1: algorithm 2 buzzes 10 x `buzz` times as much as 1 and 3, which swap ranks from seed
+// to seed.
 inline std::vector<MeasuredRun> sample_rows(std::uint64_t seeds, double buzz = 1) {
   std::vector<MeasuredRun> rows;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
