@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A recording goes on from any of its ticks: repeated to the bit, along other motion, and live; or one line says why not.
+# A recording can be continued at any of its ticks: repeated bit for bit, along another motion, and live; or one line gives the
+# reason why not.
 #   again.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -21,9 +22,9 @@ done >>poses.csv
 "$osteomill" replay --from a.h5 --at 0.9 --record b.h5 --out b.csv --quiet >/dev/null
 columns() { cut -d, -f1-23,25- "$1"; }
 head -1 a.csv | cut -d, -f24 | grep -q compute_us || fault "$(head -1 a.csv)"
-cmp <(columns a.csv | tail -n +903) <(columns b.csv | tail -n +2) || fault "the rest came out otherwise"
+cmp <(columns a.csv | tail -n +903) <(columns b.csv | tail -n +2) || fault "the rest differs"
 same b.h5 1500
-# Other motion, and from there again.
+# Another motion, and a continuation of that.
 head -201 poses.csv >more.csv
 "$osteomill" replay more.csv --from b.h5 --at 1.2 --record c.h5 --quiet >/dev/null
 same c.h5 1401
@@ -32,7 +33,7 @@ same c.h5 1401
 "$osteomill" save --after d.h5 --out d.nrrd --quiet >/dev/null
 mkdir elsewhere
 mv c.h5 b.h5 elsewhere
-"$osteomill" replay d.h5 --verify --quiet | grep -q ^same || fault "the live branch needs what it goes on from"
+"$osteomill" replay d.h5 --verify --quiet | grep -q ^same || fault "the live branch needs the recordings that it continues"
 
 refused 1 "a.h5: has no tick at 99 s" replay --from a.h5 --at 99 --out x.csv
 refused 1 "a.h5: was made with another scan" live builtin:mastoid --from a.h5 --at 1

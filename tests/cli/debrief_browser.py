@@ -38,7 +38,7 @@ browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=opt
 try:
     if not is_phone:
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": wide, "height": high, "deviceScaleFactor": 1, "mobile": False})
-    # Nothing may be loaded from anywhere.
+    # The page must not load anything from the network.
     browser.execute_cdp_cmd("Network.enable", {})
     browser.execute_cdp_cmd("Network.emulateNetworkConditions", {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0})
     browser.get("file://" + page)
@@ -101,7 +101,7 @@ try:
     def away(place):
         return math.dist(place[:3], run("return JSON.parse(document.getElementById('page-data').textContent).focus"))
 
-    # Turned: the same distance, another direction.
+    # Turning keeps the distance and changes the direction.
     before, pixels = camera(), canvas.screenshot_as_base64
     picture("begin")
     drag([(middle, (middle[0] + 60, middle[1] + 40))])
@@ -110,7 +110,7 @@ try:
     assert abs(away(turned) - away(before)) < 1e-3 * away(before)
     eventually(lambda: canvas.screenshot_as_base64 != pixels, "the picture did not change")
     picture("turned")
-    # Zoomed in.
+    # Zooming in.
     if is_phone:
         drag([((middle[0] - 20, middle[1]), (middle[0] - 90, middle[1])), ((middle[0] + 20, middle[1]), (middle[0] + 90, middle[1]))])
     else:
@@ -119,7 +119,7 @@ try:
         time.sleep(0.3)
     eventually(lambda: away(camera()) < 0.9 * away(turned), "it does not zoom")
     picture("zoomed")
-    # Another bone is another picture.
+    # Another bone gives another picture.
     for choice in browser.find_elements(By.ID, "choice"):
         run("arguments[0].scrollIntoView({block: 'center'})", choice)
         picked = Select(choice)
@@ -141,14 +141,14 @@ try:
     if marks is None:
         print("turned, zoomed and picked at", "x".join(size))
         sys.exit(0)
-    # Pressing a mark says what happened there, and goes to its time.
+    # Pressing a mark shows its event and jumps to its time.
     assert marks
     chosen = len(marks) - 1
     for _ in range(8):
         x, y, _ = run("return page.pixelOf(arguments[0])", chosen)
         if 5 < x < frame[2] - 5 and 5 < y < frame[3] - 5:
             break
-        # Too near: back.
+        # Too close; zoom out.
         if is_phone:
             drag([((middle[0] - 90, middle[1]), (middle[0] - 60, middle[1])), ((middle[0] + 90, middle[1]), (middle[0] + 60, middle[1]))])
         else:
@@ -158,7 +158,7 @@ try:
     drag([(press, press)])
     card = browser.find_element(By.ID, "card")
     eventually(card.is_displayed, "no mark was found under the pointer")
-    # Marks may lie upon each other.
+    # Marks may overlap.
     titles = [mark["title"] for mark in marks]
     found = titles.index(card.find_element(By.TAG_NAME, "h3").text)
     there = run("return page.pixelOf(arguments[0])", found)
@@ -169,12 +169,12 @@ try:
     assert card.find_element(By.TAG_NAME, "input").get_attribute("value") == marks[found]["command"]
     show(".view")
     picture("mark")
-    # The list of marks does so, too.
+    # So does the list of marks.
     button = browser.find_elements(By.CSS_SELECTOR, ".marks button")[0]
     run("arguments[0].scrollIntoView({block: 'center'})", button)
     button.click()
     eventually(lambda: abs(run("return page.time()") - marks[0]["time"]) < 1e-6, "the list does not go to its mark")
-    # Played, at two speeds, from the beginning.
+    # Playing from the start at two speeds.
     times = {}
     for speed in ("0.1", "0.25"):
         run("const slider = document.getElementById('time'); slider.value = slider.min; slider.dispatchEvent(new Event('input'))")
@@ -191,7 +191,7 @@ try:
             if len(played) > 2:
                 break
             time.sleep(0.1)
-        # However slow the pictures are, each shows the time that it is due.
+        # Each frame shows its own time, however slow the frame rate.
         times[speed] = 1000 * (played[-1][0] - played[1][0]) / (played[-1][1] - played[1][1])
         play.click()
         eventually(lambda: play.text == "Play", "it does not stop")
@@ -200,13 +200,13 @@ try:
         time.sleep(0.3)
         assert run("return page.time()") == still
     assert all(abs(rate - float(speed)) < 1e-3 for speed, rate in times.items()), times
-    # A press on the course goes to its time.
+    # A press on the progress curve jumps to its time.
     show("#course")
     course = browser.find_element(By.CSS_SELECTOR, "svg.course")
     frame = run("const f = arguments[0].getBoundingClientRect(); return [f.left, f.top, f.width, f.height]", course)
     press = (frame[0] + 48 + 0.5 * (frame[2] - 60), frame[1] + 60)
     drag([(press, press)])
-    # The axis goes to the end of the longer way.
+    # The axis ends with the longer of the two recordings.
     span = run("const slider = document.getElementById('time'), first = Osteomill.data.first; return [Number(slider.min), Math.max(Number(slider.max), ...(first ? first.progress.time : []))]")
     eventually(lambda: abs(run("return page.time()") - sum(span) / 2) < 0.01 * (span[1] - span[0]), "the course does not go to its time")
     picture("course")

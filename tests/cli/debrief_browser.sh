@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pages of a debriefing, of one with two branches, and of a report in Chromium, on a screen and on a phone, and without WebGL.
+# Pages of a debriefing, of one with two branches, and of a report in Chromium: on a desktop screen, on a phone, and without WebGL.
 #   debrief_browser.sh OSTEOMILL EXERCISES INSTALL_PACKAGES
 set -euo pipefail
 osteomill=$1 exercises=$2 install_packages=$3
@@ -10,12 +10,12 @@ browser || { echo "SKIPPED: needs chromium, chromium-driver and python3-selenium
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-# Through the roof of the pulp chamber to its floor.
+# Mills through the roof of the pulp chamber to its floor.
 /usr/bin/python3 "$here/exercise_poses.py" plunge 0 0 22 12.5 1 >poses.csv
 "$osteomill" replay poses.csv --exercise "$exercises/access_cavity.toml" --burr-radius 0.75 --shaft-radius 0.4 --removal-rate 400 \
   --record through.h5 --quiet >/dev/null
 "$osteomill" debrief through.h5 --out out --quiet >/dev/null
-# Another way from the middle of it: beside the chamber.
+# A branch from its middle, beside the chamber.
 awk -F, 'NR == 1 { print; next } { printf "%.3f,%.4f,0,%.4f,1,0,0,0,1\n", (NR - 2) / 1000, NR < 1500 ? (NR - 2) / 1500 : 1, 18.5 - (NR < 1500 ? 0 : (NR - 1500) / 1500) }' \
   <(seq 0 4000) >aside.csv
 sed -i '1s/.*/time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling/' aside.csv

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A class of recordings: a page and a table by name and attempt; what cannot be read is listed and passed over; names are left out
-# on request; five attempts of one person are held against each other.
+# A class of recordings gives a page and a table by name and attempt; unreadable files are listed and skipped; names are left out on
+# request; five attempts of one person are compared.
 #   debrief_class.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -25,20 +25,20 @@ TOML
 }
 task "Hole & <i>more</i>" >hole.toml
 task Other >other.toml
-# work FILE EXERCISE NAME DEPTH: one plunge.
+# work FILE EXERCISE NAME DEPTH: records one plunge.
 work() {
   awk -v depth="$4" 'BEGIN { print "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling"
     for (n = 0; n < 600; ++n) printf "%.3f,0,0,%.5f,1,0,0,0,1\n", n / 1000, 1.2 - n / 600 * (1.2 + depth) }' >poses.csv
   "$osteomill" replay poses.csv --exercise "$2.toml" --burr-radius 1 --trainee "$3" --removal-rate 400 --record "$1" --quiet >/dev/null
 }
-# The dates of recordings are whole seconds.
+# Recordings are dated in whole seconds.
 mkdir class
 work class/1.h5 hole "Ann <b>" 0.2; sleep 1.1
 work class/2.h5 hole "Ann <b>" 0.5; sleep 1.1
 work class/3.h5 hole 'Bo, "B"' 0.8
 work class/0.h5 other Cy 0.5
 head -c 20000 class/1.h5 >class/cut.h5
-# A file that the user keeps in the folder stays.
+# A user's file in the folder must stay.
 mkdir all; echo "my notes" >all/progress.csv
 debrief() { local code=0; "$osteomill" debrief "$@" --quiet >said 2>error || code=$?; echo $code; }
 [ "$(debrief class --out all)" = 1 ] || fault "exit code"
@@ -63,7 +63,7 @@ grep -q "^person 1,2,.*,,target_removed_percent," none/debrief.csv || fault "$(c
 [ "$(debrief class/1.h5 --out one --anonymous)" = 0 ] || fault "exit code"
 ! grep -oE 'Ann <|Ann &|class/' one/* || fault "a name is left"
 
-# Two ways: the first goes on down, the other one up.
+# Two branches: the first continues down, the other up.
 mkdir ways
 awk 'BEGIN { print "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling"
   for (n = 0; n < 400; ++n) printf "%.3f,0,0,%.5f,1,0,0,0,1\n", n / 1000, 0.8 + n / 1000 }' >up.csv
@@ -97,12 +97,12 @@ CHECK
 [ "$(debrief ways/again.h5 --out lost)" = 1 ] && grep -q "^osteomill: ways/again.h5: continues first.h5, which is missing" error ||
   fault "$(cat error)"
 
-# Against four attempts before.
+# Compares the last attempt with the four before.
 mkdir ann
 for n in 1 2 3 4 5; do work ann/$n.h5 hole Ann "$(awk "BEGIN { print $n < 5 ? 0.3 + 0.01 * $n : 1.2 }")"; [ $n -eq 5 ] || sleep 1.1; done
 [ "$(debrief ann --out ann5)" = 0 ] || fault "$(cat error)"
 for n in 1 2 3 4 5; do "$osteomill" debrief ann/$n.h5 --out a$n --quiet >/dev/null; done
-cmp a5/debrief.csv ann5/debrief.csv || fault "the last attempt is another"
+cmp a5/debrief.csv ann5/debrief.csv || fault "the last attempt differs"
 /usr/bin/python3 - <<'CHECK' || fault "the spread"
 import csv, re, statistics
 def value(n, measure):
@@ -111,7 +111,7 @@ page = open("ann5/debrief.html").read()
 spread = page[page.index('<div id="spread">'):]
 for measure in ("target_removed_percent", "duration_s"):
     before = [value(n, measure) for n in range(1, 5)]
-    # Student's t for 95 % and three degrees of freedom.
+    # Student's t, 95 %, three degrees of freedom.
     width = 3.1824 * statistics.stdev(before) * (1 + 1 / 4) ** 0.5
     cells = re.search("<tr><th>" + measure + "</th><td>(.*?) .*?</td><td>(.*?)</td><td>(.*?)</td><td>(.*?)</td>", spread).groups()
     assert abs(float(cells[1]) - statistics.mean(before)) <= 1e-3 * statistics.mean(before), cells

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds a debriefing's page against its table, and its marks against what the script did.
+"""Compares a debriefing's page with its table, and its marks with the script's actions.
     debrief_page.py FOLDER [STRUCTURE TIME_S X Y Z]     the burr first reached the structure then, from there
     debrief_page.py FOLDER "removed outside" TIME_S X Y Z     it first took bone outside the target then
 """
@@ -69,7 +69,7 @@ data = json.loads(page.data)
 rows = list(csv.DictReader(open(folder + "/debrief.csv", encoding="utf-8")))
 value = {row["measure"]: float(row["value"]) for row in rows if row["value"]}
 
-# Each item is marked as its value lies to its limit.
+# Each item's mark agrees with its value and limit.
 items = [row for row in rows if row["limit"]]
 assert page.rows[0][:5] == ["item", "mark", "value", "threshold", "source"], page.rows[0]
 assert len(page.rows) - 1 == len(items) > 0, page.rows
@@ -84,7 +84,7 @@ for cells, row in zip(page.rows[1:], items):
     assert cells[1] == ("✓ met" if met else "✗ not met"), (cells, row)
     assert math.isclose(float(cells[2].split()[0]), number, rel_tol=5e-4), (cells, row)
 
-# The bodies have the volumes that were measured, a little less for their rounded edges.
+# The bodies have the measured volumes, slightly less because of rounded edges.
 bodies = {}
 for body in data["bodies"]:
     bodies.setdefault(body["kind"], body)
@@ -95,7 +95,7 @@ if outside_mm3 > 0:
     left_mm3 = (1 - value["target_removed_percent"] / 100) * target_mm3
     if left_mm3 > 0.2 * target_mm3:
         assert 0.9 < volume_mm3(bodies["left"]) / left_mm3 < 1.06, (volume_mm3(bodies["left"]), left_mm3)
-    # The smoothed surface of a shell two voxels thick takes a third from it.
+    # Smoothing the surface of a shell two voxels thick removes a third of its volume.
     assert 0.6 < volume_mm3(bodies["outside"]) / outside_mm3 < 1.05, (volume_mm3(bodies["outside"]), outside_mm3)
 else:
     assert "outside" not in bodies
@@ -106,7 +106,7 @@ for body in data["bodies"]:
     measured = value.get("thickness_left_min_mm." + body["name"])
     assert thinnest == 255 if measured is None else abs(thinnest / 31 - measured) <= 1 / 31, (body["name"], thinnest, measured)
 
-# The course ends with what was measured, and there is a mark for everything.
+# The progress curves end at the measured values, and every event has a mark.
 assert math.isclose(data["progress"]["target"][-1], value["target_removed_percent"], rel_tol=1e-9)
 marks = data["marks"]
 for body in data["bodies"]:

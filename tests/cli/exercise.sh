@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# An exercise is checked, worked on from poses, recorded and measured; a recording that does not belong to it is refused.
+# An exercise is checked, milled along poses, recorded and measured; a recording of another exercise is refused.
 #   exercise.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -33,7 +33,7 @@ TOML
 "$osteomill" exercise tasks/hole.toml --check >said
 grep -q "^target: .* mm³ of bone" said && grep -q "^no-go pulp horn: 4.1.* 1.0. mm from the target" said || fault "$(cat said)"
 
-# From above the cusp to TO_Z in a second, and there for half a second.
+# Moves from above the cusp to TO_Z in a second, and stays for half a second.
 poses() { awk -v to="$1" 'BEGIN { print "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling"
   for (n = 0; n < 1500; ++n) { t = n < 1000 ? n / 1000 : 1; printf "%.3f,-2.5,-2.7,%.5f,1,0,0,0,1\n", n / 1000, 23 + t * (to - 23) } }'; }
 poses 20 >good.csv
@@ -45,7 +45,7 @@ work good --trainee "Trainee 7"
 "$osteomill" debrief good.h5 --out good --quiet >said
 [ "$(head -1 good/debrief.csv)" = "measure,value,unit,limit,met,source" ] || fault "$(head -1 good/debrief.csv)"
 [[ $(value good no_go_contacts) == "0,at most 0,yes" ]] || fault "$(cat good/debrief.csv)"
-[[ $(value good hidden_cutting_percent) == ",," ]] || fault "what no recording has is not empty"
+[[ $(value good hidden_cutting_percent) == ",," ]] || fault "a value that the recording lacks is not empty"
 value good cutting_s | awk -F, '{ exit !($1 > 0.2 && $1 < 1.5) }' || fault "$(cat good/debrief.csv)"
 work idle
 "$osteomill" debrief idle.h5 --out idle --quiet >said
@@ -61,7 +61,7 @@ with h5py.File("idle.h5") as f:
     assert "exercise.trainee" not in f["settings"].attrs and f["settings"].attrs["exercise.guidance"] == 0
 CHECK
 
-# An exercise that has changed since is used, with a warning.
+# An exercise that has changed since the recording is used, with a warning.
 cp tasks/hole.toml tasks/other.toml
 cp tasks/hole.toml tasks/good.toml
 echo '# later' >>tasks/hole.toml
@@ -85,7 +85,7 @@ refused "tasks/far.toml: line 4: the cylinder lies outside the scan" exercise ta
 sed 's/^title/titl/' tasks/hole.toml >tasks/typo.toml
 refused "tasks/typo.toml: line 1: an exercise has no titl; did you mean title[?]" exercise tasks/typo.toml --check
 
-# The picture of the start page, if there is OpenGL.
+# The start page's picture, if OpenGL is available.
 if "$osteomill" exercise tasks/other.toml --picture none/hole.png --quiet >/dev/null 2>&1; then fault "a picture in no folder"; fi
 if "$osteomill" exercise tasks/good.toml --picture hole.png --quiet >said 2>error; then
   [ "$(head -c 24 hole.png | tail -c 8 | od -An -tu1 | xargs)" = "0 0 1 44 0 0 0 240" ] || fault "the picture is not 300 x 240"
@@ -93,7 +93,7 @@ else
   grep -q OpenGL error || fault "$(cat error)"
 fi
 
-# A guard holds the burr off, replays to the bit with the exercise and not without, and is of one algorithm only.
+# A guard keeps the burr away, replays bit for bit only with the exercise, and works with one algorithm only.
 sed 's/^name = "pulp horn"/&\nguard_mm = 0.5/; s/^title = .*/title = "Guarded"/' tasks/hole.toml >tasks/guarded.toml
 "$osteomill" exercise tasks/guarded.toml --check | grep -q "warning below 3 mm, burr held off by 0.5 mm" || fault "--check says no guard"
 poses 16 >deep.csv
@@ -114,7 +114,7 @@ code=0; guarded --algorithm point-shell --record x.h5 >said 2>error || code=$?
 sed 's/guard_mm = 0.5/guard_mm = 9/' kept.toml >tasks/wide.toml
 refused "tasks/wide.toml: line 10: guard_mm is not a number from 0 to 5" exercise tasks/wide.toml --check
 
-# Burrs by name.
+# Named burrs.
 sed 's/^tools = .*/tools = ["diamond-2", 0.75]/' tasks/hole.toml >tasks/named.toml
 named() { "$osteomill" replay good.csv --exercise tasks/named.toml --record named.h5 --quiet "$@"; }
 named --burr-name diamond-2 >/dev/null

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# An exercise on a label map of a jaw: down to the mandibular canal, whose distance in the recording is held against a
-# search through all of its voxels.
+# An exercise on a label map of a jaw: mills down to the mandibular canal, and compares the recorded distance with a search over all
+# of its voxels.
 #   exercise_jaw.sh OSTEOMILL JAW_LABELS
 set -euo pipefail
 osteomill=$1 jaw=$2
@@ -32,14 +32,14 @@ at_most = 0
 TOML
 "$osteomill" exercise jaw.toml --check --quiet >said
 grep -q "^no-go mandibular canal: 831.9 mm³" said || fault "$(cat said)"
-# From the side, the shaft outward.
+# Approaches from the side with the shaft outward.
 awk 'BEGIN { print "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling"
   for (n = 0; n < 2200; ++n) printf "%.3f,%.5f,81.5,49,0.70710678,0,-0.70710678,0,1\n", n / 1000, 44 + 0.005 * n }' >poses.csv
 "$osteomill" replay poses.csv --exercise jaw.toml --burr-radius 1 --shaft-radius 0.6 --removal-rate 400 --record jaw.h5 --quiet >/dev/null
 "$osteomill" debrief jaw.h5 --out out --quiet >said
 grep -q "^no_go_contacts.mandibular canal,1,,at most 0,no" out/debrief.csv || fault "$(cat out/debrief.csv)"
 "$osteomill" replay jaw.h5 --verify --quiet | grep -q "^same: 2200 ticks" || fault "it does not replay"
-/usr/bin/python3 - "$jaw" <<'CHECK' || fault "the distance is not that of the nearest voxel"
+/usr/bin/python3 - "$jaw" <<'CHECK' || fault "the distance is not the one to the nearest voxel"
 import gzip, sys
 import h5py, numpy as np
 raw = open(sys.argv[1], "rb").read()

@@ -17,13 +17,13 @@ if kind == "plunge":
     corners = [(x, y, z_from), (x, y, z_to)]
 elif kind == "crown":
     bottom, flat, top, radius, radius_to, outer, burr, speed = numbers
-    # Layers down to the flat top, and from there down to the shoulder.
+    # Layers down to the flat top, and then down to the shoulder.
     upper = math.ceil((top - flat) / (0.6 * burr))
     lower = math.ceil((flat - bottom) / (0.5 * burr))
     heights = [top + burr + (flat - top) * n / upper for n in range(1, upper + 1)]
     heights += [flat + burr + (bottom - flat) * n / lower for n in range(1, lower + 1)]
     for z in heights:
-        # The ball's middle beside the wall, or beside the edge of the top.
+        # Position of the burr's centre beside the wall, or beside the edge of the top.
         wall = radius + (radius_to - radius) * (z - bottom) / (flat - bottom)
         inner = 0 if z >= flat + burr - 1e-9 else wall + burr * 1.0025
         if flat <= z < flat + burr - 1e-9:
@@ -60,7 +60,7 @@ else:
                 y = middle[1] - half[1] + 2 * half[1] * line / lines
                 ends = (-half[0], half[0]) if line % 2 == 0 else (half[0], -half[0])
                 corners += [(middle[0] + end, y, z) for end in ends]
-            # The walls once round.
+            # Once around along the walls.
             corners += [(middle[0] + i * half[0], middle[1] + j * half[1], z)
                         for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1), (1, 1))]
     first = corners[0]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Scripted sessions on the exercises that come along: a good one, too little, too much, and one through the structure that must
-# not be touched.
+# Scripted sessions on the included exercises: a good one, one that removes too little, one too much, and one that mills into the
+# no-go structure.
 #   exercise_sessions.sh OSTEOMILL EXERCISES
 set -euo pipefail
 osteomill=$1 exercises=$2
@@ -26,9 +26,9 @@ work() {
 good() { work "$@"; holds "$target >= 95 && $outside <= 3 && $contacts == 0" || fault "$1"; }
 little() { work "$@"; holds "$target <= 60 && $contacts == 0" || fault "$1"; }
 much() { work "$@"; holds "$outside >= 15" || fault "$1"; }
-# through CENTRE_Z TIME SPEED ...: the burr's centre comes down to CENTRE_Z, where its surface reaches the structure: the
-# hand's at TIME, and the simulated tool's later by what its coupling of 2 N/mm is stretched by the force of cutting.
-# The tool's own path is read from the log, without the exercise's distance.
+# through CENTRE_Z TIME SPEED ...: the burr reaches the structure when its centre is at CENTRE_Z. The hand is there at TIME; the
+# simulated tool follows later, because the cutting force stretches its coupling of 2 N/mm. Reads the tool's path from the log,
+# independently of the exercise's distances.
 down_to() {
   work "${@:4}"
   "$osteomill" replay "$4.h5" --out "$4.log" --quiet >/dev/null
@@ -47,7 +47,7 @@ through() {
   /usr/bin/python3 "$page" "$4" "$structure" "$tool_s" "$x" "$y" "$1" || fault "$4"
 }
 
-# Down to where the burr takes its first bone outside the target: its surface reaches the middle of a voxel.
+# Mills down to the first bone outside the target, when the burr's surface reaches the centre of a voxel.
 outside() {
   down_to "$@"
   holds "$tool_s - $2 - $stretched_s >= -0.001 && $tool_s - $2 - $stretched_s <= 0.002 && $aside <= 0.1" || fault "$4"
@@ -60,7 +60,7 @@ tooth="--burr-radius 0.75 --shaft-radius 0.4 --removal-rate 400"
 good cavity access_cavity "$tooth" cylinder 0 0 15.2 19.5 1.5 0.75 10
 little cavity_little access_cavity "$tooth" cylinder 0 0 17.2 19.5 1.5 0.75 10
 much cavity_much access_cavity "$tooth" cylinder 0 0 14.8 19.5 2.1 0.75 10
-# In the pulp chamber nothing holds the burr up.
+# The pulp chamber is empty, so no contact delays the burr.
 through 13.5 2.125 4 cavity_through access_cavity "$tooth" plunge 0 0 22 12.5 4
 
 good crown crown "$tooth" crown 14.2 18 21 3 2.734 5.9 0.75 40
@@ -68,7 +68,7 @@ holds "$(value crown taper_deg) >= 6 && $(value crown taper_deg) <= 10 && $(valu
 holds "$(value crown reduction_p10_mm) >= 1" || fault crown
 little crown_little crown "$tooth" crown 17.6 18 21 3 2.734 5.9 0.75 40
 much crown_much crown "$tooth" crown 13.5 15.5 21 1.4 1.3 5.9 0.75 40
-# The chamber's roof: the burr cuts dentine there, at (0, 0, 15.75).
+# The burr cuts dentine of the chamber's roof at (0, 0, 15.75).
 through 15.75 1.5625 4 crown_through crown "$tooth" plunge 0 0 22 14 4
 
 plane="--burr-radius 0.75 --shaft-radius 0.6 --removal-rate 100"
@@ -76,7 +76,7 @@ good trench layers "$plane" box -4 -2 -3 4 2 0 0.75 20
 little trench_little layers "$plane" box -4 -2 -1.6 4 2 0 0.75 20
 much trench_much layers "$plane" box -4.8 -2.6 -3.6 4.8 2.6 0 0.75 20
 through -4.25 2.41667 3 trench_through layers "$plane" plunge 0 0 3 -6 3
-# Beside the trench: the nearest voxels of bone have their middles at (0.125, 6.125, -0.125) and about the axis.
+# Beside the trench: the nearest bone voxels have their centres at (0.125, 6.125, -0.125) and symmetric to the axis.
 outside 0.60386 0.0599 40 trench_beside layers "$plane" plunge 0 6 3 -1 40
 
 mastoid="--burr-radius 1.5 --shaft-radius 1 --removal-rate 400"
@@ -84,5 +84,5 @@ good mastoid mastoid "$mastoid" box -5 -5 -11.25 5 8 0 1.5 40
 holds "$(value mastoid "thickness_left_min_mm.facial nerve") > 0.9" || fault mastoid
 little mastoid_little mastoid "$mastoid" box -5 -5 -6 5 8 0 1.5 40
 much mastoid_much mastoid "$mastoid" box -5.9 -6.4 -11.3 6.4 8.9 0 1.5 40
-# From (-1, 0, 3) down: the nerve's top is at z = -12.25, the burr's radius 1.5.
+# Down from (-1, 0, 3): the nerve's top is at z = -12.25, the burr's radius is 1.5.
 through -10.75 1.71875 8 mastoid_through mastoid "$mastoid" plunge -1 0 3 -13 8

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Runs one command line in an empty folder and holds its exit code and output against what is expected:
+# Runs one command line in an empty folder and compares its exit code and output with the expected ones:
 #   expect.sh EXIT STDOUT_REGEX STDERR_REGEX [NEEDS] -- SETUP -- COMMAND...
-# An empty regex expects no output at all, "*" takes any. SETUP is shell that makes the files the case needs ("" for
-# none). NEEDS is a path without which the case is skipped (exit 77, after a line that says so).
+# An empty regex expects no output, "*" accepts any. SETUP is shell code that makes the files of the case, or "". If the path NEEDS
+# is missing, the case is skipped (exit 77, after a message).
 set -euo pipefail
 exit_expected=$1 stdout_expected=$2 stderr_expected=$3 needs=$4 setup=$5
 shift 5
@@ -31,9 +31,9 @@ check() {  # NAME REGEX FILE
 check "standard output" "$stdout_expected" .stdout
 check "standard error" "$stderr_expected" .stderr
 if [ "$exit_expected" -eq 1 ] && [ "$(wc -l <.stderr)" -ne 1 ]; then
-  fault "a fault of the input is one line"
+  fault "invalid input should give one line"
 fi
-# A command that failed leaves nothing half-written.
+# A failed command leaves no partial files.
 if [ "$exit_expected" -ne 0 ] && find . -name '*.writing-*' -o -name '*.part.*' | grep -q .; then
   fault "left a half-written file"
 fi

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Inputs that were once got wrong, each kind as it should be now: an input at fault is one line and exit code 1.
+# Regression tests of inputs that were once handled wrongly: invalid input gives one line and exit code 1.
 #   found.sh OSTEOMILL FOLDER
 set -euo pipefail
 osteomill=$1 found=$2
@@ -12,7 +12,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
 fault() { echo "FAILED: $1"; exit 1; }
-# EXIT REGEX COMMAND...: what a user is told, in one line, within a minute: none hangs.
+# EXIT REGEX COMMAND...: expects one line of error message within a minute.
 told() {
   local code=0
   timeout 60 "${@:3}" >out.txt 2>err.txt || code=$?
@@ -20,7 +20,7 @@ told() {
   [ "$(wc -l <err.txt)" -eq 1 ] || fault "${*:3}: should be one line: $(head -c 500 err.txt)"
   grep -qE -- "$2" err.txt || fault "${*:3}: $(cat err.txt)"
 }
-# SCAN REGEX...: is read, and `info` says so.
+# SCAN REGEX...: expects that the scan can be read, and matches of `info`.
 read_as() {
   timeout 60 "$osteomill" info "$1" >out.txt 2>err.txt || fault "$1 should be read: $(cat err.txt)"
   for regex in "${@:2}"; do grep -qE -- "$regex" out.txt || fault "$1: no $regex in $(cat out.txt)"; done
@@ -29,7 +29,7 @@ read_as() {
 told 1 "rle_segments_0/IM007.dcm: " "$osteomill" info "$found/rle_segments_0"
 told 1 "rle_segments_7fffffff/IM005.dcm: " "$osteomill" info "$found/rle_segments_7fffffff"
 told 1 "jpeg_abort/.*dcm: .*decoded" "$osteomill" info "$found/jpeg_abort"
-# Both hold the same slices, in another compression each.
+# Both contain the same slices, compressed differently.
 for codec in j2k jpegls; do
   read_as "$found/${codec}_two_fragments" "512 x 512 x 2" "^values +-2048 to 1433, mean -754.293$"
 done
@@ -41,18 +41,17 @@ told 1 "spacing_1e-6.mha: .*voxels 1e-06 mm" "$osteomill" info "$found/spacing_1
 told 1 "spacing_1e-6.mha: .*voxels" "$osteomill" compare "$found/spacing_1e-6.mha" --iso 668 --out out
 told 1 "spacing_1e308.mha: .*voxels 1e\\+308 mm" "$osteomill" info "$found/spacing_1e308.mha"
 told 1 "direction_1e200.mha: .*TransformMatrix" "$osteomill" info "$found/direction_1e200.mha"
-# Voxels much longer than wide are no more work than cubes.
+# Anisotropic voxels take no more work than cubes.
 for spacing in "100 0.001 100" "1.2 0.001 1.7" "0.01 0.01 1"; do
   sed "s/^ElementSpacing = .*/ElementSpacing = $spacing/" "$found/spacing_100_0.001.mha" >long.mha
   timeout 5 "$osteomill" info long.mha >out.txt 2>err.txt || fault "voxels of $spacing mm: $(cat err.txt)"
 done
 told 1 "deep.toml: line 1: .*1000 parts" "$osteomill" compare --config "$found/deep.toml" --out out
 
-# A scan of few values is not a label map: its bone is that of the same densities in a scan that cannot be
-# one.
+# A scan with few values is not a label map: its bone is the same as with lifted values, which cannot be labels.
 read_as "$found/few_values_phantom.nrrd" "^isovalue +[0-9]+ suggested" "^bone +112979 voxels"
 grep -q "label" out.txt && fault "a phantom is taken for labels"
-# SHAPE OFFSET LIFT: air, one shade and bone by a signed distance in voxels, all values lifted.
+# SHAPE OFFSET LIFT: a scan of air, one intermediate value and bone by a signed distance in voxels; LIFT is added to all values.
 few_values() {
   printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 24 24 24\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
   awk -v shape="$1" -v offset="$2" -v lift="$3" 'function max(a, b) { return a > b ? a : b }
@@ -71,19 +70,19 @@ for shape in "plane 0" "edge 0.5" "ball 0.25"; do
     "$osteomill" replay press.csv lifted.nrrd --iso 1000.5 --algorithm $algorithm --quiet --out lifted.csv >out.txt
     awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_z_N") z = n } $z > 0.1 { felt = 1 } END { exit !(z && felt) }' few.csv ||
       fault "$algorithm feels nothing of the $shape"
-    # All but how long each step took.
+    # Compares all columns except for times.
     cmp <(cut -d, -f-23 few.csv) <(cut -d, -f-23 lifted.csv) || fault "$shape of few values is felt otherwise by $algorithm"
   done
 done
 
-# Labels by their look, and as they are said to be.
+# Labels detected from values, and set by options.
 few_values ball 0 0 | sed 's/1000/0/; s/2000/7/' >mask.nrrd
 read_as mask.nrrd "^isovalue +3.5 suggested" "^warning: looks like a label map: .*--as scan"
 "$osteomill" info mask.nrrd --as scan | grep -q "label" && fault "--as scan does not decide"
 "$osteomill" info few.nrrd --as labels | grep -q "^warning: is a label map" || fault "--as labels does not decide"
 "$osteomill" info mask.nrrd --iso 3 | grep -q "label" && fault "a scan with --iso is taken for labels"
 
-# Values and names that a header gives at length, and blanks at a line's end.
+# Very long header values and names, and trailing blanks.
 head_of() { printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: ascii\n'; }
 long=$(printf 'x%.0s' $(seq 20000))
 for field in kinds centers "measurement frame" "space units" labels; do

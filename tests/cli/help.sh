@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Help is read on terminals of 80 columns, and every option stands in a group that says what it is about.
+# Help fits into 80 columns, and every option is in a named group.
 set -euo pipefail
 osteomill=$1
 
@@ -16,7 +16,7 @@ for group in "Scan:" "Tool:" "Cutting:" "The hand and its device:" "Options:"; d
   grep -qx "$group" <<<"$help" || fault "compare --help has no group $group"
 done
 [ "$(sed -n '/^Tool:/,/^$/p' <<<"$help" | grep -c '^  --')" -eq 4 ] || fault "a tool has a name and three sizes"
-sed -n '/^Tool:/,/^$/p' <<<"$help" | grep -q -- '--burr-radius mm .*\[1.5\]' || fault "neither unit nor default is told"
+sed -n '/^Tool:/,/^$/p' <<<"$help" | grep -q -- '--burr-radius mm .*\[1.5\]' || fault "unit or default is missing"
 cpu=$(taskset -cp $$ | sed 's/.*: //; s/[-,].*//')
 taskset -c "$cpu" "$osteomill" compare --help | sed -n '/--threads /,/\]/p' | grep -q '\[1\]$' || fault "one processor has more than one thread"
 help=$("$osteomill" --help)

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# No command writes over a file that it reads: every file that can be named, or is led to by one that is named, against
-# every file that is written, under another of its names.
+# No command overwrites a file that it reads: tries every input file, given directly or through another file, as every output file,
+# under another of its names.
 #   inputs_kept.sh OSTEOMILL MAKE_A_BALL
 set -euo pipefail
 osteomill=$1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-# No pictures, which take longest.
+# Disables pictures, which take longest.
 export __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null
 
 fault() { echo "FAILED: $1"; exit 1; }
@@ -25,7 +25,7 @@ labels="--labels labels.nhdr --label-table table.txt"
 "$osteomill" compare ball.nhdr --iso 750 --seconds 0.1 --no-stability --algorithm line-proxy --quiet --out made >said
 milling=made/line-proxy-milling.h5 holding=made/line-proxy-holding.h5
 
-# Every option that takes a file or a folder is here, or it is not known what becomes of the file.
+# Fails if an option for a file or folder is not covered here.
 for command in simulate compare live rates replay report info mesh save exercise debrief; do
   for option in $("$osteomill" $command --help | grep -oE '^  --[a-z-]+ (FILE|FOLDER)' | awk '{ print $1 }'); do
     case "$command $option" in
@@ -35,7 +35,7 @@ for command in simulate compare live rates replay report info mesh save exercise
   done
 done
 
-# kept INPUTS WRITTEN COMMAND...: the file WRITTEN is one of INPUTS, one after the other.
+# kept INPUTS WRITTEN COMMAND...: tries each of INPUTS as the file WRITTEN.
 tried=0
 kept() {
   local inputs=$1 written=$2

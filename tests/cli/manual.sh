@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Manual pages and completions have every command and option that --help has, the pages are clean, and bash and fish really
-# complete.
+# Manual pages and completions have every command and option of --help, the pages have no warnings, and bash and fish complete.
 #   manual.sh OSTEOMILL MANUAL_FOLDER INSTALL_PACKAGES
 set -euo pipefail
 osteomill=$1 manual=$2 install_packages=$3
@@ -32,9 +31,9 @@ for command in "${commands[@]}"; do
 done
 grep -q 'mm³' osteomill-compare.1.txt || fault "osteomill-compare(1) has no unit mm³"
 
-# bash, as it calls the function.
+# Calls the completion function as bash does.
 . "$manual/bash/osteomill"
-completed() {  # WORDS...: what the last may become
+completed() {  # WORDS...: completions of the last word
   COMP_WORDS=(osteomill "$@")
   COMP_CWORD=$#
   _osteomill 2>/dev/null
@@ -59,7 +58,7 @@ is "$(completed compare --out a)" "a folder"
 is "$(completed save --out a)" "a folder a scan.nrrd"
 is "$(completed compare --burr-radius a)" ""
 
-# fish completes too; of zsh every option stands behind its command.
+# fish completes too; the zsh script lists every option under its command.
 fish --no-execute "$manual/fish/osteomill.fish" || fault "fish does not read its script"
 zsh -n "$manual/zsh/_osteomill" || fault "zsh does not read its script"
 in_fish() { fish --no-config -c "source '$manual/fish/osteomill.fish'; complete -C 'osteomill $1'" | cut -f 1 | sort | paste -sd ' '; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A recording mills its scan again: the mesh made after it is that of the saved scan, and both differ from the scan's own;
-# what cannot be repeated is refused; the same twice gives the same bytes.
+# Replaying a recording's milling: the mesh of the milled bone equals that of the saved milled scan, and both differ from the
+# original's; milling that cannot be repeated is refused; repeated runs give the same bytes.
 set -euo pipefail
 osteomill=$1
 folder=$(mktemp -d)
@@ -25,16 +25,16 @@ cmp milled.stl saved.stl || fault "the saved scan has another surface"
 "$osteomill" mesh --out whole.stl
 cmp -s whole.stl milled.stl && fault "nothing was milled"
 "$osteomill" mesh --out again.stl --after "$milling"
-cmp milled.stl again.stl || fault "the same twice differs"
+cmp milled.stl again.stl || fault "two runs differ"
 
 "$osteomill" save --out copy.nrrd
 "$osteomill" mesh copy.nrrd --out whole.ply --iso 750
 "$osteomill" mesh --out whole2.ply
-cmp whole.ply whole2.ply || fault "the saved scan is another"
+cmp whole.ply whole2.ply || fault "the saved scan differs"
 
-# A recording that continues another needs that one beside itself. Nothing is milled while holding.
+# A recording that continues another needs that file in its folder. Holding mills no bone.
 "$osteomill" mesh --out held.stl --after runs/point-shell-holding.h5
-cmp milled.stl held.stl || fault "after holding the bone is another"
+cmp milled.stl held.stl || fault "the bone after holding differs"
 cp runs/point-shell-holding.h5 alone.h5
 refused "^osteomill: alone.h5: continues .*point-shell-milling.h5" "$osteomill" mesh --out a.stl --after alone.h5
 refused "^osteomill: $milling: was made with another scan" "$osteomill" save milled.nrrd --out a.nrrd --after "$milling"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# On a file system without locks, studies are begun, run, read and reported, and recordings made and replayed.
+# Studies and recordings work on a file system without locks.
 #   no_locks.sh OSTEOMILL NO_LOCKS_LIBRARY
 set -euo pipefail
 osteomill=$1

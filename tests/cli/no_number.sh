@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# No option that holds a number takes one that is not finite: not from the command line, not from a configuration, and not
-# in a study; and a switch takes nothing but true and false. Every option of every command is tried, by what --help has.
+# No numeric option accepts a non-finite number, from the command line, a configuration file or a study; and a switch accepts only
+# true and false. Tries every option that --help of every command lists.
 set -euo pipefail
 osteomill=$1
 folder=$(mktemp -d)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What is being written or holds something is never written over by another program, whatever streams are closed or full;
-# a program that is asked to end leaves nothing half-written.
+# Files and folders in use or with contents are never overwritten by another process, even with closed or full standard streams; a
+# terminated program leaves no partial files.
 #   nothing_lost.sh OSTEOMILL BALL.SH
 set -euo pipefail
 osteomill=$1
@@ -24,7 +24,7 @@ runs() { # EXIT STDERR-REGEX COMMAND...: an empty regex expects silence
     [ "$(wc -l <said.err)" -eq 1 ] && grep -qE -- "$regex" said.err || fault "$*: $(cat said.err)"; fi
 }
 
-# Two recorders of one name: the second is refused, the first is unharmed.
+# Two recorders of the same file: the second is refused, the first is not affected.
 "${live[@]}" --seconds 4 --record r.h5 >first.out 2>first.err &
 first=$!
 until_there r.part.h5
@@ -34,7 +34,7 @@ wait $first || fault "the first recorder: $(cat first.err)"
 runs 0 "" "$osteomill" replay r.h5 ball.nrrd --verify --quiet
 [ ! -e r.part.h5 ] || fault "a part is left"
 
-# The unfinished recording of a killed program is kept.
+# The unfinished recording of a killed program stays.
 "${live[@]}" --seconds 600 --record r.h5 >first.out 2>first.err &
 first=$!
 until_there r.part.h5
@@ -43,7 +43,7 @@ kill -9 $first
 wait $first 2>/dev/null || true
 cp r.part.h5 left.h5
 runs 0 "^osteomill: warning: r.part.h5: .*kept as r.part-1.h5$" "${live[@]}" --seconds 0.5 --record r.h5
-cmp left.h5 r.part-1.h5 || fault "what was left has changed"
+cmp left.h5 r.part-1.h5 || fault "the unfinished recording has changed"
 runs 0 "" "$osteomill" replay r.part-1.h5 ball.nrrd --verify --quiet
 
 # A folder has one owner.
@@ -58,7 +58,7 @@ runs 1 "^osteomill: c: another program is writing to it$" "$osteomill" report r.
 wait $first || fault "the first comparison: $(cat first.err)"
 [ -e c/report.html ] && [ -e c/line-proxy-holding.h5 ] || fault "the first comparison is not whole: $(ls c)"
 
-# Closed streams lend their numbers to no file.
+# The descriptors of closed streams are not reused for files.
 "$osteomill" mesh "${bone[@]:0:3}" --out a.ply >said.out 2>said.err
 "$osteomill" mesh "${bone[@]:0:3}" --out b.ply >&- 2>&- <&- || fault "a mesh with closed streams"
 cmp a.ply b.ply || fault "closed streams make another mesh"
@@ -66,7 +66,7 @@ cmp a.ply b.ply || fault "closed streams make another mesh"
 "${live[@]}" --seconds 0.5 --push 6 --record closed.h5 >&- 2>&- || fault "a recording with closed streams"
 runs 0 "" "$osteomill" replay closed.h5 ball.nrrd --verify --quiet
 
-# A message that cannot be written is dropped; output that cannot be written is a fault.
+# A message that cannot be written is dropped; failing output is an error.
 for words in "0 info ball.nrrd" "1 info none.nrrd" "2 info --iso x" "0 mesh ball.nrrd --out a.ply"; do
   code=0
   "$osteomill" ${words#* } >said.out 2>/dev/full || code=$?
@@ -85,10 +85,10 @@ code=0
 "${live[@]}" --seconds 0.5 --record full.h5 >/dev/full 2>/dev/full || code=$?
 [ $code -eq 1 ] && [ -e full.h5 ] || fault "live > /dev/full: $code"
 
-# Asked to end, it leaves nothing.
+# A terminated program leaves no files.
 if command -v zip >/dev/null; then
   zip -q ball.zip ball.nrrd
-  for signal in TERM HUP; do  # The shell lets what runs beside it ignore INT.
+  for signal in TERM HUP; do  # Background processes of the shell ignore INT.
     setsid "$osteomill" compare ball.zip "${bone[@]:1}" --quiet --seconds 600 --algorithm line-proxy --out stopped >said.out 2>said.err &
     first=$!
     until_there stopped

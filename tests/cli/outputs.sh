@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# What stands where a file is to be written is never lost: a link stays a link, a device a device. A disk
-# that is full is one line and leaves nothing.
+# Existing outputs keep their kind: a link stays a link, a device a device. A full disk gives one line and leaves no files.
 set -euo pipefail
 osteomill=$1
 folder=$(mktemp -d)
@@ -17,7 +16,7 @@ echo old >real.csv
 ln -s real.csv link.csv
 replay link.csv
 [ -L link.csv ] || fault "the link was replaced"
-[ "$(wc -l <real.csv)" -eq 3 ] || fault "what the link leads to was not written"
+[ "$(wc -l <real.csv)" -eq 3 ] || fault "the link's target was not written"
 
 mkfifo pipe.csv
 replay pipe.csv && fault "no program reads the pipe"
@@ -26,7 +25,7 @@ replay >(cat >read.csv)
 wait $!
 [ "$(wc -l <read.csv)" -eq 3 ] || fault "the pipe's reader got nothing"
 
-# A device of our own, which swallows all like /dev/null, if the machine allows it.
+# A copy of /dev/null, if the machine allows it.
 if mknod -m 666 null.csv c 1 3 2>err.txt; then
   replay null.csv
   [ -c null.csv ] || fault "the device was replaced"
@@ -34,8 +33,7 @@ else
   echo "no devices can be made here, so none was written to"
 fi
 
-# A recording cannot be written to what is no file, and takes nothing's place. Nor is anything left in a folder that may
-# not be written.
+# A recording is refused if its path exists and is not a regular file, which stays. In a read-only folder it leaves no files.
 [ ! -c null.csv ] || mv null.csv null.h5
 mkdir locked
 chmod 555 locked

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Pieces of bone are counted, left out, and left out again when a recording is replayed:
+# Pieces of bone are counted and removed, also when a recording is replayed:
 #   pieces.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -32,8 +32,8 @@ code=0
 "$osteomill" compare balls.nrrd --iso 700 --keep-largest --seconds 0.3 --algorithm barrier-shell --no-stability --out c >out 2>err ||
   fail "compare"
 grep -q "2 pieces of bone, .* were removed and 1 kept" err || fail "no warning"
-"$osteomill" replay c/barrier-shell-milling.h5 --verify >out 2>err || fail "not replayed by what it says of its bone"
+"$osteomill" replay c/barrier-shell-milling.h5 --verify >out 2>err || fail "the replay does not use the recorded choice"
 grep -q "^same: " out || fail "not the same"
-! "$osteomill" replay c/barrier-shell-milling.h5 --keep-largest --verify >out 2>err || fail "takes another choice"
+! "$osteomill" replay c/barrier-shell-milling.h5 --keep-largest --verify >out 2>err || fail "accepts another choice"
 "$osteomill" mesh balls.nrrd --after c/barrier-shell-milling.h5 --out milled.ply >out 2>err || fail "mesh"
 awk '/^element vertex/ { exit !($3 > 0) }' milled.ply || fail "an empty mesh"

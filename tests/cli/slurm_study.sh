@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# A study on a cluster: Debian's own Slurm, a controller and a node of two CPUs on this machine. The rows are those of one
-# thread and of two; and whatever happens to slices (killed, failed, cancelled, run twice at once, cut short), resuming
-# submits what is missing on the disk and nothing else, and gives the same rows.
-#   slurm_study.sh OSTEOMILL BALL.SH [SEEDS]   of four trials each, a multiple of 3
+# A study on a cluster: Debian's Slurm with a controller and a node of two CPUs on this machine. The rows are the same as with one
+# or two threads; and whatever happens to slices (killed, failed, cancelled, run twice at once, truncated), resuming submits exactly
+# the slices missing on disk and gives the same rows.
+# slurm_study.sh OSTEOMILL BALL.SH [SEEDS] with four trials per seed; a multiple of 3
 set -euo pipefail
 osteomill=$1 ball=$2 seeds=${3:-6}
 . "$(dirname "${BASH_SOURCE[0]}")/study_rows.sh"
@@ -95,14 +95,14 @@ rows out1 >expected
 "$osteomill" study study.toml --out out2 --slices 5 --threads 2 --quiet >/dev/null
 rows out2 | cmp - expected || fault "two threads give other rows than one"
 
-# Six slices become several arrays, because the cluster's limit is 4.
+# Six slices need several arrays, because the cluster's limit is 4.
 "$osteomill" study study.toml --out out3 --slices 6 --on slurm >submitted
 [ "$(grep -c "^submitted as job" submitted)" -eq 2 ] || fault "6 slices should be two arrays: $(cat submitted)"
 until_true 60 nothing_queued || fault "the arrays do not end"
 rows out3 | cmp - expected || fault "the cluster gives other rows than one thread"
 "$osteomill" study out3 --status | grep -q "^$trials of $trials trials are done (100 %), 6 of 6 slices$" || fault "not all is done"
 
-# Whatever can happen to a slice. submit.sh is its user's to change.
+# Faults of slices. Users may edit submit.sh.
 mkdir out4
 cp out3/submit.sh whole.sh
 sed '/^exec/i\
@@ -122,30 +122,30 @@ truncate -s -500 out4/slice-0.h5
 "$osteomill" study out4 --status >status || fault "no status"
 grep -q "^$((trials / 3)) of $trials trials are done (33.3 %), 2 of 6 slices$" status || fault "status: $(cat status)"
 grep -q "^left: slices 0-3, " status || fault "status: $(cat status)"
-grep -q "slice-0.h5 cannot be used" status || fault "a file that is cut short is not told of"
+grep -q "slice-0.h5 cannot be used" status || fault "the truncated file is not reported"
 "$osteomill" study out4 --report >/dev/null
 grep -q "This is a part of the study" out4/report/report.html && grep -q "$((trials / 3)) of $trials trials (33.3 %)" out4/report/report.html ||
-  fault "the report hides that it is of a part"
+  fault "the report does not state that it is partial"
 cp whole.sh out4/submit.sh
 stat -c %Y.%i out4/slice-[45].h5 >before
 rm -f out4/logs/*
 "$osteomill" study out4 --resume --on slurm >submitted
-until_true 60 nothing_queued || fault "what was resumed does not end"
+until_true 60 nothing_queued || fault "the resumed arrays do not end"
 [ "$(ls out4/logs | wc -l)" -eq 4 ] || fault "four slices were missing, these ran: $(ls out4/logs)"
 stat -c %Y.%i out4/slice-[45].h5 | cmp - before || fault "slices that were done ran again"
-rows out4 | cmp - expected || fault "after all that the rows are others"
+rows out4 | cmp - expected || fault "the rows differ after the faults"
 [ "$("$osteomill" study out4 --resume --on slurm)" = out4 ] || fault "there was nothing to submit"
 
-# A folder that was moved.
+# A moved folder.
 mkdir elsewhere
 mv out4 elsewhere/moved
 rm elsewhere/moved/slice-2.h5
 "$osteomill" study elsewhere/moved --resume --on slurm >submitted
-until_true 60 nothing_queued || fault "what was moved does not end"
-rows elsewhere/moved | cmp - expected || fault "a study that was moved is not gone on with"
+until_true 60 nothing_queued || fault "the arrays of the moved study do not end"
+rows elsewhere/moved | cmp - expected || fault "a moved study cannot be resumed"
 mv elsewhere/moved out4
 
-# A cluster that refuses says why, and no sbatch is one line.
+# A refusal of the cluster is reported with its reason, and a missing sbatch in one line.
 rm out4/slice-2.h5
 sed -i 's/^##SBATCH --partition=.*/#SBATCH --partition=nowhere/' out4/submit.sh
 code=0

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A study over several hands: its table holds every trial, the first seed's recordings and summary are
-# those of the table, and neither the number of threads nor the seed that came first changes a number.
+# A comparison with several hands: its table has every trial, the first seed's recordings and summary agree with it, and neither the
+# number of threads nor the first seed changes a number.
 set -euo pipefail
 osteomill=$1
 folder=$(mktemp -d)
@@ -8,7 +8,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
 fault() { echo "FAILED: $1"; exit 1; }
-# The rows of study.csv of one seed and its own tremor, without the columns of the time that was taken.
+# Prints the rows of study.csv of one seed and its own tremor, without the columns of times.
 untimed() { awk -F, -v OFS=, -v seed="$2" 'NR > 1 && $5 == 0 && (seed == "" || $1 == seed) {for (n = 9; n <= 12; ++n) $n = ""; for (n = 27; n <= 29; ++n) $n = ""; print}' "$1"; }
 
 "$osteomill" compare --algorithm line-proxy --algorithm point-shell --seconds 2 --seeds 3 --seed 4 --no-stability --threads 2 --out a >a.out
@@ -26,12 +26,12 @@ diff <(cut -d, -f1-3 a/study.csv | sort -u) <(cut -d, -f1-3 a/one-hole.csv | sor
 [ ! -e a/stability.csv ] || fault "--no-stability measured stability"
 
 "$osteomill" report a/*.h5 --out again >again.out
-cmp a/summary.csv again/summary.csv || fault "the report made again says something else"
+cmp a/summary.csv again/summary.csv || fault "the report made from recordings differs"
 for file in report.html study.csv one-hole.csv; do cmp a/$file again/$file || fault "the report made again has another $file"; done
 
 "$osteomill" compare --algorithm point-shell --seconds 2 --seeds 2 --seed 5 --no-stability --threads 1 --out b >b.out
 for seed in 5 6; do
   diff <(untimed a/study.csv $seed | grep point-shell) <(untimed b/study.csv $seed) ||
-    fault "seed $seed differs with the number of threads, or with its place"
+    fault "seed $seed depends on the number of threads or on its position"
 done
 exit 0

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A study from its file to its report: what it lists it runs, neither the number of threads nor of slices changes a row, what
-# is missing on the disk is run again, and whatever is wrong is one line before anything runs.
+# A study from its file to its report: it runs the listed trials, neither the number of threads nor of slices changes a row, missing
+# slices run again, and every fault gives one line before a trial runs.
 set -euo pipefail
 osteomill=$1 ball=$2 studies=$3
 . "$(dirname "${BASH_SOURCE[0]}")/study_rows.sh"
@@ -39,14 +39,14 @@ TOML
 
 "$osteomill" study study.toml --out a --threads 1 --slices 1 --quiet >/dev/null
 rows a >expected
-diff <(tail -n +2 list) <(tail -n +2 expected | cut -d, -f1-4 | uniq) || fault "what was run is not what was listed"
+diff <(tail -n +2 list) <(tail -n +2 expected | cut -d, -f1-4 | uniq) || fault "other trials were run than listed"
 [ "$(tail -n +2 expected | cut -d, -f1,5 | sort -u | wc -l)" -eq 16 ] || fault "each trial has a row for either phase"
 for file in report.html figures/map_1.svg figures/map_1.png; do [ -s "a/report/$file" ] || fault "no $file"; done
-grep -q "8 of 8 trials (100 %)" a/report/report.html || fault "the report does not say what it is of"
-# A second is too short for a hole of 3 mm, which the page says before anything else.
+grep -q "8 of 8 trials (100 %)" a/report/report.html || fault "the report does not state its number of trials"
+# One second is too short for a hole of 3 mm; the page states this first.
 short=$(tail -n +2 a/report/trials.csv | grep -v ',$' | cut -d, -f1 | sort -u | wc -l)
 [ "$short" -gt 0 ] || fault "every trial did all of its test"
-grep -q "$short of the 8 trials did not do all of their test" a/report/report.html || fault "the page hides trials that did not do the test"
+grep -q "$short of the 8 trials did not do all of their test" a/report/report.html || fault "the page does not report trials that did not complete the test"
 grep -q "In hatched cells" a/report/report.html || fault "the map does not mark them"
 if [ "$short" -eq 8 ]; then
   ! "$osteomill" study a --report --drop-unreached 2>err || fault "nothing is left to report on"
@@ -64,8 +64,8 @@ truncate -s 1000 b/slice-2.h5
 kept=$(stat -c %i.%Y b/slice-0.h5)
 "$osteomill" study b --status | grep -q "^3 of 8 trials are done (37.5 %), 1 of 3 slices$" || fault "$("$osteomill" study b --status)"
 "$osteomill" study b --resume --quiet >/dev/null
-[ "$kept" = "$(stat -c %i.%Y b/slice-0.h5)" ] || fault "what was done was run again"
-rows b | cmp - expected || fault "resumed rows are others"
+[ "$kept" = "$(stat -c %i.%Y b/slice-0.h5)" ] || fault "a finished slice was run again"
+rows b | cmp - expected || fault "resumed rows differ"
 
 refused() {  # TEXT COMMAND...
   local text=$1 code=0
@@ -103,7 +103,7 @@ mkfifo pipe.toml
 refused "^osteomill: pipe.toml: .*regular file" timeout 20 "$osteomill" study pipe.toml --out c
 variant 's/^trials = .*/trials = 6000000/'
 refused "^osteomill: variant.toml: .*10000000 trials" "$osteomill" study variant.toml --out c
-[ ! -e c ] || fault "what was refused left a folder"
+[ ! -e c ] || fault "a refused study left a folder"
 variant 's/seconds = 1/seconds = 0.2/'
 refused "^osteomill: a: .*another study" "$osteomill" study variant.toml --out a
 refused "a: .*already.*study a --resume" "$osteomill" study study.toml --out a
@@ -118,7 +118,7 @@ refused "study.toml: .*changed" "$osteomill" study b --resume
 refused "ball.nrrd: .*(folder|line)" "$osteomill" study ball.nrrd --status
 refused "folder of a study.*study.h5" "$osteomill" study . --status
 
-# Poor settings are warned of once. Values that an axis cannot tell apart leave it a range.
+# Poor settings cause one warning. An axis with nearly equal values still gets a range.
 cat >poor.toml <<TOML
 test = "wall"
 [fixed]
@@ -139,7 +139,7 @@ TOML
 "$osteomill" study d --report --quiet >/dev/null || fault "a map whose values nearly agree"
 [ -s d/report/figures/map_1.svg ] || fault "no map"
 
-# The studies of the project can be read, and state their number of trials.
+# The project's studies can be read and listed.
 for study in "$studies"/*.toml; do
   [ "$(basename "$study")" = findings-200.toml ] || "$osteomill" study "$study" --list | tail -n 1 | grep -q "^[0-9][0-9]*," || fault "$study"
 done

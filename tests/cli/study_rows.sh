@@ -1,4 +1,4 @@
-# For tests to source: the rows of the study in folder $1, without the columns of time; $osteomill is the program.
+# For tests to source: prints the rows of the study in folder $1 without the columns of times; $osteomill is the program.
 rows() {
   "$osteomill" study "$1" --report >/dev/null
   awk -F, -v OFS=, 'NR == 1 {for (n = 1; n <= NF; ++n) timed[n] = $n ~ /_us_|rate_hz/}
