@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A ball of bone, 5 mm in radius, in voxels of 0.5 mm: a scan that is opened, prepared and drawn at once.
+# Prints a scan of a ball of bone with a radius of 5 mm, in voxels of 0.5 mm, small enough to open and draw without delay.
 #   ball.sh [RADIUS_MM] >ball.nrrd
 printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 32 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
 awk -v radius="${1:-5}" 'BEGIN {

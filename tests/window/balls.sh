@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Three pieces of bone: a ball of 5 mm about (6, 7.75, 7.75) mm, one of 1.5 mm about (17, 7.75, 7.75) mm, and a lone
-# voxel, in voxels of 0.5 mm:
+# Prints a scan of three pieces of bone in voxels of 0.5 mm: a ball of 5 mm around (6, 7.75, 7.75) mm, one of 1.5 mm around (17,
+# 7.75, 7.75) mm, and a single voxel:
 #   balls.sh >balls.nrrd
 printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 40 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
 awk 'function share(radius, middle) { return radius - 0.5 * sqrt((i - middle)^2 + (j - 15.5)^2 + (k - 15.5)^2) + 0.5 }

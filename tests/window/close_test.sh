@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A recording is not left without its report by mistake, and a user who recorded nothing is not asked:
+# Closing the window offers a report if there is a recording without one, and asks nothing otherwise:
 #   close_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -11,7 +11,7 @@ cd "$folder"
 export XDG_STATE_HOME=$folder/state
 bash "$here/ball.sh" >ball.nrrd
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
-# Works the window by the lines given; what a click does not find ends the program with an error.
+# Operates the window with the given lines; a click on a missing control ends the program with an error.
 window() {
   printf '%s\n' "wait 0.3" "$@" >actions
   rm -rf out
@@ -29,14 +29,14 @@ grep -q stayed said || fail "it did not stay"
 ! grep -q still-there said || fail "it did not close without a report"
 [ -s "$(ls out/*-recording.h5)" ] && [ -z "$(ls -d out/*-report 2>/dev/null)" ] || fail "not the recording alone"
 
-# The recording still goes on when the window is closed.
+# Closes the window while it records.
 window "click Record" "wait 0.5" quit "wait 0.3" "click Make the report and close" "wait 90" "say still-there" ||
   fail "exit code $? with a report"
 ! grep -q still-there said || fail "it did not close after the report"
 [ -s "$(ls out/*-report/summary.csv)" ] || fail "there is no report"
 grep -q "^Report in out/" said || fail "the report is not named"
 
-# A script's close asks nothing, and the question does not keep a user from ending the program.
+# A script's close does not ask, and the open question does not prevent SIGTERM from ending the program.
 window "${record[@]}" close || fail "exit code $? of a script's close"
 printf '%s\n' "wait 0.3" "${record[@]}" quit "wait 0.3" "say asked" "wait 90" >actions
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash -c '

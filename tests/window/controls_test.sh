@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Every control of the window is worked, and what it brings about is held against what it is for; one that no line here
-# works, or that does nothing when it is worked, is named:
+# Operates every control of the window and checks its effect; reports controls that no line here uses, or that have no effect:
 #   controls_test.sh OSTEOMILL
 # Skipped (exit 77) without Xvfb. Screenshots stay in OSTEOMILL_PICTURES if that is set.
 set -euo pipefail
@@ -19,7 +18,7 @@ export XDG_STATE_HOME=$folder/state
 
 faults=0
 fault() { echo "FAILED: $1"; faults=1; }
-# Works the window by the lines of standard input, with what it says in `said`.
+# Operates the window with the lines of standard input; its output is in `said`.
 window() {
   rm -f state/osteomill/window.toml
   { echo "controls $folder/${controls:-controls}"; sed 's/ *;; */\n/g'; } | tee -a worked_lines >actions
@@ -128,7 +127,8 @@ for moment in first laboratory larger light dark; do
   for fact in unexplained cut_off outside covered; do is $moment $fact ""; done
   awk -v c="$(value $moment contrast)" 'BEGIN { exit !(c >= 4.5) }' || fault "at $moment text has a contrast of $(value $moment contrast)"
 done
-# The tool is free, before the bone where it was asked for, the shaft towards the viewer; the key goes by the pointer.
+# The tool is free, at the requested place in front of the bone, with the shaft towards the viewer; the key uses the pointer's
+# position.
 near() {
   awk -v x="$(part "$1" tool_px 1)" -v y="$(part "$1" tool_px 2)" -v a="$2" -v b="$3" 'BEGIN { exit !((x - a) ^ 2 + (y - b) ^ 2 < 9) }' ||
     fault "at $1 the tool is at $(value "$1" tool_px) and not at $2 $3"
@@ -138,7 +138,7 @@ for moment in first brought brought-by-key; do
   is $moment force_N 0.000
   awk -v z="$(part $moment shaft_seen 3)" 'BEGIN { exit !(z > 0.4) }' || fault "at $moment the shaft points away"
 done
-# All of the bone is in the first picture, upright.
+# The first picture shows the whole bone, upright.
 is first corners_seen 8
 awk -v up="$(part first up_seen 2)" 'BEGIN { exit !(up > 0.7) }' || fault "the bone does not begin upright"
 more refound tool-dragged tool_seen 1; more refound tool-dragged tool_seen 2; same refound tool-dragged towards_viewer
@@ -233,13 +233,13 @@ compgen -G "out/*-milled.nrrd" >/dev/null || fault "Save before resetting did no
 is barrier-shell algorithm barrier-shell
 for algorithm in line-proxy surface-points point-shell; do
   is $algorithm algorithm $algorithm
-  # The first drag after an algorithm was chosen counts.
+  # The first drag after choosing an algorithm takes effect.
   changed $algorithm $algorithm-stiffness stiffness
 done
 changed point-shell-stiffness burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
 is rpm vibration true; is no-vibration vibration false
 hides no-pull turbine; shows drives turbine
-# The speed is not the usual one of a drive any more, so a drive keeps it.
+# The speed is no longer a handpiece's default, so another handpiece keeps it.
 is drives handpiece 0; is turbine handpiece 1; is electric handpiece 2; is surgical handpiece 3; is no-drive handpiece 0
 same rpm turbine rpm
 is drives burr 0; is diamond burr 1; is cutting burr 0
@@ -249,8 +249,8 @@ is named burr_mm 0.70; is named shaft_mm 0.42; is named burr 1; is named-again b
 is worn law 1; is constant law 0; is chips law 1
 is no-vibration cutting_reaction true; is no-pull cutting_reaction false
 more no-vibration isovalue isovalue; is typed isovalue 500
-value no-vibration isovalue_from | grep -q "^suggested: " || fault "nobody is told that the isovalue was suggested"
-value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told that the isovalue was set"
+value no-vibration isovalue_from | grep -q "^suggested: " || fault "the window does not show that the isovalue was suggested"
+value typed isovalue_from | grep -q "^set here; first" || fault "the window does not show that the isovalue was set"
 
 # --- Pieces of bone: a large ball, a small one and a lone voxel -----------------------------------------------------
 window balls.nrrd --iso 700 --no-help <<'END'
@@ -309,7 +309,7 @@ for cut in "axial 0.000 0.000 -1.000" "coronal 0.000 1.000 0.000" "sagittal -1.0
   name=${cut%% *}
   [ "$(normal "$name-on" "$name")" = "${cut#* }" ] || fault "the $name cut is $(normal "$name-on" "$name")"
 done
-# Through the burr, which stands beside the middle.
+# The cut goes through the burr, which is beside the middle.
 awk -v x="$(part sagittal-on tool_W 1)" -v at="$(value sagittal-on sagittal | sed 's/.* at //')" 'BEGIN { exit !((at + x) ^ 2 < 1e-3) }' ||
   fault "the sagittal cut begins at $(value sagittal-on sagittal) and the tool is at $(value sagittal-on tool_W)"
 changed free-on dragged free
@@ -318,11 +318,11 @@ same free-on dragged towards_viewer
 
 # --- Files, dialogues, closing ------------------------------------------------------------------------------------
 echo "not a scan" >bad.nrrd
-# Bone below, air above: 480^3 voxels of a byte, which take a while.
+# Bone below air: 480^3 voxels of one byte, which take some time to load.
 { printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 480 480 480\nspacings: 0.1 0.1 0.1\nencoding: raw\n\n'
   head -c $((480 * 480 * 240)) /dev/zero | tr '\0' '\310'
   head -c $((480 * 480 * 240)) /dev/zero; } >large.nrrd
-# Logs the files that the desktop is asked to open.
+# Logs the files that the desktop should open.
 mkdir bin
 printf '%s\n' '#!/bin/sh' 'case "$1" in *report.html) touch opened-report ;; */out|*-report) touch opened-out ;; esac' >bin/xdg-open
 chmod +x bin/xdg-open
@@ -365,7 +365,7 @@ window ball.nrrd --no-help <<'END'
 wait 0.2 ;; open small.nrrd ;; settle ;; wait 0.3 ;; state too-large ;; key escape ;; wait 0.1 ;; state as-before
 close
 END
-# A tool that cannot work with the bone is refused, wherever it comes from.
+# A tool that does not fit the bone is refused, wherever it is set.
 value too-large dialogue | grep -q "^small.nrrd: a burr of .* mm radius is wider than the whole bone" || fault "a burr wider than the bone is taken"
 is too-large scan ball.nrrd; is as-before dialogue ""; is as-before scan ball.nrrd
 xvfb-run -a timeout 60 "$osteomill" simulate ball.nrrd --burr-radius 50 >said 2>errors && fault "a burr of 50 mm begins" || code=$?
@@ -373,7 +373,7 @@ xvfb-run -a timeout 60 "$osteomill" simulate ball.nrrd --burr-radius 50 >said 2>
   fault "a burr of 50 mm ends with $code and $(cat errors)"
 
 # --- A scan with several boundaries -------------------------------------------------------------------------------
-# Air, something soft, and bone in it.
+# Air, soft tissue, and bone in it.
 {
   printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 32 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
   awk 'function within(mm) { return mm < 0 ? 0 : mm > 1 ? 1 : mm }
@@ -390,7 +390,7 @@ click ${boundaries[1]} ;; settle ;; wait 0.2 ;; state bone
 click ${boundaries[0]} ;; settle ;; wait 0.2 ;; state skin
 close
 END
-value both isovalue_from | grep -q "; a guess, with other boundaries at " || fault "nobody is told that the isovalue is a guess"
+value both isovalue_from | grep -q "; a guess, with other boundaries at " || fault "the window does not show that the isovalue is a guess"
 for n in 0 1; do
   awk -v is="$(value "$([ $n = 0 ] && echo skin || echo bone)" isovalue)" -v as="${boundaries[$n]}" \
     'BEGIN { exit !((is - as) ^ 2 < 1) }' || fault "the button ${boundaries[$n]} does not set the isovalue"
@@ -402,11 +402,11 @@ window coarse.nrrd --no-help <<'END'
 wait 0.5 ;; state coarse ;; screenshot coarse.png ;; click Laboratory ;; wait 0.1 ;; drag burr radius 60 ;; settle ;; wait 0.5 ;; state wide-burr
 close
 END
-value coarse warnings | grep -q "lie up to 2 mm apart" || fault "nobody is told that the voxels are longer than the burr's radius"
+value coarse warnings | grep -q "lie up to 2 mm apart" || fault "no warning that the voxels are longer than the burr's radius"
 is wide-burr warnings ""
 
 # --- Labels -------------------------------------------------------------------------------------------------------
-# The ball's left half is one label, its right half another.
+# The ball's left and right halves have different labels.
 {
   printf 'NRRD0004\ntype: uchar\ndimension: 3\nsizes: 32 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
   for ((row = 0; row < 32 * 32; ++row)); do printf '1 %.0s' {1..16}; printf '2 %.0s' {1..16}; done
@@ -417,7 +417,7 @@ click label colours ;; wait 0.2 ;; state plain ;; screenshot plain.png
 close
 END
 shows labelled "label colours"
-! cmp -s labelled.png plain.png || fault "the colours of the labels are not seen"
+! cmp -s labelled.png plain.png || fault "the label colours are not drawn"
 
 # --- The last recording is opened to be played, playback_test.sh works that page; the way back to the start ----------------------------------
 controls=pages window ball.nrrd --no-help <<'END'
@@ -428,21 +428,21 @@ wait 0.3 ;; click Window ;; wait 0.2 ;; click Start page ;; wait 1 ;; screenshot
 END
 is tooth scan "built-in tooth"
 
-# --- Nothing was left out -----------------------------------------------------------------------------------------
-# Of the labels that were drawn, and of those that stand in the code; exercise_test.sh works the two pages of exercises, and
-# playback_test.sh that of a recording.
+# --- Coverage of the controls -----------------------------------------------------------------------------------------
+# Collects the labels that were drawn and those in the code, except for the exercise pages (exercise_test.sh) and the playback page
+# (playback_test.sh).
 { sed -n 's/^drawn //p' controls
   grep -hzoP --exclude=exercise_panel.cpp --exclude=start_page.cpp --exclude=playback_panel.cpp \
     'ui::(button|checkbox|radio|slider|text_field|header|begin_menu)\(\s*"\K[^"]+' "$source_folder"/*.cpp |
     tr '\0' '\n' | sed 's/##.*//; /^$/d'; } | sed '/[0-9] mm)\{0,1\}$/d' | sort -u >labels
-# Those of a haptic device are worked if there is one; open_test.sh and seeing_test.sh work theirs.
+# Excludes controls that only a haptic device shows, and those tested by open_test.sh and seeing_test.sh.
 { sed -n 's/^worked //p' controls pages
   sed 's/ *;; */\n/g' "$here/device_test.sh" "$here/open_test.sh" "$here/seeing_test.sh" |
     sed -nE 's/^(.*[^a-z])?click (.*)/\2/p; s/^drag (.*) [0-9]+$/\1/p'; } | sort -u >worked
 cat "$here/device_test.sh" >>worked_lines
 [ "$(wc -l <labels)" -gt 30 ] || fault "the labels are not found"
 while read -r label; do fault "the control '$label' was never worked, or did nothing"; done < <(comm -23 labels worked)
-# Every key that the code asks for must have been pressed.
+# Every key that the code handles must have been pressed.
 grep -ohE 'GLFW_KEY_[A-Z0-9_]+' "$source_folder/pointer.cpp" "$source_folder/overlay.cpp" | sort -u | sed 's/GLFW_KEY_//' |
   while read -r key; do
     name=$(tr 'A-Z_' 'a-z-' <<<"$key" | sed -E 's/^(up|down|left|right)$/arrow-\1/')

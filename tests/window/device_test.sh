@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A device holds the tool in the window, is stopped and goes on; it is the example of a device's side:
+# A device, the UDP example, holds the tool in the window, is stopped and continues:
 #   device_test.sh OSTEOMILL UDP_DEVICE
 set -euo pipefail
 osteomill=$1 udp_device=$2

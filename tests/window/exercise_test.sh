@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# An exercise from the start page to its results, chosen and worked by real clicks and keys, in two sizes of the window:
+# An exercise from the start page to its results with real clicks and keys, in two window sizes:
 #   exercise_test.sh OSTEOMILL_DRIVER OSTEOMILL EXERCISES
 set -euo pipefail
 driver=$1 osteomill=$2 exercises=$3
@@ -12,7 +12,7 @@ cd "$folder"
 export XDG_STATE_HOME=$folder/state
 mkdir -p state/osteomill
 echo "help-seen = true" >state/osteomill/window.toml
-# The desktop's browser: notes what it is to open.
+# Replaces the desktop's browser and logs the page to open.
 mkdir bin
 printf '#!/bin/sh\necho "$1" >%s/opened\n' "$folder" >bin/xdg-open
 chmod +x bin/xdg-open
@@ -47,7 +47,7 @@ set -euo pipefail
 "$1" simulate --out out --script actions >said 2>errors & program=$!
 window=$(xdotool search --sync --onlyvisible --name '^osteomill$')
 xdotool windowfocus "$window"
-# Sends events once the window waits for them, and gives it time for some pictures.
+# Sends events once the window waits for them, and leaves it time for some frames.
 send() {
   until grep -q "^$1\(: \|$\)" said || ! kill -0 "$program"; do sleep 0.05; done
   xdotool "${@:2}"
@@ -55,7 +55,7 @@ send() {
   touch "$1"
 }
 place() { sed -n "s/^$1\.place of $2=//p" said; }
-# Each exercise has its picture in a row, in the order of their files' names: the third is the trench.
+# The exercises' pictures are in a row, in the order of file names; the third is the trench.
 send chosen mousemove --window "$window" $2 150 sleep 0.3 click 1
 send hidden key --delay 0 g
 send shown key --delay 0 g key --delay 0 m key --delay 0 m
@@ -63,7 +63,7 @@ send finished mousemove --window "$window" $(place begun Finish) sleep 0.3 click
 wait "$program"
 END
 
-# work SIZE X: where the third picture is.
+# work SIZE X: X is the position of the third picture.
 work() {
   rm -rf out opened said chosen hidden shown finished
   touch said
@@ -110,7 +110,7 @@ CHECK
 work 1280x800 570
 work 1024x600 570
 
-# A window that is closed before the end asks whether to measure; closed without, it names the recording.
+# A window closed before the end asks whether to measure; if not, it names the recording.
 closing() {
   rm -rf out
   printf '%s\n' "wait 0.5" settle "wait 0.5" "$@" >actions

@@ -1,5 +1,5 @@
-// Stands in for a game controller, loaded ahead of GLFW: the file that OSTEOMILL_GAMEPAD names holds six axes and then
-// the states of the buttons A, B and X.
+// Replaces a game controller; preloaded before GLFW. The file named in OSTEOMILL_GAMEPAD contains six axes
+// and the states of the buttons A, B and X.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Hands without a wheel, by events of the display itself: the pointer does not stop at the screen's edge while the tool is
-# in the hand, W and S press it in and pull it back while the left button mills, and the pointer comes back with Esc, a
-# dialogue, or when another window takes the keyboard:
+# Input without a wheel, with the display's own events: the pointer does not stop at the screen's edge while it holds the tool, W
+# and S push the tool in and pull it back while the left button mills, and the pointer is released with Esc, by a dialogue, or when
+# another window gets the keyboard:
 #   hands_test.sh OSTEOMILL GAMEPAD_STAND_IN
 set -euo pipefail
 osteomill=$1
@@ -45,7 +45,7 @@ send pulled keydown s sleep 0.3 keyup s
 send milled keydown w sleep 2 keyup w sleep 0.3 mouseup 1
 pull=$(printf 'mousemove_relative -- 40 0 sleep 0.02 %.0s' {1..60})
 send beyond keydown s sleep 2 keyup s $pull
-# Over the left column, to which the pointer that is held does not point.
+# Over the left column, which a captured pointer does not hover.
 send hovered $(sed 's/ 40 0/ -40 0/g' <<<"$pull") click 4 sleep 0.2
 send escaped key Escape
 send retaken key --delay 0 t
@@ -73,13 +73,13 @@ less "$(part hovered tool_px 1)" "$(part beyond tool_px 1)" "the way back"
 less "$(part hovered target_seen 3)" "$(part beyond target_seen 3)" "the wheel above the column"
 is hovered distance_mm "$(value beyond distance_mm)"
 is escaped in_hand false; is retaken in_hand true; is closed in_hand true; is unfocused in_hand false
-# It comes back where it was taken from; while a dialogue is open, too.
+# The pointer returns to where it was captured, also while a dialogue is open.
 for moment in escaped dialogue unfocused; do
   grep -q "^x:640 y:400 " $moment.pointer || fail "at $moment the pointer is at $(cat $moment.pointer)"
 done
 
-# A game controller that is plugged in moves the tool without another word: presses it in while A mills, lets go of it by
-# B, and takes the cut back by X.
+# A game controller moves the tool as soon as it is connected: pushes it in while A mills, releases it with B, and undoes the cut
+# with X.
 pad() { echo "$*" >pad.new && mv pad.new pad; }
 rest="0 0 0 0 -1 -1"
 pad $rest 0 0 0

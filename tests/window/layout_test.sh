@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Text has the size that was asked for as far as the window has room for it, also if that changes while it is open;
-# what has no room is reached by scrolling:
+# Text has the requested size if the window has room for it, also after resizing; the rest is reached by scrolling:
 #   layout_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -12,7 +11,7 @@ cd "$folder"
 export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 "$here/ball.sh" >ball.nrrd
-# On a screen of this size.
+# Runs the window on a screen of this size.
 window() {
   local screen=$1
   shift
@@ -24,7 +23,7 @@ window() {
 value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 
-# Nothing is cut off, outside of the window, under something else, without a hint or too pale, in either theme.
+# In both themes, no control is cut off, outside the window, covered, without a hint, or too low in contrast.
 {
   printf 'NRRD0004\ntype: uchar\ndimension: 3\nsizes: 32 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
   awk 'BEGIN { for (v = 0; v < 32768; ++v) print int(v / 2048) + 1 }'
@@ -59,7 +58,7 @@ look 3840x2160 2 Light
 is start ui_scale 2.00
 look 3840x2160 3 Dark
 
-# In a low window the end of the column is reached by scrolling.
+# In a low window, scrolling reaches the end of the column.
 rm -rf state
 window 1024x600 <<'END'
 wait 0.3 ;; state small ;; screenshot layout-1024x600.png ;; click Laboratory ;; wait 0.2
@@ -70,7 +69,7 @@ END
 is small size "1024 x 600"; is small ui_scale 1.00
 is scrolled handpiece 1
 
-# Large text, many labels and help: what tells a result, and what sends help away, is in sight and apart.
+# With large text, many labels and help, the result message and the button that closes help are visible and do not overlap.
 rm -rf state
 window 1024x600 --ui-scale 2 --labels labels.nrrd <<'END'
 wait 0.3 ;; key f1 ;; wait 0.2 ;; click Save picture ;; wait 0.3
@@ -97,7 +96,7 @@ is little-room size "1024 x 600"
 awk -v s="$(value little-room ui_scale)" 'BEGIN { exit !(s > 1 && s < 1.5) }' || fail "text does not fit into 1024 x 600"
 is room-again ui_scale 2.00; is smaller ui_scale 1.75
 
-# At any size of text the menu that changes it is in sight.
+# The menu that changes the text size is visible at any size.
 rm -rf state
 window 1280x800 --ui-scale 1.25 <<'END'
 wait 0.3 ;; screenshot layout-larger.png ;; click Window ;; wait 0.2 ;; click Smaller text ;; wait 0.2 ;; state usual

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A tool that is let go deep in bone presses no longer, in whatever way it was held, with every algorithm:
+# A tool released deep in bone no longer presses, however it was held, with every algorithm:
 #   let_go_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -13,7 +13,7 @@ fail() { echo "FAILED: $1"; cat errors; grep force_N said; exit 1; }
 "$here/ball.sh" >ball.nrrd
 value() { sed -n "s/^$1\.$2=//p" said; }
 
-# A hole of some depth with a burr that is not the usual one; then the tool is pressed and let go in each way.
+# Mills a hole with a non-default burr; then presses and releases the tool in each way.
 sed 's/ *;; */\n/g' >actions <<'END'
 wait 0.5 ;; click S ;; glide 640 750 0 ;; key b ;; settle ;; wait 0.3 ;; key t ;; wheel 28 0.6 ;; wait 0.4 ;; key space ;; wait 1.2 ;; key space ;; wait 0.3 ;; state hole
 wheel 15 0.3 ;; wait 0.7 ;; state t-pressing ;; key t ;; wait 1.5 ;; state t-after

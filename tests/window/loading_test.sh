@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# While a large scan is opened its loading can be given up, by button and key, another can be opened instead, and the
-# window can be closed:
+# While a large scan is loading, the user can cancel by button or key, open another scan, and close the window:
 #   loading_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -13,7 +12,7 @@ export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 "$here/ball.sh" >ball.nrrd
 "$here/ball.sh" 4 >other.nrrd
-# Bone below, air above: 480^3 voxels of a byte.
+# Bone below air: 480^3 voxels of one byte.
 { printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 480 480 480\nspacings: 0.1 0.1 0.1\nencoding: raw\n\n'
   head -c $((480 * 480 * 240)) /dev/zero | tr '\0' '\310'
   head -c $((480 * 480 * 240)) /dev/zero; } >large.nrrd
@@ -24,7 +23,7 @@ window() {
 value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 
-# While the first scan is opened: the window closes, and `state`, which needs a scan, is never said.
+# While the first scan is loading: the window closes, and `state`, which needs a scan, prints nothing.
 for way in quit "click Cancel" "key escape"; do
   printf '%s\n' at-once "wait 0.3" "screenshot opening.png" "$way" "wait 100" "state never" |
     window large.nrrd --iso 100 || fail "exit code $? after '$way'"
@@ -36,7 +35,7 @@ printf '%s\n' at-once "wait 0.3" "open other.nrrd" settle "wait 0.3" "state inst
   fail "exit code $?"
 is instead scan other.nrrd
 
-# While another scan is opened during milling.
+# While another scan is loading during milling.
 window ball.nrrd <<'END' || fail "exit code $?"
 wait 0.2 ;; open large.nrrd ;; wait 0.3 ;; click Cancel ;; wait 0.3 ;; state by-button
 open large.nrrd ;; wait 0.3 ;; key escape ;; wait 0.3 ;; state by-key
@@ -49,5 +48,5 @@ for moment in by-button by-key; do
   ! value $moment shown | grep -qF "[Cancel]" || fail "at $moment it still loads"
 done
 is instead scan other.nrrd
-! value instead dialogue | grep -q . || fail "giving up is complained about"
+! value instead dialogue | grep -q . || fail "there is a message about the cancelled scan"
 [ -z "$(value never scan)" ] || fail "it did not close"

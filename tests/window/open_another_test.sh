@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Another scan is opened in the window; one at fault is told of, and the session goes on:
+# Another scan is opened in the window; an invalid one is reported, and the session continues:
 #   open_another_test.sh OSTEOMILL [SCAN]
-# SCAN, if it is on this machine, is opened too.
+# SCAN is opened too, if it exists.
 set -euo pipefail
 osteomill=$1 real=${2:-}
 command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
@@ -58,16 +58,16 @@ line() { grep "^$1: " said; }
 reading() { sed -nE "s/^$1:.* $2 ([0-9.]+) .*/\1/p" said; }
 above() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a > b) }'; }
 
-# The dialogue names the file, and the tooth is still there.
+# The dialogue names the file, and the tooth is still open.
 grep -q "^dialogue: bad.nrrd: ." said || fail "the scan at fault is not named with a reason"
 grep -q "^dialogue: no-such-scan: ." said || fail "the missing scan is not named with a reason"
 line goes-on | grep -q "scan built-in tooth$" || fail "the session did not go on"
 above "$(line goes-on | sed -E 's/.* ([0-9.]+) Hz.*/\1/')" 500 || fail "no ticks after a scan at fault"
-# The next one is there, can be milled, and stays when a later one is at fault.
+# The next scan is open, can be milled, and stays open when a later one is invalid.
 line dropped | grep -q "scan good.nrrd$" || fail "the good scan was not opened"
 above "$(reading milling removed)" 0.1 || fail "the scan that was opened is not milled"
 line not-there | grep -q "scan good.nrrd$" || fail "the session ended with a scan that is not there"
 [ -s "$(ls out/*-picture.png)" ] || fail "no picture"
-# The recording of the bone before is whole.
+# The recording of the previous bone is complete.
 "$osteomill" report out/*-recording.h5 --out report >/dev/null || fail "the recording cannot be read"
 [ ! -e "$real" ] || line real | grep -q "scan $real$" || fail "the real scan was not opened"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Open shows a dialog for files and folders, the window's own or the desktop's; what it chooses is opened, a scan at fault
-# is told of in one line, and the series of a folder are offered:
+# Open shows a dialog for files and folders, the window's own or the desktop's; the chosen scan is opened, an invalid one is
+# reported in one line, and the series of a folder are offered:
 #   open_test.sh OSTEOMILL PORTAL_STAND_IN [FOLDER_WITH_TWO_SERIES]
 # Screenshots stay in OSTEOMILL_PICTURES if that is set.
 set -euo pipefail
@@ -13,7 +13,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 export XDG_STATE_HOME=$folder/state HOME=$folder/home
-# Without a bus there is no portal.
+# Without a session bus there is no portal.
 export DBUS_SESSION_BUS_ADDRESS=unix:path=$folder/no-bus
 pictures() { [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true; }
 fail() { pictures; echo "FAILED: $1"; cat said errors; exit 1; }
@@ -37,8 +37,8 @@ echo "not a scan" >scans/bad.nrrd
 echo "a note" >scans/notes.txt
 "$here/ball.sh" >scans/.hidden.nrrd
 
-# From the start page, at the smallest size: down to a folder by Enter, up by Backspace, a file by its button; then
-# another by keys, a scan at fault, Esc, a typed path, and one that was opened before.
+# From the start page, at the smallest size: into a folder with Enter, up with Backspace, a file by its button; then another by
+# keys, an invalid scan, Esc, a typed path, and a recent scan.
 window 1024x600 --no-help <<END
 wait 0.3 ;; click Open ;; wait 0.4 ;; click path ;; type $folder/scans ;; key enter ;; wait 0.3 ;; say listed ;; screenshot open-start.png
 click more/ ;; wait 0.2 ;; key enter ;; wait 0.3 ;; screenshot open-more.png ;; key backspace ;; wait 0.3
@@ -55,7 +55,7 @@ END
 is by-button scan "$folder/scans/ball.nrrd"; is by-key-shown in_hand false
 for label in more/ bad.nrrd ball.nrrd "Open selected" "Open this folder"; do shows by-key-shown "$label"; done
 hides by-key-shown notes.txt; hides by-key-shown .hidden.nrrd
-# The key T reaches nothing behind the dialog.
+# The key T does not reach the window behind the dialog.
 is by-keys scan "$folder/scans/more/other.nrrd"; is by-keys in_hand false
 is cancelled scan "$folder/scans/more/other.nrrd"; hides cancelled "Open this folder"
 value at-fault dialogue | grep -q "^$folder/scans/more/../bad.nrrd: .\|^$folder/scans/bad.nrrd: ." || fail "the scan at fault is not named"
@@ -63,7 +63,7 @@ is at-fault scan "$folder/scans/more/other.nrrd"; is goes-on scan "$folder/scans
 shows up ball.nrrd; hides home bad.nrrd
 is recent scan "$folder/scans/ball.nrrd"; is this-folder scan "$folder/scans/more"; hides empty more/
 
-# A double click of the display's own shows a folder.
+# A real double click opens a folder.
 sed 's/ *;; */\n/g' >actions <<END
 wait 0.3 ;; click Open ;; wait 0.4 ;; click path ;; type $folder/scans ;; key enter ;; wait 0.4 ;; state shown ;; display ;; say doubled ;; await doubled ;; state doubled ;; close
 END
@@ -80,7 +80,7 @@ END
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 60 bash hands || fail "exit code $?"
 shows doubled other.nrrd; hides doubled bad.nrrd
 
-# A folder with very many entries does not hold the window up: the clicks that follow still come through.
+# A folder with very many entries does not block the window: later clicks still work.
 mkdir many && (cd many && seq -f "%06g.txt" 100000 | xargs touch && touch zebra.nrrd)
 window 1280x800 scans/ball.nrrd --no-help <<END
 wait 0.3 ;; click Open ;; wait 0.2 ;; click path ;; type $folder/many ;; key enter ;; wait 0.1 ;; state reading ;; wait 3 ;; state many ;; screenshot open-many.png ;; click Cancel ;; wait 0.1 ;; state after
@@ -88,7 +88,7 @@ close
 END
 shows many zebra.nrrd; hides after zebra.nrrd
 
-# The desktop's own dialog, by a stand-in for its portal that answers at once.
+# The desktop's own dialog, with a stand-in for its portal that answers immediately.
 "$here/ball.sh" >"scans/ball 2 ä.nrrd"
 portal_answers() { # answers...
   cat >with-portal <<END
@@ -109,7 +109,7 @@ portal_answers "'file://$folder/scans/ball%202%20%C3%A4.nrrd'" cancel refuse
 is chosen scan "$folder/scans/ball 2 ä.nrrd"; hides chosen "Open this folder"
 is cancelled scan "$folder/scans/ball 2 ä.nrrd"; hides cancelled "Open this folder"
 shows refused "Open this folder"
-# It begins in the folder of the scan that was opened last.
+# The dialog starts in the folder of the last opened scan.
 printf 'file %s\nfolder %s\nfile %s\n' "$folder/scans/more" "$folder/scans" "$folder/scans" | diff - asked || fail "the portal was asked otherwise"
 
 [ -e "$two_series" ] || { echo "without the series, which are not on this machine"; exit 0; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Pieces of bone are chosen, removed, put back and removed again by real clicks and keys, in three sizes of the window;
-# the recording of it is replayed to the bit; a killed program's bone comes back without them:
+# Pieces of bone are selected, removed, restored and removed again with real clicks and keys, in three window sizes; the recording
+# replays bit for bit; the autosaved bone of a killed program lacks them:
 #   pieces_test.sh OSTEOMILL_DRIVER OSTEOMILL EXERCISES SHARED
 set -euo pipefail
 driver=$1 osteomill=$2 exercises=$3 shared=$4
@@ -25,11 +25,11 @@ set -euo pipefail
 "$1" simulate balls.nrrd --iso 700 --ui-scale $2 --no-help --out out --script actions >said 2>errors &
 program=$!
 until window=$(xdotool search --name balls.nrrd 2>/dev/null | tail -1) && [ -n "$window" ]; do kill -0 "$program" || exit 1; sleep 0.1; done
-# Real events once the window waits for the file $1, which then has time for some pictures.
+# Waits until the window awaits the file $1; real events follow, and time for some frames.
 when() { until grep -q "^$1\(: \|$\)" said || ! kill -0 "$program"; do sleep 0.05; done; }
 send() { when "$1"; xdotool "${@:2}"; sleep 1; touch "$1"; }
 click() { when "$1"; send "$1" mousemove --window "$window" $(sed -n "s/^$2\.place of $3=//p" said) sleep 0.3 click 1; }
-# Prints the pixel of the large ball's middle: the view from above has the patient's left on the left.
+# Prints the pixel at the large ball's centre; the view from above has the patient's left on the left.
 ball() {
   when chosen
   awk -v focus="$(sed -n 's/^start\.focus=//p' said)" -v away="$(sed -n 's/^start\.distance_mm=//p' said)" -v size="$3" 'BEGIN {
@@ -79,7 +79,7 @@ END
   local recording
   recording=$(value end last_recording)
   "$osteomill" replay "$recording" --verify --quiet | grep -q "^same: " || fail "does not replay"
-  # The window's bone is that of the recording, and has one piece.
+  # The window's bone equals the recording's, and has one piece.
   "$osteomill" save balls.nrrd --after "$recording" --out after.nrrd --quiet
   cmp after.nrrd out/*-milled.nrrd || fail "the recording has another bone than the window"
   "$osteomill" info out/*-milled.nrrd --iso 700 --json --quiet | tr -d ' \n' | grep -q '"pieces":{"count":1,' || fail "more than one piece is saved"
@@ -110,7 +110,7 @@ is reset cuts 0; between reset bone_size_mm 17 19
 window --exercise "$exercises/layers.toml" <<END || fail "exit code $?"
 wait 0.3 ;; settle ;; wait 0.5 ;; glide 640 344 0.1 ;; press right ;; release right ;; wait 0.2 ;; state asked ;; close
 END
-value asked message | grep -q "exercise" || fail "nothing says why not: '$(value asked message)'"
+value asked message | grep -q "exercise" || fail "no message gives the reason: '$(value asked message)'"
 ! value asked shown | grep -qF "[Remove this piece]" || fail "an exercise lets pieces be removed"
 
 # --- The table of a scanned head ------------------------------------------------------------------------------------------
@@ -125,7 +125,7 @@ END
 keep_pictures cranium
 "$osteomill" info "$cranium" --json --quiet | tr -d ' \n' | sed -E 's/.*"pieces":\{"count":([0-9]+).*/\1/' >count
 is chosen pieces "$(cat count)"; is alone pieces 1; is alone piece_mm3 "$(value chosen piece_mm3)"
-# The piece that the command line keeps.
+# Prints the pieces that the command line finds.
 pieces() { "$osteomill" info "$@" --iso "$(value chosen isovalue)" --json --quiet | tr -d ' \n' | sed -nE 's/.*"pieces":(\{[^}]*\}).*/\1/p'; }
 [ -n "$(pieces "$cranium")" ] && [ "$(pieces "$cranium" --keep-largest)" = "$(pieces out/*-milled.nrrd)" ] ||
   fail "the window keeps $(pieces out/*-milled.nrrd), --keep-largest $(pieces "$cranium" --keep-largest)"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A recorded exercise is played back and milled on from a moment of it, by real clicks, in two sizes of the window:
+# A recorded exercise is played back, and milling continues from one of its ticks, with real clicks, in two window sizes:
 #   playback_test.sh OSTEOMILL_DRIVER OSTEOMILL EXERCISES
 set -euo pipefail
 driver=$1 osteomill=$2 exercises=$3
@@ -41,7 +41,7 @@ driver=$1
 "$driver" simulate --script actions --device mouse --exercise "$2/layers.toml" --trainee "Trainee 7" --ui-scale 1 --out out --no-help >said 2>errors &
 program=$!
 until window=$(xdotool search --name osteomill 2>/dev/null | tail -1) && [ -n "$window" ]; do kill -0 "$program" || exit 1; sleep 0.1; done
-# Real events once the window waits for the file $1, which then has time for some pictures.
+# Waits until the window awaits the file $1; real events follow, and time for some frames.
 when() { until grep -q "^$1\(: \|$\)" said || ! kill -0 "$program"; do sleep 0.05; done; }
 place() { sed -n "s/^opened\.place of $1=//p" said; }
 send() { when "$1"; xdotool "${@:2}"; sleep 1; touch "$1"; }
@@ -49,7 +49,7 @@ at() { send "$1" mousemove --window "$window" "$2" "$3" sleep 0.3 click 1; }
 click() { when "$1"; at "$1" $(place "$2"); }
 click played Play
 send paused key --delay 0 space
-# The time line is known by its middle; half of it is that far.
+# Clicks on the time line relative to its middle; half of its length is known.
 when jumped
 time=($(place ""))
 half=$((time[0] - 80))
@@ -85,7 +85,7 @@ work() {
   is turned recorded_camera false; is followed recorded_camera true; is followed towards_viewer "$(value jumped towards_viewer)"
   [ "$(value turned towards_viewer)" != "$(value jumped towards_viewer)" ] || fail "the view does not turn"
   is fast playing false
-  # The bone that is shown at the chosen tick is the one that is milled on.
+  # Milling continues with the bone shown at the chosen tick.
   branch=$(value finished last_recording)
   [ -n "$first" ] && [ -n "$branch" ] && [ "$first" != "$branch" ] || fail "'$first', '$branch'"
   is again recording true; is again exercise "A trench in layered bone"; is again spindle false

@@ -1,5 +1,5 @@
-// Stands in for the desktop's portal on the session bus: answers each request for a file in turn, and writes
-// to a file what was asked for:
+// Replaces the desktop's portal on the session bus: answers file requests with the given answers in turn, and
+// logs the requests to the file ASKED:
 //   portal_stand_in ASKED ANSWER...
 // An answer is a URI, "cancel", or "refuse" for an error.
 #include <algorithm>

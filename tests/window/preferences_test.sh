@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What was set in the window is set again at the next start, by real clicks; what the command line names wins; a damaged
-# file means a first start and one line:
+# Settings made in the window persist to the next start; options take precedence; a damaged file gives default settings and one
+# line:
 #   preferences_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -45,14 +45,14 @@ END
   is again size "${size% *} x ${size#* }"; is again ui_scale "$scale"
   is again burr_mm 0.70; is again shaft_mm 0.42; is again burr 1
   hides again ghost; shows again stiffness; shows again sound
-  ! grep -q window.toml errors || fail "what was kept is complained about"
+  ! grep -q window.toml errors || fail "there is a message about the stored settings"
   grep -q '^theme = "dark"' $kept || fail "a second start keeps nothing"
 done
 unset screen
 grep -q '^ghost = false' $kept && grep -q '^sound = false' $kept && grep -q '^open-view = false' $kept ||
-  fail "the file has not what was set"
+  fail "the file lacks the settings"
 
-# The command line wins, for this start alone; an exercise brings its own burrs; a bone that is too small its own tool.
+# Options take precedence for this start only; an exercise brings its burrs, and a bone that is too small its tool.
 window ball.nrrd --burr-radius 2 --ui-scale 1 <<<"settle ;; wait 0.3 ;; state named ;; close"
 is named burr_mm 2.00; is named ui_scale 1.00
 window ball.nrrd <<<"settle ;; wait 0.3 ;; state unnamed ;; close"
@@ -60,12 +60,12 @@ is unnamed burr_mm 0.70; [ "$(value unnamed ui_scale)" != 1.00 ] || fail "an opt
 sed -i 's/^burr-radius = .*/burr-radius = 4/' $kept
 window small.nrrd <<<"settle ;; wait 0.3 ;; state small ;; close"
 is small burr_mm 1.50
-# A screen that is too small for the window gives it the usual place.
+# On a screen that is too small, the window opens at its default place.
 sed -i 's/^window-left = .*/window-left = 1500/; s/^burr-radius = .*/burr-radius = 0.7/' $kept
 screen=1280x800 window ball.nrrd <<<"wait 0.3 ;; state moved ;; close"
 is moved size "1280 x 800"
 
-# Damaged, or out of range: a first start, one line, and the next file is whole.
+# A damaged or out-of-range file gives default settings and one line, and is rewritten correctly.
 for damage in 'theme = "dark' 'theme = "green"' 'burr-radius = -1' 'text-scale = nan' 'ghost = "perhaps"' 'spindle-speed = [[]]'; do
   printf 'ghost = false\n%s\n' "$damage" >$kept
   window ball.nrrd <<<"settle ;; wait 0.2 ;; click View ;; wait 0.2 ;; click View ;; wait 0.1 ;; state damaged ;; close"
@@ -75,7 +75,7 @@ for damage in 'theme = "dark' 'theme = "green"' 'burr-radius = -1' 'text-scale =
   grep -q "^ghost = true" $kept || fail "after '$damage' the file is not whole"
 done
 
-# Two windows at once leave the whole file of one of them; a killed one no damaged file.
+# Two simultaneous windows leave a complete file from one of them; a killed one does not damage the file.
 cat >both <<'END'
 "$1" simulate ball.nrrd --no-help --script many >said 2>errors & one=$!
 "$1" simulate ball.nrrd --no-help --script many >said2 2>>errors & two=$!

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# What comes from the display itself: keys that are tapped quicker than pictures follow each other, a click, a drag and
-# the wheel:
+# Real input events: keys tapped faster than the frame rate, a click, a drag and the wheel:
 #   real_keys_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -15,7 +14,7 @@ export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 "$here/ball.sh" >ball.nrrd
 
-# The script of the window stands still at each `await` until the display's events have been sent.
+# The window's script pauses at each `await` until the real events have been sent.
 moments=(taps paused chord tapped-thrice clicked flicked dragged wheeled brought turbine diamond worn)
 {
   printf '%s\n' "wait 0.3" "state start"
@@ -32,26 +31,26 @@ set -euo pipefail
 "$1" simulate ball.nrrd --no-help --script actions >said 2>errors & program=$!
 window=$(xdotool search --sync --onlyvisible --name '^ball.nrrd - osteomill$')
 xdotool windowfocus "$window" mousemove --window "$window" 640 700
-# Sends events once the window waits for them, and gives it time for some pictures.
+# Sends events once the window waits for them, and leaves it time for some frames.
 send() {
   until grep -q "^$1: " said || ! kill -0 "$program"; do sleep 0.05; done
   xdotool "${@:2}"
   sleep 0.5
   touch "$1"
 }
-# Down and up with nothing in between: mostly both come to the same picture.
+# Down and up without delay, so both usually arrive in the same frame.
 send taps key --delay 0 t key --delay 0 space key --delay 0 F1
 send paused key --delay 0 p
 send chord key --delay 0 t key --delay 0 ctrl+p
-# GLFW takes two presses of a key within a millisecond for one.
+# GLFW merges two presses of a key within a millisecond.
 send tapped-thrice key --delay 0 p sleep 0.003 key --delay 0 p sleep 0.003 key --delay 0 p
 send clicked mousemove --window "$window" $(sed -n 's/^start\.place of pause=//p' said) click 1
-# The way to where a button is pressed drags nothing.
+# Motion before a button press does not drag.
 send flicked mousemove --window "$window" 640 700 sleep 0.3 mousemove --window "$window" 940 600 mousedown 1 sleep 0.3 mouseup 1
 send dragged mousemove --window "$window" 640 700 mousedown 1 sleep 0.7 mousemove --window "$window" 670 710 sleep 0.7 mousemove --window "$window" 700 720 sleep 0.7 mouseup 1
 send wheeled click 4 click 4
 send brought mousemove --window "$window" 640 400 key --delay 0 b
-# The place of a control at a moment, on the window.
+# Prints the position of a control in the window at a moment.
 place() { sed -n "s/^$1\.place of $2=//p" said; }
 until grep -q "^opened\.place of wear=" said || ! kill -0 "$program"; do sleep 0.05; done
 send turbine mousemove --window "$window" $(place opened turbine) sleep 0.3 click 1
@@ -73,7 +72,7 @@ is flicked towards_viewer "$(value clicked towards_viewer)"
 [ "$(value clicked distance_mm)" = "$(value dragged distance_mm)" ] || fail "a drag of the left button zooms"
 [ "$(value dragged distance_mm)" != "$(value wheeled distance_mm)" ] || fail "the wheel does not zoom"
 [ "$(value wheeled tool_px)" != "640 400" ] && is brought tool_px "640 400"
-# A drive brings its own speed, and its true one runs up to that.
+# A handpiece sets its own speed, and the actual speed rises to it.
 is opened handpiece 0; is turbine handpiece 1; is turbine rpm 400000
 is turbine burr 0; is diamond burr 1; is diamond wear 0
 [ "$(value worn wear)" != 0 ] || fail "a click on the slider does not wear the burr"

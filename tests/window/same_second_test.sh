@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Two windows that record and save into one folder in the same second have each their own files:
+# Two windows that record and save into one folder in the same second write separate files:
 #   same_second_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -12,7 +12,7 @@ export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said-* errors-*; exit 1; }
 "$here/ball.sh" >ball.nrrd
 
-# Both wait until the other is there as well.
+# Each waits until the other is running.
 for n in 1 2; do
   printf '%s\n' "wait 0.2" "say ready" "await go" "click Record" "wait 0.3" "state recording" "click Save picture" \
     "wait 0.3" "state saved" "click Stop recording" "wait 0.2" "state recorded" close >actions-$n

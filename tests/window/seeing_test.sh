@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What helps to see: following the burr, the loupe, measuring by clicks of the display itself, held against a ball of known
-# radius, and the grey values of cuts by a drag:
+# View aids: following the burr, the loupe, measuring with real clicks on a ball of known radius, and setting the grey values of
+# cuts by dragging:
 #   seeing_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -21,7 +21,7 @@ part() { value "$1" "$2" | cut -d' ' -f"$3"; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 holds() { awk -v a="$1" -v b="$2" "BEGIN { exit !($3) }" || fail "$4: $1, $2"; }
 
-# Each at the smallest and the usual size; the bone's left and right edge are clicked along the view's axes.
+# Runs at the smallest and the default size; clicks the bone's left and right edges along the view's axes.
 work() { # WIDTH HEIGHT
   local middle="$(($1 / 2)) $(($2 / 2))"
   moments=(first second cleared)
@@ -52,7 +52,7 @@ send() {
   sleep 0.5
   touch "\$1"
 }
-# A click beside the burr on either side.
+# Clicks beside the burr on both sides.
 send first mousemove --window "\$window" $(($1 / 2 - 90)) $(($2 / 2)) sleep 0.3 click 1 sleep 0.3
 send second mousemove --window "\$window" $(($1 / 2 + 90)) $(($2 / 2)) sleep 0.3 click 1 sleep 0.3
 send dragged mousemove --window "\$window" $middle sleep 0.3 keydown ctrl mousedown 3 sleep 0.3 mousemove_relative -- 40 0 sleep 0.2 mousemove_relative -- 40 20 sleep 0.3 mouseup 3 keyup ctrl
@@ -60,7 +60,7 @@ wait "\$program"
 END
   xvfb-run -a -s "-screen 0 $1x$2x24" timeout 150 bash hands || fail "exit code $?"
   pictures
-  # Both points lie on the ball of 5 mm about (7.75, 7.75, 7.75), and their distance is that of the points.
+  # Both points lie on the ball of 5 mm around (7.75, 7.75, 7.75), and the displayed distance is theirs.
   for point in "2 3 4" "6 7 8"; do
     set -- $1 $2 $point
     awk -v x="$(part measured landmarks $3)" -v y="$(part measured landmarks $4)" -v z="${5}" -v w="$(part measured landmarks $5 | tr -d ';')" \
@@ -70,7 +70,7 @@ END
   awk -v p="$(value measured landmarks | tr -d ';')" -v d="$(value measured distance_mm_of_two)" 'BEGIN { split(p, c, " ")
     e = sqrt((c[2] - c[6])^2 + (c[3] - c[7])^2 + (c[4] - c[8])^2); exit !(d > 1 && (d - e)^2 < 1e-5) }' ||
     fail "the distance is $(value measured distance_mm_of_two)"
-  # The rays through the two pixels meet the ball at points that are this far apart.
+  # Expected distance, from the intersections of the two pixels' rays with the ball.
   awk -v h="$2" -v f="$(value start focus)" -v d="$(value start distance_mm)" -v measured="$(value measured distance_mm_of_two)" 'BEGIN {
     split(f, focus, " ")
     for (side = -1; side <= 1; side += 2) {
@@ -82,9 +82,9 @@ END
     }
     expected = sqrt((x[1] - x[-1])^2 + (y[1] - y[-1])^2)
     exit !((measured / expected - 1)^2 < 1e-4) }' || fail "the distance is $(value measured distance_mm_of_two)"
-  # Seen from the front, at one height of the picture, the points lie at one height of the patient, left and right alike.
+  # In the front view, points at the same height in the picture have the same height in the patient's frame.
   awk -v p="$(value measured landmarks | tr -d ';')" 'BEGIN { split(p, c, " "); exit !((c[4] - c[8])^2 < 0.01) }' || fail "$(value measured landmarks)"
-  python3 - out-$1/*-landmarks.mrk.json "$(value measured landmarks)" <<'END' || fail "the file of landmarks is another"
+  python3 - out-$1/*-landmarks.mrk.json "$(value measured landmarks)" <<'END' || fail "the landmarks file differs"
 import json, sys
 marks = json.load(open(sys.argv[1]))["markups"][0]["controlPoints"]
 words = sys.argv[2].replace(";", "").split()

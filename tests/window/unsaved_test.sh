@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Milled bone is not lost without a question, nor by a program that is killed:
+# Milled bone is not discarded without a question, nor lost when the program is killed:
 #   unsaved_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
@@ -12,7 +12,7 @@ export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 "$here/ball.sh" >ball.nrrd
 "$here/ball.sh" 4 >other.nrrd
-# Works the window by the lines of standard input, some of them in a line.
+# Operates the window with the lines of standard input; ";;" separates actions in a line.
 window() {
   { echo "controls $folder/controls"; sed 's/ *;; */\n/g'; } >actions
   [ -z "${OSTEOMILL_PICTURES:-}" ] || sed -i "s|^screenshot |&$OSTEOMILL_PICTURES/|" actions
@@ -55,7 +55,7 @@ is reset removed_mm3 0.000; is reset unsaved false; is milled-last unsaved true
 [ "$(autosaves)" -eq 0 ] || fail "an autosave is left of what was saved or discarded"
 
 # --- Killed ---------------------------------------------------------------------------------------------------
-# Another window that is open at the same time does not take it.
+# Another window open at the same time does not offer the autosave.
 printf '%s\n' "${mill// ;; /$'\n'}" "state killed" "wait 40" >killed-actions
 printf '%s\n' "wait 0.2" "state beside" close >beside-actions
 cat >both <<'END'
@@ -63,7 +63,7 @@ cat >both <<'END'
 until grep -q "^killed.size" said-killed || ! kill -0 "$program"; do sleep 0.05; done
 "$1" simulate ball.nrrd --no-help --script beside-actions >said 2>>errors
 kill -KILL "$program"
-# Its lock is free once it has ended.
+# The lock is released when the program has ended.
 wait "$program" || true
 END
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash both "$osteomill" 2>/dev/null || fail "exit code $?"
@@ -74,7 +74,7 @@ window <<<"wait 0.2 ;; screenshot unsaved-2-left.png ;; click Later ;; settle ;;
 is later removed_mm3 0.000
 window --iso 500 <<<"wait 0.1 ;; key escape ;; settle ;; wait 0.3 ;; state escaped ;; close" || fail "not offered again"
 is escaped removed_mm3 0.000; is escaped isovalue 500
-# At its own isovalue, whatever this start names; and killed again.
+# Restored with its own isovalue despite --iso; and killed again.
 window --iso 500 <<END || true
 wait 0.1 ;; key enter ;; settle ;; wait 0.5 ;; state restored ;; screenshot unsaved-3-restored.png
 click Undo cut ;; settle ;; wait 0.2 ;; state undone ;; $mill ;; quit ;; wait 0.2 ;; key escape ;; wait 0.1 ;; state end ;; wait 0.2
@@ -86,7 +86,7 @@ awk -v kept="$(value restored removed_mm3)" -v all="$removed" 'BEGIN { exit !(ke
 is restored unsaved true; is restored cuts 1; is restored isovalue "$(sed -n 's/^killed\.isovalue=//p' said-killed)"
 ! value restored message | grep -q "not kept" || fail "what is taken up again is not kept: $(value restored message)"
 is undone removed_mm3 0.000; is undone unsaved false
-# That ended with a fault; its bone is no longer there, so the start goes on with the one that is named.
+# The program was killed and its scan is gone, so the start continues with the named scan.
 mv ball.nrrd moved.nrrd
 cp other.nrrd ball.nrrd
 window <<<"wait 0.1 ;; click Open it ;; settle ;; wait 0.3 ;; state changed ;; click Close ;; wait 0.1 ;; close" || fail "exit code $?"
@@ -98,10 +98,10 @@ window <<<"wait 0.1 ;; click Delete it ;; settle ;; wait 0.3 ;; state deleted ;;
 window <<<"wait 0.3 ;; state nothing ;; close" || fail "exit code $?"
 hides nothing "Open it"
 
-# If nothing can be left it is said, and all else goes on.
+# If autosaves cannot be written, a message reports it, and all else works.
 : >no-folder
 XDG_STATE_HOME=$folder/no-folder window <<<"$mill ;; state no-folder ;; close" || fail "exit code $?"
-value no-folder message | grep -q "^What is milled is not kept" || fail "nobody is told that there is no autosave"
+value no-folder message | grep -q "^What is milled is not kept" || fail "no message reports that there is no autosave"
 
 for label in Save Discard Cancel "Open it" "Delete it" Later; do
   grep -qx "worked $label" controls || fail "'$label' was never chosen"

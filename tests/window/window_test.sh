@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Works the real window on a display of its own and holds what it saved against what was done:
+# Operates the real window on its own display and checks the saved files:
 #   window_test.sh OSTEOMILL NEEDS [SCAN ...]
 # Skipped (exit 77) without Xvfb or without NEEDS. Screenshots stay in OSTEOMILL_PICTURES if that is set.
 set -euo pipefail
@@ -12,7 +12,7 @@ command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-# Not the user's own: each test is a first time.
+# Uses an empty state folder, so that each test is a first start.
 export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said errors 2>/dev/null; exit 1; }
 
@@ -23,19 +23,19 @@ cat said errors
 reading() { sed -nE "s/^$1:.* $2 ([0-9.]+) .*/\1/p" said; }
 above() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a > b) }'; }
 
-# The tool met bone before the spindle turned, and nothing was milled then.
+# The tool touched bone before the spindle turned, and milled none.
 above "$(reading touching force)" 0.2 || fail "the tool did not touch the bone"
 above 0.001 "$(reading touching removed)" || fail "bone went without the spindle"
-# By the law of chips an enamel cap goes slowly.
+# With the chip law, enamel is removed slowly.
 above "$(reading milling removed)" 0.3 || fail "no bone was milled"
-# A tool that is let go in the bone, its spindle turning, neither presses nor mills any more.
+# A tool released in bone with the spindle on no longer presses or mills.
 above 0.15 "$(reading let-go force)" || fail "the tool that was let go presses"
 [ "$(reading let-go removed)" = "$(reading let-go-later removed)" ] || fail "the tool that was let go mills"
-# With another algorithm the tool is still on the bone.
+# With another algorithm the tool still touches the bone.
 above "$(reading other-algorithm force)" 0.02 || fail "the other algorithm feels nothing"
 above 0.001 "$(reading undone removed)" || fail "the cut was not taken back"
 
-# The saved scan has the hole: the number of bone voxels fell by the milled ones.
+# The saved scan has the hole: it has fewer bone voxels.
 iso=()
 for ((n = 0; n < ${#scan[@]}; n++)); do [ "${scan[$n]}" != --iso ] || iso=(--iso "${scan[$((n + 1))]}"); done
 [ ${#iso[@]} -gt 0 ] || iso=(--iso 750)
@@ -46,7 +46,7 @@ echo "bone voxels before $before, in the saved scan $after"
 [ "$after" -lt "$((before - 200))" ] || fail "the saved scan has no hole"
 [ -s "$(ls out/*-surface.ply)" ] && [ -s "$(ls out/*-picture.png)" ] || fail "surface or picture is missing"
 
-# The recording is whole, and holds the milling.
+# The recording is complete and contains the milling.
 "$osteomill" report out/*-recording.h5 --out report >/dev/null || fail "the recording cannot be read"
 grep -q "^barrier-shell,part 1," report/summary.csv && grep -q "^surface-points,part 2," report/summary.csv ||
   fail "the report does not know the run"

@@ -1,4 +1,4 @@
-// The program of the window's tests: osteomill with one more option, --script FILE, which works the window of
+// Test driver of the window: osteomill with the additional option --script FILE, which operates the window of
 // `simulate` from that file (ui_script.h).
 #include <algorithm>
 #include <cstdio>

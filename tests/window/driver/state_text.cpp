@@ -22,7 +22,7 @@ std::string text_of(const Vec3& v) {
   return fmt::format("{:.3f} {:.3f} {:.3f}", v.x(), v.y(), v.z());
 }
 
-// Returns a vector in the viewer's axes: to the right, up, towards the viewer.
+// Transforms a vector into the viewer's axes: right, up, towards the viewer.
 Vec3 seen(const Camera& camera, const Vec3& v_W) {
   return camera.orientation.conjugate() * v_W;
 }
@@ -41,7 +41,7 @@ class Lines {
   std::string text_;
 };
 
-// All that can be clicked now, and where.
+// Adds all controls that can be clicked now, with their positions.
 void add_controls(Lines& lines) {
   std::string labels;
   for (const auto& [label, state] : ui::widget_states()) {
@@ -53,7 +53,7 @@ void add_controls(Lines& lines) {
   lines.add("shown", labels);
 }
 
-// The windows that are drawn and have none of these flags.
+// Returns the drawn windows that have none of these flags.
 std::vector<const ImGuiWindow*> windows_without(ImGuiWindowFlags flags) {
   std::vector<const ImGuiWindow*> found;
   for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
@@ -63,8 +63,7 @@ std::vector<const ImGuiWindow*> windows_without(ImGuiWindowFlags flags) {
   return found;
 }
 
-// Everything that a person could not read: controls without a hint, what is cut off, panels outside of the
-// window, and those that cover each other.
+// Adds layout faults: controls without a hint or cut off, panels outside the window, and overlapping panels.
 void add_faults(Lines& lines) {
   std::string unexplained, cut_off, outside, covered;
   for (const auto& [label, state] : ui::widget_states()) {
@@ -79,7 +78,7 @@ void add_faults(Lines& lines) {
     if (!window->Collapsed && window->ContentSize.x > room_px + 1)
       cut_off += fmt::format("[{}: {:.0f} in {:.0f}]", window->Name, window->ContentSize.x, room_px);
   }
-  // Hints, menus and dialogues may lie over panels.
+  // Hints, menus and dialogues may cover panels.
   const std::vector<const ImGuiWindow*> all =
       windows_without(ImGuiWindowFlags_ChildWindow | ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_Popup |
                       ImGuiWindowFlags_Modal);
@@ -115,7 +114,7 @@ double contrast(const ImVec4& one, const ImVec4& other) {
   return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05);
 }
 
-// The least contrast of text on what it is written on, and of coloured text on panels, as WCAG 2 defines it.
+// Returns the lowest contrast (WCAG 2) of text on its backgrounds, and of coloured text on panels.
 double least_contrast() {
   const ImVec4* const colours = ImGui::GetStyle().Colors;
   const ImVec4 panel = over(colours[ImGuiCol_WindowBg], {0.2f, 0.2f, 0.24f, 1});

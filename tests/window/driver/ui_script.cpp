@@ -22,8 +22,7 @@ namespace osteomill::app {
 
 namespace {
 
-// How many pictures a click takes (the pointer there, the button down, and up) and a drag (moving in
-// between).
+// Number of frames of a click (move, button down, button up), and of a drag, which also moves in between.
 constexpr int kClickPictures = 6;
 constexpr int kDragPictures = 12;
 
@@ -40,7 +39,7 @@ const std::map<std::string, int> kKeys{
     {"page-up", GLFW_KEY_PAGE_UP},  {"page-down", GLFW_KEY_PAGE_DOWN},  {"f1", GLFW_KEY_F1},
     {"f11", GLFW_KEY_F11},          {"backspace", GLFW_KEY_BACKSPACE}};
 
-// Actions that are done after the picture was drawn.
+// Actions that run after the frame is drawn.
 const std::set<std::string> kDrawnFirst{"screenshot", "say", "state", "colour"};
 
 int key_named(const std::string& name) {
@@ -170,7 +169,7 @@ void UiScript::give_input(double passed_s, bool is_settled, Window& window) {
     if (click_picture_ > 0) {
       const int pictures = action.name == "drag" ? kDragPictures : kClickPictures;
       pressed = click_picture_ > 2 && click_picture_ < pictures - 2;
-      // Starts at the point of the press, and then moves.
+      // Stays at the point of the press at first, then moves.
       share = pressed && click_picture_ > 3 ? 0.5 : 0.0;
       if (click_picture_++ < pictures) time_left_s_ = 2 * passed_s;
     }
@@ -190,7 +189,7 @@ void UiScript::give_input(double passed_s, bool is_settled, Window& window) {
     const bool drawn_first = kDrawnFirst.count(action.name) != 0;
     const bool over = time_left_s_ <= 0 && !waits && !drawn_first;
     if (over && keys_.empty()) next();
-    // Up again for a picture, so that the same key twice is two taps.
+    // Releases the keys for a frame, so that the same key twice is two taps.
     if (over) keys_.clear();
   }
   if (is_of_display_) return;

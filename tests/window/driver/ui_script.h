@@ -11,41 +11,41 @@
 
 namespace osteomill::app {
 
-/// Works the window as a person would, by pointer and keys, from a text file with a line for each action:
-///     at-once                         as the first line: begins while the first scan is still being opened
+/// Operates the window by pointer and keys from a text file with one action per line:
+///     at-once                         only as the first line: starts while the first scan is still loading
 ///     wait SECONDS
-///     settle                          until nothing is being prepared, written or brought to its place
-///     glide X Y SECONDS               moves the pointer there
+///     settle                          waits until all preparation, writing and camera motion has finished
+///     glide X Y SECONDS               moves the pointer to X Y
 ///     press NAME, release NAME        the button left, middle or right, or a key
-///     wheel STEPS SECONDS             turns it step by step
-///     key NAME, hold NAME SECONDS     a letter, or space, enter, escape, shift, control, f1, f11, backspace,
-///     page-up,
-///                                     page-down, arrow-up, arrow-down, arrow-left, arrow-right
-///     click LABEL                     the button, box or heading of that label
-///     drag LABEL PIXELS               the slider of that label, to the right
-///     type TEXT                       into the field that was clicked
+///     wheel STEPS SECONDS             turns the wheel step by step
+///     key NAME, hold NAME SECONDS     a letter or digit, space, enter, escape, shift, control, f1, f11,
+///                                     backspace, page-up, page-down, arrow-up, arrow-down, arrow-left,
+///                                     arrow-right
+///     click LABEL                     clicks the button, box or heading with that label
+///     drag LABEL PIXELS               drags the slider with that label to the right
+///     type TEXT                       types into the field that was clicked
 ///     open PATH                       drops that file or folder onto the window
-///     screenshot FILE                 a PNG of the window
-///     say TEXT                        on standard output, with the readings
-///     state NAME                      on standard output, all that the controls bring about (state_text.h)
-///     colour NAME                     on standard output, the colour that is seen at the burr (state_text.h)
-///     controls FILE                   once the window has closed, adds to it the labels of all controls that
-///                                     were drawn ("drawn LABEL") and of those that acted ("worked LABEL")
-///     await FILE                      until it is there; meanwhile pointer and keys are the display's own
-///     display                         from here on pointer and keys are the display's own
-///     resize WIDTH HEIGHT             the window
-///     quit                            asks to close, as the window's own button does
+///     screenshot FILE                 writes a PNG of the window
+///     say TEXT                        prints TEXT and the readings on standard output
+///     state NAME                      prints the effects of all controls on standard output (state_text.h)
+///     colour NAME                     prints the colour drawn at the burr on standard output (state_text.h)
+///     controls FILE                   once the window has closed, appends to FILE the labels of all controls
+///                                     that were drawn ("drawn LABEL") or had an effect ("worked LABEL")
+///     await FILE                      waits until FILE exists, and uses the display's pointer and keys
+///     display                         uses the display's pointer and keys from here on
+///     resize WIDTH HEIGHT             resizes the window
+///     quit                            asks to close, as the window's close button does
 ///     close                           closes without a question
-/// Empty lines and lines that begin with # mean nothing.
+/// Empty lines and lines that begin with # are ignored.
 class UiScript : public WindowDriver {
  public:
-  /// Throws InputError naming the file and the line for what is not an action.
+  /// Throws InputError naming the file and the line if a line is not an action.
   explicit UiScript(const std::filesystem::path& path);
 
   bool starts_before_scan() const override { return !actions_.empty() && actions_.front().name == "at-once"; }
   /// Throws InputError if a label is not in the window.
   void give_input(double passed_s, bool is_settled, Window& window) override;
-  /// Takes screenshots, and prints what the script asks for on standard output.
+  /// Takes screenshots, and prints the requested states on standard output.
   void read(const WindowContents& contents) override;
   bool wants_to_close() const override { return closed_; }
   /// Writes the file of controls.
@@ -73,7 +73,7 @@ class UiScript : public WindowDriver {
   bool begun_ = false;
   bool closed_ = false;
   bool is_of_display_ = false;
-  // The pointer and what is pressed, as ImGui is told at every picture.
+  // The pointer and pressed buttons, passed to ImGui in every frame.
   float x_ = 400;
   float y_ = 300;
   float to_x_ = 400;
@@ -82,7 +82,7 @@ class UiScript : public WindowDriver {
   int click_picture_ = 0;
   double wheel_left_ = 0;
   std::vector<int> keys_;
-  // Pressed by `press` and not yet released.
+  // Keys pressed by `press` and not yet released.
   std::set<int> held_keys_;
   int pictures_since_said_ = 0;
   std::clock_t said_cpu_ = 0;
