@@ -17,7 +17,7 @@ namespace {
 constexpr double kRealToothIsovalue = 755;
 const std::filesystem::path kRealTooth = std::filesystem::path(OSTEOMILL_SHARED_DATA) / "tooth_dicom/series";
 
-// Returns the grid with every voxel split in two along each axis, over the same extent.
+// Returns the grid with twice the resolution along each axis and the same extent.
 DensityGrid refined(const DensityGrid& coarse) {
   GridGeometry geometry = coarse.geometry();
   geometry.origin_mm = geometry.world_from_voxel(Vec3::Constant(-0.25).eval());
@@ -109,7 +109,7 @@ Volume sleeve_block(double spacing_mm, const MillingTool& tool, double overlap_m
 }
 
 Pose pose_in_sleeve(const Volume& block, const MillingTool& tool) {
-  // The burr's centre as far to one side as lets all of the shaft lie in the hole, if there is room.
+  // Position of the burr's centre at which the whole shaft is in the hole, if it fits.
   const double half_block = 0.5 * block.geometry().spacing_mm.x() * (block.geometry().dims[0] - 9);
   const double start = std::max(-0.5 * tool.shaft_length_mm, -half_block);
   return {{start, 0, 0}, smallest_rotation(Vec3::UnitZ(), Vec3::UnitX())};

@@ -9,7 +9,7 @@
 
 namespace osteomill::benchmarks {
 
-/// Bones that the benchmarks share; each is made once.
+/// Bones shared by the benchmarks; each is loaded once.
 enum class Bone {
   builtin,            ///< built-in tooth, 256 x 256 x 176 voxels of 0.125 mm
   builtin_refined,    ///< the same, 512 x 512 x 352 of 0.0625 mm
@@ -19,15 +19,14 @@ enum class Bone {
 };
 
 std::string name_of(Bone bone);
-/// Returns false for a scan that is not on this machine.
+/// Returns whether the scan is on this machine.
 bool is_here(Bone bone);
 const Volume& bone_volume(Bone bone);
 
-/// Returns a block of bone that fills a 512 x 512 x 352 grid except for `margin_mm`, with a hole along i in
-/// which the tool's shaft fits all around: radius `shaft_radius_mm` less `overlap_mm`, through all of the
-/// block.
+/// Returns a block of bone that fills a 512 x 512 x 352 grid except for a margin, with a through hole along i
+/// around the tool's shaft, of radius `shaft_radius_mm` - `overlap_mm`.
 Volume sleeve_block(double spacing_mm, const MillingTool& tool, double overlap_mm);
-/// The tool in the middle of that hole.
+/// Returns the pose of the tool in the middle of that hole.
 Pose pose_in_sleeve(const Volume& block, const MillingTool& tool);
 
 }  // namespace osteomill::benchmarks

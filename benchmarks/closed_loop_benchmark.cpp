@@ -1,5 +1,5 @@
-// The step of each algorithm in the closed loop: a simulated hand mills a hole (or, with the spindle off,
-// presses and leans), and every tick is timed. Percentiles are over the ticks that touch bone.
+// Step time of each algorithm in closed loop: a simulated hand mills a hole (or presses and leans, with the
+// spindle off), and every tick is timed. Percentiles cover only ticks in contact with bone.
 
 #include <string>
 
@@ -19,7 +19,7 @@ struct Trial {
   std::string_view algorithm;
   Bone bone;
   bool milling;
-  /// The algorithm's own resolution (vertices, slices, shell scale); 0: its default.
+  /// The algorithm's resolution setting (vertices, slices, shell scale); 0: default.
   int resolution = 0;
 };
 

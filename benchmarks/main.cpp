@@ -1,4 +1,4 @@
-// Prints a Markdown table; --benchmark_out=FILE writes the same as JSON, every repetition by itself.
+// Prints a Markdown table; --benchmark_out=FILE writes JSON with every repetition.
 
 #include "benchmarks/markdown_table.h"
 

@@ -6,8 +6,8 @@
 
 namespace osteomill::benchmarks {
 
-/// Writes results as rows of a Markdown table: of several repetitions the least time and the least of every
-/// counter, since whatever else the machine does only ever adds.
+/// Writes results as rows of a Markdown table: the minimum of the repetitions for the time and each counter,
+/// because other work on the machine only adds time.
 class MarkdownTable final : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context& context) override;

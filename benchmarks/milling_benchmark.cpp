@@ -1,5 +1,5 @@
-// Removing bone and bringing the shell up to date: a burr pressed into flat bone, kept at the depth that
-// bears its force, until it stands in its hole to more than its equator.
+// Removing bone and updating the shell: a burr is pressed into flat bone with constant force until it has
+// sunk in beyond its equator.
 
 #include <string>
 
@@ -34,7 +34,7 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
     BurrMill burr(volume, burr_radius_mm, {0, 1000}, {});
     TickTimes both, cutting, refreshing, steps;
     double removed_mm3 = 0, pressed_mm3 = 0;
-    // The hand's target sinks while its spring holds less than the force.
+    // The hand's target sinks while the spring force is below the target force.
     Pose X_WD{{0, 0, 1.5 * burr_radius_mm}, Quat::Identity()};
     int ticks = 0;
     for (; ticks < 12000; ++ticks) {
@@ -66,7 +66,7 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
   }
 }
 
-// Registers scans of 256, 512 and 1024 voxels along a tooth.
+// Registers scans with 256, 512 and 1024 voxels along a tooth.
 const bool kAdded = [] {
   struct Case {
     const char* name;

@@ -1,5 +1,5 @@
-// The distance of the burr from structures that it must not touch, as it is computed in every tick: three
-// nerves of voxels in a scan as large as a temporal bone's.
+// The distance of the burr from no-go structures, as computed in every tick: three nerves of voxels in a scan
+// of the size of a temporal bone.
 
 #include <cmath>
 #include <random>

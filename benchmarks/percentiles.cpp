@@ -13,7 +13,7 @@ void rest_now_and_then() {
   static auto last = std::chrono::steady_clock::time_point{};
   const auto awake = std::chrono::steady_clock::now() - last;
   if (awake < 20ms) return;
-  // Work before a measurement may have used up the thread's share of this second.
+  // Work before the measurement may have used up the thread's real-time budget of this second.
   std::this_thread::sleep_for(awake > 500ms ? 100ms : 2ms);
   last = std::chrono::steady_clock::now();
 }

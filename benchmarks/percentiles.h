@@ -8,12 +8,12 @@
 
 namespace osteomill::benchmarks {
 
-/// Times of single ticks, of which a mean says little: what a hand feels is the slow one.
+/// Times of single ticks. Reports percentiles, because a hand feels the slowest ticks and not the mean.
 class TickTimes {
  public:
-  /// Sleeps now and then: the kernel takes 50 ms of a second from a real-time thread that never does.
+  /// Sleeps occasionally, because the kernel stops a real-time thread that never sleeps for 50 ms per second.
   void add(double microseconds);
-  /// Times `f()`, takes it in and returns it, in microseconds.
+  /// Times `f()`, adds the time and returns it, in microseconds.
   template <typename F>
   double time(F&& f) {
     const auto start = std::chrono::steady_clock::now();

@@ -1,5 +1,5 @@
-// Reading scans. They are not part of the project: if ../shared/data is absent, this is skipped with a
-// line.
+// Reading scans. The scans are not part of the project; without ../shared/data, this is skipped with a
+// message.
 
 #include <cstdio>
 #include <filesystem>

@@ -1,5 +1,5 @@
-// Building the shell, keeping it up, and what it takes: bytes a voxel and a point, as the allocator counts
-// them.
+// Time to build and update the shell, and its memory: bytes per voxel and per point, as counted by the
+// allocator.
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>

@@ -1,7 +1,7 @@
-// Meshes one scan at 512 x 512 x 352 with osteomill and with VTK's vtkFlyingEdges3D, in turns, and prints
-// both.
-//   surface_against_vtk [SCAN ISOVALUE]        without a scan, the built-in tooth
-// A scan is refined twice by trilinear interpolation.
+// Meshes one scan at 512 x 512 x 352 alternately with osteomill and with VTK's vtkFlyingEdges3D, and prints
+// both times.
+//   surface_against_vtk [SCAN ISOVALUE]        default: the built-in tooth
+// A scan is refined twofold by trilinear interpolation.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -63,7 +63,7 @@ double seconds_on(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// Returns this thread's own CPU time, so that other work on the machine counts little.
+// Returns this thread's CPU time, which other work on the machine affects little.
 template <typename Work>
 double milliseconds(const Work& work) {
   const double start = seconds_on(CLOCK_THREAD_CPUTIME_ID);
@@ -99,7 +99,7 @@ std::size_t triangles_in(const SurfaceMesh& mesh) {
   return count;
 }
 
-// A burr pressed with 4 N on the top of the bone over its middle, and let down by 1 mm/s.
+// A burr pressed with 4 N on top of the bone at its middle, and lowered at 1 mm/s.
 class Milling {
  public:
   Milling(Volume& volume, double radius_mm) : mill_(volume, radius_mm, estimate_densities(volume), {}) {
@@ -197,7 +197,7 @@ void compare_milling(const Volume& volume, double radius_mm, vtkFlyingEdges3D* f
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Before VTK looks: one thread.
+  // Restricts VTK to one thread; must be set before its first use.
   setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", 1);
   setenv("VTK_SMP_MAX_THREADS", "1", 1);
   const Volume volume = make_volume(argc, argv);

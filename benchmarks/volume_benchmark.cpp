@@ -1,4 +1,4 @@
-// Sampling densities and gradients at points about the surface, and what is computed once of a volume.
+// Sampling densities and gradients at points near the surface, and computing a volume's derived data.
 
 #include <array>
 

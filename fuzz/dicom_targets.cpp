@@ -15,7 +15,7 @@ void save_sound_slice(const fs::path& folder) {
     save(*made_up_slice({.k = 1}), folder / "sound", EXS_LittleEndianExplicit);
 }
 
-// The bytes are a file; beside it lies a sound slice of its series.
+// Reads the bytes as a file, beside a valid slice of the same series.
 void read_file(Bytes bytes, const fs::path& folder) {
   save_sound_slice(folder);
   write_bytes(folder / "file", bytes);
@@ -29,7 +29,7 @@ void read_directory(Bytes bytes, const fs::path& folder) {
   read_as_info_does(folder / "DICOMDIR");
 }
 
-// Frames of one file, each with a slope of its own, the second at this height.
+// Returns an enhanced file whose frames have different slopes, the second at `height_mm`.
 std::unique_ptr<DcmFileFormat> enhanced(const std::string& height_mm = "9.25") {
   auto file = made_up_slice({});
   DcmDataset& data = *file->getDataset();
@@ -51,7 +51,7 @@ std::unique_ptr<DcmFileFormat> enhanced(const std::string& height_mm = "9.25") {
 
 std::vector<std::string> file_seeds(const fs::path& folder) {
   std::vector<std::string> seeds;
-  // At uneven distances, and by a tilted gantry.
+  // Uneven slice distances, and a tilted gantry.
   save(*enhanced("9.35"), folder / "a", EXS_LittleEndianExplicit);
   seeds.push_back(read_bytes(folder / "a"));
   save(*made_up_slice({.position = "1\\2.25\\10"}), folder / "a", EXS_LittleEndianExplicit);
@@ -72,7 +72,7 @@ std::vector<std::string> file_seeds(const fs::path& folder) {
   return seeds;
 }
 
-// The bytes are a segmentation, read as a scan and as the labels of one.
+// Reads the bytes as a segmentation: as a scan, and as the labels of a scan.
 void read_segmentation(Bytes bytes, const fs::path& folder) {
   static const Scan scan = [&] {
     for (int k = 0; k < 4; ++k)
@@ -106,7 +106,7 @@ std::vector<std::string> directory_seeds(const fs::path& folder) {
   return {read_bytes(folder / "a")};
 }
 
-// A slice as a file whose data set is deflated, parted where the deflated data begin.
+// Returns a slice as a file with a deflated data set, split where the deflated data begin.
 std::pair<std::string, std::string> deflated_slice(const fs::path& file) {
   constexpr std::size_t kGroupLength = 140, kAfterIt = 144;
   save(*made_up_slice({}), file, EXS_DeflatedLittleEndianExplicit);
@@ -116,7 +116,7 @@ std::pair<std::string, std::string> deflated_slice(const fs::path& file) {
   return {bytes.substr(0, start), bytes.substr(start)};
 }
 
-// The bytes are what is inflated.
+// Reads the bytes as the inflated data set.
 void read_deflated(Bytes bytes, const fs::path& folder) {
   static const std::string head = deflated_slice(folder / "file").first;
   std::string file = head;
@@ -128,7 +128,7 @@ std::vector<std::string> deflated_seeds(const fs::path& folder) {
   return {deflated_slice(folder / "a").second};
 }
 
-// The bytes are the compressed pixels of a slice, whose series is sound otherwise.
+// Reads the bytes as the compressed pixels of a slice in an otherwise valid series.
 auto read_pixels_of(E_TransferSyntax syntax, int bits) {
   return [=](Bytes bytes, const fs::path& folder) {
     save_sound_slice(folder);
@@ -167,7 +167,7 @@ Target pixels(const char* name, E_TransferSyntax syntax, int bits) {
 
 }  // namespace
 
-// DCMTK has a JPEG decoder each for pixels of up to 8, 12 and 16 bits.
+// DCMTK has separate JPEG decoders for pixels of up to 8, 12 and 16 bits.
 std::vector<Target> dicom_targets() {
   return {{"dicom", read_file, file_seeds},
           {"dicomdir", read_directory, directory_seeds},

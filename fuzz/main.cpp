@@ -1,5 +1,5 @@
-// The target that OSTEOMILL_FUZZ names, as libFuzzer runs it. With OSTEOMILL_FUZZ_SEEDS every target's seeds
-// are written to a folder of its name in that folder instead.
+// Runs the target named in OSTEOMILL_FUZZ under libFuzzer. If OSTEOMILL_FUZZ_SEEDS is set, instead writes
+// every target's seeds to a subfolder of that folder with the target's name.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -58,7 +58,7 @@ void write_seeds(const fs::path& folder) {
     for (const std::string& seed : target.seeds(work.path())) {
       const fs::path file = folder / target.name / ("seed" + std::to_string(number++));
       std::ofstream(file, std::ios::binary) << seed;
-      // One that is refused would lead nowhere.
+      // A seed that is refused would reach little code.
       const TemporaryFolder alone;
       target.read({reinterpret_cast<const unsigned char*>(seed.data()), seed.size()}, alone.path());
     }
@@ -97,7 +97,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     target.read({data, size}, folder.path());
   } catch (const osteomill::InputError& fault) {
-    // A message to the user must be one line.
+    // Messages to the user must be one line.
     if (std::string(fault.what()).find('\n') != std::string::npos) std::abort();
   }
   return 0;

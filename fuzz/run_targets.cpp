@@ -54,7 +54,7 @@ std::vector<std::string> config_seeds(const fs::path&) {
       "seconds = 2.5 # s\nout = '''a\nb'''\nset = ['point-shell.scale=2']\n"};
 }
 
-// Returns an unfinished recording, because the checksum of a finished one would refuse every change.
+// Returns an unfinished recording, because the checksum of a finished one would reject every change.
 std::string unfinished_recording(const fs::path& file) {
   RunDescription description;
   description.scan_name = "made up";
@@ -117,7 +117,7 @@ std::vector<std::string> slice_seeds(const fs::path& folder) {
   return {read_bytes(slice_path(folder, 0))};
 }
 
-// Takes the bytes as orders, one after the other.
+// Interprets the bytes as a sequence of instructions.
 class Orders {
  public:
   explicit Orders(Bytes bytes) : bytes_(bytes) {}
@@ -138,7 +138,7 @@ void change_attribute(hid_t object, const std::string& name, Orders& orders) {
   const unsigned order = orders.next() % 8;
   if (order == 1) H5Adelete(object, name.c_str());
   if (order == 2) {
-    // Creates it again with another type or length.
+    // Recreates it with another type or length.
     H5Adelete(object, name.c_str());
     const hsize_t count = orders.next() % 4;
     const hid_t space = H5Screate_simple(1, &count, nullptr);
@@ -184,8 +184,8 @@ std::vector<std::string> attributes_of(hid_t object) {
   return names;
 }
 
-// Changes every attribute and column of a recording by the bytes and computes its checksum again, so that
-// HDF5 itself never sees a damaged file.
+// Changes every attribute and column of a recording according to the bytes and updates its checksum, so that
+// HDF5 itself reads a valid file.
 void read_changed_recording(Bytes bytes, const fs::path& folder) {
   static const std::string whole = unfinished_recording(folder / "a.h5");
   write_bytes(folder / "a.h5", {reinterpret_cast<const unsigned char*>(whole.data()), whole.size()});

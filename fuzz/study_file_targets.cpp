@@ -32,7 +32,7 @@ std::vector<std::string> study_file_seeds(const fs::path&) {
       "algorithm = ['line-proxy']\n[[list]]\nburr-radius = 1\n'point-shell.scale' = 2\n"};
 }
 
-// A half space of bone in few voxels.
+// Returns a half-space of bone in few voxels.
 Volume small_bone() {
   GridGeometry geometry;
   geometry.dims = {16, 16, 16};
@@ -41,7 +41,7 @@ Volume small_bone() {
   return Volume(DensityGrid(geometry, densities), 500);
 }
 
-// Whatever poses a file may have, no algorithm gives what is not finite.
+// Drives every algorithm along the poses of a file; all wrenches must be finite.
 void replay_poses_of(Bytes bytes, const fs::path& folder) {
   constexpr std::size_t kMostTicks = 50;
   static const Volume bone = small_bone();
@@ -50,7 +50,7 @@ void replay_poses_of(Bytes bytes, const fs::path& folder) {
   if (poses.size() > kMostTicks) poses.resize(kMostTicks);
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     MillingSetup setup;
-    // A long shaft takes point-shell seconds to prepare under the sanitizers.
+    // With a long shaft, point-shell takes seconds to prepare under the sanitizers.
     setup.tool = {.burr_radius_mm = 1, .shaft_radius_mm = 0.7, .shaft_length_mm = 4};
     setup.algorithm = algorithm;
     MillingSession session(std::make_shared<Volume>(bone), {0, 1000}, setup);

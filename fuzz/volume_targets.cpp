@@ -112,7 +112,7 @@ std::vector<std::string> metaimage_seeds(const fs::path&) {
       head("CompressedData = True\nCompressedDataSize = " + std::to_string(packed.size()) + "\n") + packed};
 }
 
-// A header whose voxels lie in files of their own, which are there.
+// Reads the bytes as a header whose voxels are in separate files, which exist.
 void read_data_list(Bytes bytes, const fs::path& folder) {
   for (int n = 0; n < 5; ++n)
     std::ofstream(folder / ("s" + std::to_string(n) + ".raw")) << pixels().substr(0, 24);
@@ -178,7 +178,7 @@ std::vector<std::string> tiff_seeds(const fs::path& folder) {
   return seeds;
 }
 
-// The fields of a NIfTI-1 header that are looked at, at their places.
+// Sets the fields of a NIfTI-1 header that the reader uses.
 std::vector<std::string> nifti_seeds(const fs::path& folder) {
   std::string head(352, '\0');
   const auto put = [&](std::size_t at, auto value) {
