@@ -1,9 +1,9 @@
-/* Any device that CHAI3D knows as osteomill's; docs/bridges.md tells how it is built against CHAI3D's source
- * tree.
+/* Connects any device that CHAI3D supports to osteomill; docs/bridges.md explains the build against CHAI3D's
+ * source tree.
  *
- *     ./chai3d_bridge [PORT [LOG]]       CHAI3D_DEVICE=1 takes the second device
+ *     ./chai3d_bridge [PORT [LOG]]       CHAI3D_DEVICE=1 selects the second device
  *
- * It calibrates the device as CHAI3D does, which moves one that calibrates itself: keep clear of it. */
+ * Calibrates the device through CHAI3D; a device that calibrates itself moves, so keep clear of it. */
 #define OWN_DEVICE
 #include "devices/CHapticDeviceHandler.h"
 #include "math/CQuaternion.h"
@@ -31,7 +31,7 @@ static void describe(struct answer* answer) {
   answer->max_torque_Nmm = 1e3 * can.m_maxAngularTorque;
 }
 
-/* CHAI3D has x towards the operator, y to the right, z up; m and N m. */
+/* CHAI3D uses x towards the operator, y to the right, z up; m and N m. */
 static int read_handle(double, struct state* state) {
   cVector3d place_m;
   cMatrix3d turn;
@@ -51,7 +51,7 @@ static int read_handle(double, struct state* state) {
 }
 
 static void drive_motors(const double force_N[3], const double torque_Nmm[3]) {
-  /* CHAI3D would switch the force on with the first that it is given. */
+  /* CHAI3D would switch the force on at the first call. */
   if (not_driven) return;
   device->setForceAndTorqueAndGripperForce(cVector3d(force_N[2], force_N[0], force_N[1]),
                                            1e-3 * cVector3d(torque_Nmm[2], torque_Nmm[0], torque_Nmm[1]),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""An arm that speaks CRTK over ROS, as those of the SAW drivers do, as osteomill's device: docs/bridges.md.
+"""Connects an arm that speaks CRTK over ROS, such as those of the SAW drivers, to osteomill as a device: docs/bridges.md.
 
     crtk_bridge.py /omega [--port 47117] [--wrench servo_cf] [--max-force N] [--spindle TOPIC] [--clutch TOPIC]
 """
@@ -14,7 +14,7 @@ import udp_device
 try:
     import rospy
 except ImportError:
-    import rclpy  # ROS 2: has not been tried
+    import rclpy  # ROS 2: not tested
     import rclpy.node
     import rclpy.qos
     from crtk_msgs.msg import OperatingState
@@ -31,7 +31,7 @@ class Ros1:
         rospy.Subscriber(topic, kind, heard, queue_size=1, tcp_nodelay=True)
 
     def listen_to_state(self, topic, heard):
-        # Without crtk_msgs, which Debian does not have: a header, a text, is_homed, is_busy.
+        # Parses the raw message (header, text, is_homed, is_busy), because Debian has no crtk_msgs.
         def read(message):
             raw = message._buff
             frame_end = 16 + struct.unpack_from("<I", raw, 12)[0]
@@ -63,7 +63,7 @@ class Ros2:
 
 class CrtkArm:
     sensed = driven = 6
-    not_driven = 1  # until it says otherwise
+    not_driven = 1  # until the first state arrives
 
     def __init__(self, ros, options):
         self.name = f"CRTK {options.arm}".encode()[:64]
@@ -75,7 +75,7 @@ class CrtkArm:
             if topic:
                 ros.listen(Joy, topic, lambda message, bit=bit: self.pressed.update({bit: any(message.buttons)}))
         self.send = ros.speak(WrenchStamped, f"{options.arm}/{options.wrench}")
-        if options.wrench.startswith("body/"):  # in the axes of the base all the same
+        if options.wrench.startswith("body/"):  # use the axes of the base also for body/
             absolute = f"{options.arm}/body/set_cf_orientation_absolute"
             ros.speak(Bool, absolute, latch=True)(Bool(data=True))
 
@@ -102,13 +102,15 @@ class CrtkArm:
 
 def main():
     options = argparse.ArgumentParser(description=__doc__.split(":")[0])
-    options.add_argument("arm", help="its namespace, as /omega")
+    options.add_argument("arm", help="ROS namespace of the arm, such as /omega")
     options.add_argument("--port", type=int, default=47117)
-    options.add_argument("--wrench", default="servo_cf", help="or body/servo_cf, as dVRK arms name it")
+    options.add_argument("--wrench", default="servo_cf",
+                         help="topic of the wrench in the namespace; body/servo_cf for dVRK arms (default: servo_cf)")
     options.add_argument("--max-force", type=float, default=5, metavar="N")
     options.add_argument("--max-torque", type=float, default=100, metavar="Nmm")
-    options.add_argument("--spindle", metavar="TOPIC", help="a button (sensor_msgs/Joy)")
-    options.add_argument("--clutch", metavar="TOPIC", help="another")
+    options.add_argument("--spindle", metavar="TOPIC",
+                         help="topic of the button that turns the spindle (sensor_msgs/Joy; default: none)")
+    options.add_argument("--clutch", metavar="TOPIC", help="topic of the clutch button (sensor_msgs/Joy; default: none)")
     options = options.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:

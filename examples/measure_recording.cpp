@@ -1,5 +1,5 @@
-// Measures what the hand felt: reads a recording, or lets the simulated hand mill the built-in tooth for
-// two seconds and hold still for one, and prints every figure of a report and writes it as a page.
+// Measures the force and torque on the hand: reads a recording, or lets the simulated hand mill the built-in
+// tooth for two seconds and hold still for one. Prints all figures of a report, and writes them as a page.
 //
 //     ./measure_recording [RECORDING]
 
@@ -18,7 +18,7 @@
 
 namespace {
 
-// Runs the paper's test of section 8.2 in simulated time, which gives the same ticks on every machine.
+// Runs the test of section 8.2 of the paper in simulated time, which gives the same ticks on every machine.
 osteomill::Recording recorded_trial() {
   const osteomill::Volume bone(osteomill::builtin_tooth(), osteomill::kBuiltinToothIsovalue);
   osteomill::TrialSettings settings;

@@ -1,5 +1,5 @@
-// Live milling without the program: the built-in tooth, milled in real time by a simulated hand with one
-// algorithm after the other, while its surface is kept up; and the last cut taken back.
+// Live milling with the library alone: a simulated hand mills the built-in tooth in real time with one
+// algorithm after the other while the surface is updated; then undoes the last cut.
 
 #include <chrono>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// From a scan to a force: a burr that moves straight down into the bone for three seconds of simulated time.
-// No person holds the device, so the guard for a hand is off, except for the greatest force.
+// From a scan to a force: a burr moves straight down into the bone for three seconds of simulated time. No
+// person holds the device, so the wrench guard only limits the force.
 //
 //     ./mill_scan [SCAN [ISOVALUE]]
 
@@ -27,7 +27,7 @@ int main(int argc, char** argv) try {
   osteomill::MillingSetup setup;
   setup.tool.burr_radius_mm = 1;
   setup.guard = osteomill::GuardSettings::for_simulation({.force_N = 3});
-  // A point of the bone to drill into, and from where; takes a moment, so once and not in each tick.
+  // Finds a point to drill into and the direction; slow, so not in each tick.
   const osteomill::MillingEntry entry = place_entry(*bone, setup.tool);
   osteomill::MillingSession session(bone, estimate_densities(*bone), setup);
 

@@ -1,5 +1,4 @@
-// A device of one's own in real time: the built-in tooth, milled for two seconds by a device that moves down
-// by itself.
+// Your own device in real time: a device that moves down by itself mills the built-in tooth for two seconds.
 
 #include <cstdio>
 #include <memory>
@@ -10,14 +9,14 @@
 #include <osteomill/session/milling_session.h>
 #include <osteomill/volume/builtin_tooth.h>
 
-// Yours asks the hardware instead.
+// Replace the functions by calls to your hardware.
 class OwnDevice : public osteomill::Device {
  public:
   explicit OwnDevice(const osteomill::Pose& above) : X_WD_(above) {}
   osteomill::Pose read_pose() override { return X_WD_; }
   void write_wrench(const osteomill::Wrench& wrench) override { force_N_ = wrench.force_N; }
   bool is_spindle_requested() const noexcept override { return true; }
-  // Stops where the bone presses against it.
+  // Stops if the bone pushes back.
   void tick_done(const osteomill::Pose&, double dt_s) noexcept override {
     if (force_N_.norm() < 2) X_WD_.position_mm -= 2 * dt_s * shaft_direction(X_WD_);
   }

@@ -1,4 +1,4 @@
-// The library without the program: a ball of bone, a tool pushed into it, and the wrench of each of the four
+// The haptics library alone: pushes a tool into a ball of bone and prints the wrench of each of the four
 // algorithms.
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace {
 
-// A ball of radius 8 mm about the origin of W, its edge two voxels wide.
+// Returns a ball of bone of radius 8 mm around the origin of W, with an edge two voxels wide.
 osteomill::Volume ball_of_bone() {
   osteomill::GridGeometry geometry;
   geometry.dims = {96, 96, 96};

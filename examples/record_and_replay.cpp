@@ -1,5 +1,5 @@
-// A session of one's own, recorded, and run again from the recording: the built-in tooth, pressed and milled
-// by a device that is where it is put.
+// Records a session of your own and replays it: a device with poses set by the program presses on the
+// built-in tooth and mills it.
 
 #include <cstdio>
 #include <memory>

@@ -1,5 +1,5 @@
-// From a scan to the bone: reads a scan of any format, or takes the built-in tooth, finds the isovalue that
-// bounds the bone, and writes the bone's surface and a picture of it.
+// From a scan to a surface: reads a scan of any format, or the built-in tooth, suggests an isovalue, and
+// writes the bone's surface and a picture of it.
 //
 //     ./scan_to_surface [SCAN]
 
@@ -21,7 +21,7 @@
 
 namespace {
 
-// Returns a view from the patient's front of all of the surface.
+// Returns a view of the whole surface from the patient's front.
 osteomill::Camera camera_before(const osteomill::BrickMesh& surface) {
   Eigen::AlignedBox3d box;
   for (const osteomill::MeshVertex& vertex : surface.vertices) {

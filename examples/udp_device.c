@@ -1,13 +1,13 @@
-/* The device's side of docs/udp-device.md: a haptic device of your own for osteomill, by datagrams.
+/* The device's side of docs/udp-device.md: connects your own haptic device to osteomill by UDP datagrams.
  *
  *     cc -O2 -o udp_device udp_device.c -lm
- *     ./udp_device [PORT [LOG]]          47117 if none is given; LOG gets a line for every millisecond
+ *     ./udp_device [PORT [LOG]]          PORT defaults to 47117; LOG gets a line per millisecond
  *     osteomill live --device udp:127.0.0.1:47117
  *
  * Replace describe(), read_handle() and drive_motors(), here or in a file that defines OWN_DEVICE and includes this one
- * (as chai3d_bridge.cpp does). As they stand a hand lowers the handle by 4 mm and lifts it again every four seconds, and
- * nothing is driven. Everything else is the protocol: send states while wrenches come, never drive a wrench that is old,
- * never change it faster than a hand can bear. Linux; little-endian, as the datagrams are. */
+ * (as chai3d_bridge.cpp does). The example versions lower and lift the handle by 4 mm every four seconds, and drive no
+ * motors. The rest is the protocol: send states while wrenches arrive, never drive an old wrench, never change it faster
+ * than a hand can bear. For Linux on little-endian machines, because the datagrams are little-endian. */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE /* ppoll */
 #endif
@@ -50,8 +50,8 @@ struct wrench {
 
 static const double PERIOD_S = 1e-3;
 static const double LAPSE_S = 5e-3;         /* an older wrench is zero */
-static const double CONVERSATION_S = 0.1;   /* a partner that is silent for longer gets no more states */
-static const double FORCE_RATE_N_S = 4000;  /* a hand bears no faster change */
+static const double CONVERSATION_S = 0.1;   /* no states are sent to a partner silent for longer */
+static const double FORCE_RATE_N_S = 4000;  /* fastest change that a hand can bear */
 static const double TORQUE_RATE_NMM_S = 1e5;
 
 static volatile sig_atomic_t ending;
@@ -76,7 +76,7 @@ static void describe(struct answer *answer);
 static int read_handle(double time_s, struct state *state);
 static void drive_motors(const double force_N[3], const double torque_Nmm[3]);
 #else
-/* Yours: what it is called and can do. */
+/* Replace: name and capabilities of your device. */
 static void describe(struct answer *answer) {
   strcpy(answer->name, "example device");
   answer->sensed = answer->driven = 6;
@@ -84,18 +84,18 @@ static void describe(struct answer *answer) {
   answer->max_torque_Nmm = 200;
 }
 
-/* Yours: where the handle is, in mm from the middle of its workspace; x to the operator's right, y up, z towards them.
- * 0 if nothing was measured since the last time. */
+/* Replace: position of the handle, in mm from the middle of its workspace; x to the operator's right, y up, z towards
+ * them. Returns 0 if there is no new measurement. */
 static int read_handle(double time_s, struct state *state) {
   const double pi = 3.14159265358979;
   state->position_mm[1] = 2 * cos(0.5 * pi * time_s) - 2;
   state->orientation_wxyz[0] = 1;
   state->buttons = 1;    /* 1: spindle, 2: clutch */
-  state->not_driven = 0; /* 1: it is not calibrated, 2: its force is off */
+  state->not_driven = 0; /* 1: not calibrated, 2: force is off */
   return 1;
 }
 
-/* Yours: force and torque as they act on the hand, about the handle's origin, along the same axes. */
+/* Replace: drive force and torque as they act on the hand, about the handle's origin, along the same axes. */
 static void drive_motors(const double force_N[3], const double torque_Nmm[3]) {
   (void)force_N;
   (void)torque_Nmm;
@@ -135,7 +135,7 @@ int main(int count, char **words) {
     fprintf(stderr, "udp_device: port %d: %s\n", port, strerror(errno));
     return 1;
   }
-  /* Before all ordinary work, if the system allows it. */
+  /* Real-time priority, if the system allows it. */
   struct sched_param priority;
   memset(&priority, 0, sizeof priority);
   priority.sched_priority = 30;
@@ -155,7 +155,7 @@ int main(int count, char **words) {
   uint32_t states = 0;
   const double begun_s = now_s();
   for (double next_s = begun_s; !ending; next_s += PERIOD_S) {
-    /* Everything that comes until the next millisecond. */
+    /* Receive until the next millisecond. */
     for (double left_s; (left_s = next_s - now_s()) > 0;) {
       struct pollfd wanted = {to_all, POLLIN, 0};
       const struct timespec wait = {0, (long)(1e9 * left_s)};
@@ -176,7 +176,7 @@ int main(int count, char **words) {
         struct wrench wrench;
         memcpy(&wrench, bytes, sizeof wrench);
         const int talking = next_s - heard_s < CONVERSATION_S;
-        /* One hand at a time, and nothing that was overtaken on its way. */
+        /* Ignore other partners, and datagrams that arrive out of order. */
         if (talking && (!is_same(&from, &partner) || (int32_t)(head.sequence - asked.head.sequence) <= 0)) continue;
         if (!is_finite(&wrench)) continue;
         if (!talking) started_s = next_s;
@@ -185,7 +185,7 @@ int main(int count, char **words) {
         heard_s = now_s();
       }
     }
-    if (now_s() - next_s > 10 * PERIOD_S) next_s = now_s(); /* held up: nothing is made up for */
+    if (now_s() - next_s > 10 * PERIOD_S) next_s = now_s(); /* stalled: skip the missed ticks */
     const double zero[3] = {0};
     const int old = now_s() - heard_s > LAPSE_S;
     approach(sent_N, old ? zero : asked.force_N, FORCE_RATE_N_S * PERIOD_S);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The device's side of docs/udp-device.md in Python: udp_device.py [PORT]. What udp_device.c does, to try things out
-with, and to be imported (as crtk_bridge.py does); at 1 kHz use C, whose loop is not held up."""
+"""The device's side of docs/udp-device.md in Python: udp_device.py [PORT]. Equivalent to udp_device.c, for
+experiments and for import (as in crtk_bridge.py). For 1 kHz use C, whose loop does not stall."""
 import math
 import select
 import socket
@@ -16,24 +16,24 @@ QUESTION_KIND, ANSWER_KIND, STATE_KIND, WRENCH_KIND = 1, 2, 3, 4
 
 PERIOD_S = 1e-3
 LAPSE_S = 5e-3  # an older wrench is zero
-CONVERSATION_S = 0.1  # a partner that is silent for longer gets no more states
-FORCE_RATE_N_S = 4000  # a hand bears no faster change
+CONVERSATION_S = 0.1  # no states are sent to a partner silent for longer
+FORCE_RATE_N_S = 4000  # fastest change that a hand can bear
 TORQUE_RATE_NMM_S = 1e5
 
 
 class ExampleDevice:
-    """Yours, in place of this one."""
+    """Replace this with your device."""
 
     name, sensed, driven, max_force_N, max_torque_Nmm = b"example device in Python", 6, 6, 10, 200
 
     def read_handle(self, time_s):
-        """Position in mm (x to the operator's right, y up, z towards them), orientation, buttons, and 0 if it may be
-        driven (1: it is not calibrated, 2: its force is off). None if nothing was measured since the last time."""
+        """Returns position in mm (x to the operator's right, y up, z towards them), orientation (w, x, y, z),
+        buttons, and 0 if it may be driven (1: not calibrated, 2: force is off). Returns None without a new measurement."""
         y_mm = 2 * math.cos(0.5 * math.pi * time_s) - 2
         return (0, y_mm, 0), (1, 0, 0, 0), 1, 0
 
     def drive_motors(self, force_N, torque_Nmm):
-        """As they act on the hand, about the handle's origin, along the same axes."""
+        """Drives force and torque as they act on the hand, about the handle's origin, along the same axes."""
 
 
 def head(kind, sequence, is_taken=0):
@@ -48,7 +48,7 @@ def approach(sent, wanted, most):
 
 
 def serve(device, port=47117):
-    """Until it is interrupted; the motors get zero then."""
+    """Runs until interrupted, and then sends zero to the motors."""
     try:
         converse(device, port)
     finally:
@@ -88,7 +88,7 @@ def converse(device, port):
                     started_s = next_s
                 partner, newest, asked, heard_s = sender, sequence, (numbers[:3], numbers[3:]), time.monotonic()
         if time.monotonic() - next_s > 10 * PERIOD_S:
-            next_s = time.monotonic()  # held up: nothing is made up for
+            next_s = time.monotonic()  # stalled: skips the missed ticks
         old = time.monotonic() - heard_s > LAPSE_S
         force_N, torque_Nmm = ((0, 0, 0), (0, 0, 0)) if old else asked
         sent_N = approach(sent_N, force_N, FORCE_RATE_N_S * PERIOD_S)
