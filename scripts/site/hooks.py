@@ -1,4 +1,4 @@
-"""Makes links of the navigation relative: to the API reference, and to pages that another section has too."""
+"""Makes links of the navigation relative: those to the API reference, and to pages that another section also lists."""
 from mkdocs.structure.nav import Link
 
 

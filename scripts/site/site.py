@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""The steps of scripts/docs that neither Doxygen nor MkDocs takes.
+"""Steps of scripts/docs besides Doxygen and MkDocs.
 
-    site.py doxygen WORK     writes what Doxygen reads beside the headers: rooms, examples
-    site.py examples WORK    fails for a public type without an example or a link to one
-    site.py pages WORK       lays the documents out for MkDocs, with their links into the reference
-    site.py finish WORK SITE adds the reference to the search, and fails for a link that leads nowhere or off this machine
+    site.py doxygen WORK     writes Doxygen's other inputs: rooms, examples
+    site.py examples WORK    links public types to examples; fails for a type without one
+    site.py pages WORK       prepares the documents for MkDocs, with links into the reference
+    site.py finish WORK SITE adds the reference to the search; fails for broken links and for files loaded from other machines
 """
 import collections
 import html.parser
@@ -25,7 +25,7 @@ LANGUAGES = {".c": "c", ".cpp": "cpp", ".py": "python", ".toml": "toml", ".cff":
 
 
 def headers():
-    """Returns the installed headers as the CMakeLists.txt of their rooms list them."""
+    """Returns the installed headers listed in the CMakeLists.txt of the rooms."""
     return [room.parent / line for room in sorted(ROOT.glob("osteomill/*/CMakeLists.txt"))
             for line in re.findall(r"^\s*(include/osteomill/\S+\.h)$", room.read_text(), re.M)]
 
@@ -35,7 +35,7 @@ def code_of_page(page):
 
 
 def doxygen(work):
-    """Writes WORK/rooms.dox, WORK/Doxyfile and the C++ of the documents as examples."""
+    """Writes WORK/rooms.dox, WORK/Doxyfile and the C++ code of the documents as examples."""
     architecture = (ROOT / "docs/architecture.md").read_text()
     rooms = [(room, purpose[0].upper() + purpose[1:]) for room, purpose in
              re.findall(r"^### `(\w+)`.*?\n- \*\*Purpose\*\*: (.*?)(?=\n- \*\*)", architecture, re.M | re.S)]
@@ -44,7 +44,7 @@ def doxygen(work):
             "installed package ([how to link it](../docs/library.html#link)). Units, frames and errors follow the",
             "[conventions](../docs/conventions.html).", "", "| room | purpose |", "|---|---|"]
     text += [f"| @ref {room} | {' '.join(purpose.split())} |" for room, purpose in rooms]
-    text += ["", "A member without a comment is what its name and unit say. Whole programs: [examples](examples.html)."]
+    text += ["", "Members without a comment are explained by their name and unit. Complete programs: [examples](examples.html)."]
     blocks = [f"/**\n{chr(10).join(text)}\n*/"]
     blocks += [f"/** @defgroup {room} {room}\n{purpose}\n*/" for room, purpose in rooms]
     example_folder = work / "examples"
@@ -65,8 +65,7 @@ def doxygen(work):
 
 
 class Entity:
-    """Anything in the reference: its name, its page, the first sentence on it, what its comment links to, and the types that it is
-    declared with."""
+    """An entity of the reference: its name, page and first sentence, the links in its comment, and the types in its declaration."""
 
     def __init__(self, node, name, kind, outer=None):
         self.id, self.name, self.kind, self.outer = node.get("id"), name, kind, outer
@@ -81,7 +80,7 @@ class Entity:
 
 
 def reference(work):
-    """Returns all public entities, and the ids that examples show."""
+    """Returns all public entities, and the ids used in examples."""
     entities, shown = [], set()
     for path in sorted((work / "xml").glob("*.xml")):
         compound = ElementTree.parse(path).getroot().find("compounddef")
@@ -102,9 +101,9 @@ def reference(work):
 
 
 def examples(work):
-    """Adds to WORK/rooms.dox, for every type that no example shows, a link to compiled code that does: the test of its header,
-    or any test that names it; what its comment links to, what it is a part of, or a function that takes or returns it, with
-    the test of that; or a source of the project. A nested type is shown by the one around it. Fails for a type without any."""
+    """Adds to WORK/rooms.dox, for every type that no example uses, a link to compiled code that does: the test of its header, any
+    test that names it, the test of an entity that its comment links to, that contains it, or that takes or returns it, or a
+    source of the project. Nested types are covered by the enclosing type. Fails for a type without any."""
     entities, shown = reference(work)
     shown |= {entity.outer.id for entity in entities if entity.id in shown and entity.outer and entity.outer.kind != "group"}
     scopes = {entity.name for entity in entities if entity.kind in ("class", "struct")}
@@ -129,12 +128,12 @@ def examples(work):
         by = next((one for one in [entity, *users] if one.id in shown or best_of(one, tests)), entity)
         source = None if by.id in shown else best_of(by, tests) or best_of(by, words)
         if by is entity and source is None:
-            print(f"{entity.header}: {entity.name} stands in no example, no test and no source")
+            print(f"{entity.header}: {entity.name} is used in no example, test or source")
             fine = False
             continue
         lines = [f"/** @{entity.kind} osteomill::{entity.name}", "@par Example"]
         if by is not entity:
-            lines.append(f"It comes with osteomill::{by.name}" + ("()." if by.kind == "function" else "."))
+            lines.append(f"Used with osteomill::{by.name}" + ("()." if by.kind == "function" else "."))
         if source:
             lines.append(f"@ref use_of_{source.stem} \"{source.name}\"")
         blocks.append("\n".join([*lines, "*/"]))
@@ -147,7 +146,7 @@ def examples(work):
 
 
 def linked_names(entities):
-    """Returns the page of every name that a document may mention: types, functions of two words, members, headers."""
+    """Returns the page of every name to link in documents: types, functions of two words or more, members, headers."""
     names = {}
     for entity in entities:
         name = entity.name
@@ -157,7 +156,7 @@ def linked_names(entities):
 
 
 def as_python_markdown(text):
-    """Writes CommonMark's lists as MkDocs takes them: behind an empty line, and four spaces deep in another list."""
+    """Converts CommonMark lists to the form of MkDocs: after an empty line, and nested by four spaces."""
     lines, in_list, before = [], False, ""
     for line in text.split("\n"):
         item = re.match(r" {0,3}(?:[-*]|(\d+)\.) ", line)
@@ -226,7 +225,7 @@ def pages(work):
 
 
 def navigation():
-    """Returns the navigation that docs/README.md gives; a page that an earlier section has is a link."""
+    """Returns the navigation from docs/README.md; a page that an earlier section lists becomes a link."""
     nav, seen = [{"Home": "README.md"}, {"By reader": "docs/README.md"}], {"README.md", "docs/README.md"}
     for section in re.split(r"^## ", (ROOT / "docs/README.md").read_text(), flags=re.M)[1:]:
         title, _, text = section.partition("\n")
@@ -242,7 +241,7 @@ def navigation():
 
 
 class Links(html.parser.HTMLParser):
-    """The anchors of a page, what it links to, and what it loads."""
+    """The anchors of a page, its links, and the files it loads."""
 
     def __init__(self, text):
         super().__init__()
@@ -263,8 +262,8 @@ def finish(work, site):
     entities, _ = reference(work)
     index = site / "search/search_index.json"
     search = json.loads(index.read_text())
-    # The search wants a page, then its title as the first place on it, then other places. Members would crowd out
-    # documents.
+    # The search needs a page, then its title as the first location on it, then other locations. Members are left out because they
+    # would crowd out documents.
     for entity in entities:
         is_page = entity.kind in ("group", "class", "struct")
         if is_page or entity.outer and entity.outer.kind == "group" and entity.kind in ("enum", "function", "typedef"):
@@ -272,7 +271,7 @@ def finish(work, site):
             search["docs"] += [entry, {**entry, "location": entity.url + "#details"}] if is_page else [entry]
     index.write_text(json.dumps(search, separators=(",", ":")))
 
-    (site / "404.html").unlink()  # for servers of one address alone
+    (site / "404.html").unlink()  # works only at the root of a server
     found = {path: Links(path.read_text(errors="replace")) for path in site.rglob("*.html")}
     faults = set()
     for path, page in found.items():
@@ -284,7 +283,7 @@ def finish(work, site):
                 continue
             to = pathlib.Path(os.path.normpath(path.parent / urllib.parse.unquote(url.path))) if url.path else path
             to = to / "index.html" if to.is_dir() else to
-            # Doxygen counts private types as nested classes, and does not show them.
+            # Doxygen links to private nested classes but does not show them.
             if url.fragment == "nested-classes":
                 continue
             if not to.exists():

@@ -14,7 +14,7 @@ grep -q '^u1 = 1.297 J/mm3 at 48 um, m = 0.299, from 2 rows$' out.txt || fault "
 grep -q '^row 2: .*law 159.3 (+1.0 %), held out$' out.txt || fault "the row held out: $(cat out.txt)"
 sed 's/157.8/nan/' femur.csv >bad.csv
 code=0; "$fit" bad.csv >out.txt 2>err.txt || code=$?
-[ $code -eq 1 ] && grep -qx 'fit-cutting: bad.csv: line 3: torque_Nmm is no positive number' err.txt || fault "a bad row: $(cat err.txt)"
+[ $code -eq 1 ] && grep -qx 'fit-cutting: bad.csv: line 3: torque_Nmm is not a positive number' err.txt || fault "a bad row: $(cat err.txt)"
 head -n 2 femur.csv >one.csv
 code=0; "$fit" one.csv >out.txt 2>err.txt || code=$?
 [ $code -eq 1 ] && grep -q 'needs two rows' err.txt || fault "one row: $(cat err.txt)"
