@@ -1,5 +1,5 @@
-# HDF5's C library as the target hdf5::hdf5. CMake's own FindHDF5 compiles a C program, so that it fails in a project that
-# enables C++ alone.
+# Defines the target hdf5::hdf5 for HDF5's C library. CMake's FindHDF5 compiles a C program and so fails in projects that enable
+# only C++.
 find_path(HDF5C_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial)
 find_library(HDF5C_LIBRARY NAMES hdf5_serial hdf5)
 mark_as_advanced(HDF5C_INCLUDE_DIR HDF5C_LIBRARY)

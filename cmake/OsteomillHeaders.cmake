@@ -1,9 +1,9 @@
-# The libraries' headers: compiled beforehand if that is wanted, else each alone.
+# Headers of the libraries: precompiled if enabled, otherwise each compiled alone.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 set(OSTEOMILL_OFTEN_READ <algorithm> <array> <cmath> <filesystem> <functional> <memory> <optional> <string> <vector>
   <Eigen/Core> <Eigen/Geometry>)
 
-# Headers that nearly every file reads, compiled once for the libraries and once for the tests: half the building time.
+# Precompiles common headers once for the libraries and once for the tests, which halves the build time.
 function(osteomill_precompile name flags_from)
   file(CONFIGURE OUTPUT ${name}.cpp CONTENT "// Compiles the headers.\n")
   add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
@@ -13,8 +13,8 @@ function(osteomill_precompile name flags_from)
   target_precompile_headers(${name} PRIVATE ${ARGN})
 endfunction()
 
-# Every public header is the first that a source includes, so that one that lives by another before it is found out; a
-# source is made for those that none of the library's own includes first.
+# Makes every public header the first include of some source, to detect headers that depend on earlier includes. Generates a source
+# for headers that no source of the library includes first.
 function(osteomill_compile_alone target)
   get_target_property(headers ${target} HEADER_SET)
   get_target_property(sources ${target} SOURCES)

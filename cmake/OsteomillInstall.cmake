@@ -1,4 +1,4 @@
-# The installed package: a component a room, with its public headers and its library, and one file for pkg-config.
+# The installed package: one component per room, with its public headers and library, and one pkg-config file.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/osteomill)
 foreach(room IN LISTS OSTEOMILL_ROOMS)

@@ -1,10 +1,10 @@
 add_custom_target(tests)  # All test programs of OSTEOMILL_TESTS.
 
 # osteomill_test(NAME SOURCES ... LINK ... [INSIDES rooms...] [IN release] [THREADS filter]): a GoogleTest program, which may
-# include the insides of those rooms. ctest runs it in two shards, so that a program reads its scans once or twice and not
-# once a test. Each belongs to one preset (OSTEOMILL_TESTS): to that with the address and undefined-behaviour sanitizers, or
-# to release if it is said so, for what those do not build or what is held to the last bit. Tests that match the filter have
-# threads and run under the thread sanitizer too.
+# include private headers of those rooms. ctest runs it in two shards, so that it reads its scans at most twice and not once per
+# test. Each program belongs to one preset (OSTEOMILL_TESTS): the one with the address and undefined-behaviour sanitizers, or with
+# IN release, release, for tests that sanitizers cannot build or that check exact bits. Tests that match the THREADS filter also run
+# under the thread sanitizer.
 function(osteomill_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK;INSIDES;IN;THREADS" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
@@ -15,8 +15,7 @@ function(osteomill_test name)
   target_link_libraries(${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE
     OSTEOMILL_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
-  # The tested libraries are optimised as users run them; optimising the tests themselves only costs minutes
-  # of building.
+  # The tested libraries are fully optimised; optimising the tests themselves only adds minutes of build time.
   target_compile_options(${name} PRIVATE -O1)
   if(OSTEOMILL_PRECOMPILED_HEADERS)
     target_precompile_headers(${name} REUSE_FROM osteomill_test_headers)

@@ -1,5 +1,5 @@
-# Runs in CPack, when the files of every package are in place: compresses the manual pages, and adds what Debian's policy asks
-# of each package's folder of documents. SOURCE_DATE_EPOCH is the date of the changelog.
+# Runs in CPack after the files of every package are in place: compresses the manual pages, and adds the documents that Debian's
+# policy requires for each package. SOURCE_DATE_EPOCH is the changelog's date.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} COMPONENT)
@@ -7,7 +7,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   set(share ${CPACK_TEMPORARY_DIRECTORY}/${component}/usr/share)
   set(documents ${share}/doc/${package})
   file(COPY ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${documents})
-  # The copyright file has it.
+  # The copyright file contains it.
   file(REMOVE ${documents}/LICENSE)
   file(WRITE ${documents}/changelog.Debian "osteomill (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) unstable; urgency=medium
 
