@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Turns, zooms, picks a bone, presses a mark and plays in a page with bone in 3D, as far as it has these, by real events of
-mouse or finger in Chromium.
-    debrief_browser.py PAGE WIDTH HEIGHT     as a phone with a finger if WIDTH is under 600
+"""Turns, zooms, picks a bone, presses a mark and plays in a page with bone in 3D, if it has these, with real mouse or touch
+events in Chromium.
+    debrief_browser.py PAGE WIDTH HEIGHT     as a phone with touch if WIDTH is below 600
     debrief_browser.py PAGE none             in a browser without WebGL
-Pictures go to $OSTEOMILL_PICTURES if it is set.
+Writes screenshots to $OSTEOMILL_PICTURES if it is set.
 """
 import math
 import os

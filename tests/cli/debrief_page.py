@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares a debriefing's page with its table, and its marks with the script's actions.
-    debrief_page.py FOLDER [STRUCTURE TIME_S X Y Z]     the burr first reached the structure then, from there
-    debrief_page.py FOLDER "removed outside" TIME_S X Y Z     it first took bone outside the target then
+    debrief_page.py FOLDER [STRUCTURE TIME_S X Y Z]     time and position of the first contact with the structure
+    debrief_page.py FOLDER "removed outside" TIME_S X Y Z     time and position of the first removal outside the target
 """
 import base64
 import csv
@@ -14,7 +14,7 @@ from html.parser import HTMLParser
 
 
 class Page(HTMLParser):
-    """Takes the cells of the table of items, and the data."""
+    """Collects the cells of the table of items, and the page data."""
 
     def __init__(self):
         super().__init__()

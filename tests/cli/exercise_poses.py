@@ -5,7 +5,7 @@
     exercise_poses.py crown ZMIN ZFLAT ZMAX RADIUS RADIUS_TO OUTER BURR_RADIUS SPEED >poses.csv
                          around a stump about (0, 0): RADIUS at ZMIN, RADIUS_TO at ZFLAT, bone out to OUTER
     exercise_poses.py plunge X Y ZFROM ZTO SPEED >poses.csv
-Lengths are in mm, the speed in mm/s, a pose each millisecond.
+Lengths are in mm, the speed in mm/s; one pose per millisecond.
 """
 import math
 import sys

@@ -2,7 +2,7 @@
 # A study on a cluster: Debian's Slurm with a controller and a node of two CPUs on this machine. The rows are the same as with one
 # or two threads; and whatever happens to slices (killed, failed, cancelled, run twice at once, truncated), resuming submits exactly
 # the slices missing on disk and gives the same rows.
-# slurm_study.sh OSTEOMILL BALL.SH [SEEDS] with four trials per seed; a multiple of 3
+#   slurm_study.sh OSTEOMILL BALL.SH [SEEDS]   with four trials per seed; a multiple of 3
 set -euo pipefail
 osteomill=$1 ball=$2 seeds=${3:-6}
 . "$(dirname "${BASH_SOURCE[0]}")/study_rows.sh"

@@ -1,6 +1,6 @@
-"""Stands in for an arm behind a SAW driver: crtk_arm.py LOG SECONDS. Its handle goes slowly down, as /arm/measured_cp; it is
-homed after so long, comes up out of the bone within a second, and goes down again; LOG gets a line for every wrench: whether
-it was homed, and the force."""
+"""Replaces an arm behind a SAW driver: crtk_arm.py LOG SECONDS. Publishes /arm/measured_cp: the handle moves down slowly, is homed
+after SECONDS, moves up out of the bone within a second, and down again. LOG gets a line per wrench: whether the arm was homed,
+and the force."""
 import math
 import struct
 import sys
@@ -12,7 +12,7 @@ from geometry_msgs.msg import PoseStamped, WrenchStamped
 
 
 class OperatingState(genpy.Message):
-    """crtk_msgs/OperatingState, whose package Debian does not have."""
+    """crtk_msgs/OperatingState; Debian has no package for it."""
 
     _type, _md5sum, _has_header = "crtk_msgs/OperatingState", "0" * 32, False
     _full_text = "std_msgs/Header header\nstring state\nbool is_homed\nbool is_busy\n"

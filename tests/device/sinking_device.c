@@ -1,5 +1,4 @@
-/* The example of a device's side with a hand that sinks by 2 mm/s, so that it presses soon after the tool is placed,
- * whenever that is. */
+/* The UDP example with a hand that sinks at 2 mm/s from the first wrench on, so that it soon presses on the bone. */
 #define OWN_DEVICE
 #include "../../examples/udp_device.c"
 

@@ -14,7 +14,7 @@ namespace osteomill::app {
 /// Operates the window by pointer and keys from a text file with one action per line:
 ///     at-once                         only as the first line: starts while the first scan is still loading
 ///     wait SECONDS
-///     settle                          waits until all preparation, writing and camera motion has finished
+/// settle waits until nothing is being prepared, written or moved into place
 ///     glide X Y SECONDS               moves the pointer to X Y
 ///     press NAME, release NAME        the button left, middle or right, or a key
 ///     wheel STEPS SECONDS             turns the wheel step by step
