@@ -31,7 +31,7 @@ void refuse_recorded_options(const CLI::App& command) {
   const auto refuse = [&](const std::string& option) {
     const CLI::Option* const there = command.get_option_no_throw(option);
     if (there != nullptr && there->count() > 0)
-      throw CLI::ValidationError(option, "is the recording's own, and cannot be given with --from");
+      throw CLI::ValidationError(option, "is defined by the recording, and cannot be given with --from");
   };
   for (const char* option : {"--algorithm", "--set", "--rate"}) refuse(option);
   for (const std::string& option : shared_options()) refuse("--" + option);

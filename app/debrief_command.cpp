@@ -47,8 +47,8 @@ std::string exercise_of(const DebriefOptions& options, const Recording& recordin
 void warn_of_changes(const std::string& file, const Recording& recording) {
   const auto recorded = recorded_exercise(recording.description);
   if (recorded && text_fingerprint(file) != recorded->fingerprint) {
-    warn(fmt::format("{}: is not the exercise as it was when {} was recorded ({})", file,
-                     recording.path.string(), recorded->title));
+    warn(fmt::format("{}: differs from the exercise recorded in {} ({})", file, recording.path.string(),
+                     recorded->title));
   }
 }
 

@@ -70,8 +70,8 @@ std::string degrees_of_freedom(const DeviceCapabilities& device) {
                      device.limits.force_N) +
          (device.driven == 6 ? fmt::format(" and {:g} N mm", device.limits.torque_Nmm) : "") +
          (device.watchdog_s > 0
-              ? fmt::format(", lets go {:.0f} ms after the last wrench", 1e3 * device.watchdog_s)
-              : ", no watchdog of its own is known");
+              ? fmt::format(", drops the force {:.0f} ms after the last wrench", 1e3 * device.watchdog_s)
+              : ", no known watchdog");
 }
 
 }  // namespace

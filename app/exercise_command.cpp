@@ -57,9 +57,9 @@ void add_exercise_command(CLI::App& program) {
   command->add_flag("--check", options->check,
                     "Print the contents of the exercise, or its first fault with the line");
   command
-      ->add_option("--picture", options->picture,
-                   "Picture (PNG) to draw; the start page shows the one that has the exercise's name and "
-                   "lies beside it")
+      ->add_option(
+          "--picture", options->picture,
+          "Picture (PNG) to draw; the start page shows a picture in the exercise's folder with the same name")
       ->type_name("FILE");
   command->add_flag("--measures", options->measures,
                     "Print all measures that items can use, as a Markdown table");

@@ -41,7 +41,7 @@ void add_guidance_option(CLI::App& command, ExerciseOptions& options) {
 
 ScanOptions scan_of(const Exercise& exercise, const ScanOptions& options) {
   const auto refuse = [](const char* option) {
-    throw CLI::ValidationError(option, "is the exercise's own, and cannot be given with --exercise");
+    throw CLI::ValidationError(option, "is defined by the exercise, and cannot be given with --exercise");
   };
   if (!options.scan.empty()) refuse("scan");
   if (options.isovalue) refuse("--iso");
@@ -91,10 +91,9 @@ void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup) {
   names.reserve(burrs.size());
   for (const AllowedBurr& one : burrs)
     names.push_back(one.named != nullptr ? one.named->name : fmt::format("{:g} mm radius", one.radius_mm));
-  throw InputError(
-      exercise.file.string(),
-      fmt::format("its tools are burrs of {}, not {:g} mm; --burr-name or --burr-radius sets one",
-                  fmt::join(names, ", "), setup.tool.burr_radius_mm));
+  throw InputError(exercise.file.string(),
+                   fmt::format("allows burrs of {}, not {:g} mm; --burr-name or --burr-radius sets one",
+                               fmt::join(names, ", "), setup.tool.burr_radius_mm));
 }
 
 void take_allowed_burr(const Exercise& exercise, MillingSetup& setup) {

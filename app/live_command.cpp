@@ -49,12 +49,12 @@ struct LiveOptions {
 };
 
 void print_times(const char* what, const TimePercentiles& times) {
-  fmt::print("{:<12} p50 {:6.0f}   p99 {:6.0f}   p99.9 {:6.0f}   greatest {:6.0f} us\n", what, times.p50_us,
+  fmt::print("{:<12} p50 {:6.0f}   p99 {:6.0f}   p99.9 {:6.0f}   max {:6.0f} us\n", what, times.p50_us,
              times.p99_us, times.p999_us, times.max_us);
 }
 
 void print_timing(const TimingSummary& timing) {
-  fmt::print("rate         {:.1f} Hz by the ticks' work; {:.1f} ticks a second counted, {} ticks\n",
+  fmt::print("rate         {:.1f} Hz sustainable by the ticks' times; {:.1f} Hz measured over {} ticks\n",
              timing.rate_hz, timing.ticks_per_s, timing.ticks);
   print_times("lateness", timing.lateness);
   fmt::print("late ticks   {} by over 1 ms ({:.3f} %), {} missed\n", timing.late_ticks,
@@ -123,10 +123,9 @@ class LiveToolSource {
   void print() const {
     if (!hardware_) return;
     const DeviceReport report = hardware_->report();
-    fmt::print(
-        "device       {}: {:.0f} poses/s, at fault {} times, opened again {} times, {} wrenches came late\n",
-        hardware_->capabilities().name, report.inputs_per_s, report.faults, report.reopened,
-        report.late_wrenches);
+    fmt::print("device       {}: {:.0f} poses/s, {} faults, reopened {} times, {} late wrenches\n",
+               hardware_->capabilities().name, report.inputs_per_s, report.faults, report.reopened,
+               report.late_wrenches);
   }
   void describe(RunDescription& run) const { describe_device(run, option_.device, hardware_.get()); }
 
@@ -141,7 +140,7 @@ class LiveToolSource {
       return;
     state_ = report.state;
     reason_ = report.reason;
-    warn(hardware_->capabilities().name + (well ? ": all is well again" : ": " + report.complaint()));
+    warn(hardware_->capabilities().name + (well ? ": works again" : ": " + report.complaint()));
   }
 
   DeviceOption option_;
@@ -247,7 +246,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
     warn("--send-bone " + options.send.address + ": the receiver has gone");
   if (const auto message = figures.faults.sentence()) warn(setup.algorithm.id.name + ": " + *message);
   print_timing(milling.timing());
-  fmt::print("removed      {:.2f} mm³, {} bricks of the surface meshed\n", milling.state().record.removed_mm3,
+  fmt::print("removed      {:.2f} mm³, {} surface bricks meshed\n", milling.state().record.removed_mm3,
              figures.bricks);
   tool_source.print();
   tool_source.close();

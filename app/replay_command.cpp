@@ -131,8 +131,8 @@ void put_guards(const Recording& recording, Volume& bone) {
   const auto exercise = recorded_exercise(recording.description);
   if (!exercise || find_setting<double>(recording.description, kGuardsKey) == nullptr) return;
   if (text_fingerprint(exercise->file) != exercise->fingerprint) {
-    throw InputError(exercise->file, "has changed since " + recording.path.string() +
-                                         " was made, whose burr was held off its structures");
+    throw InputError(exercise->file,
+                     "has changed since " + recording.path.string() + " was made, which needs its guards");
   }
   bone.set_no_go(place_exercise(read_exercise_file(exercise->file), bone).distances);
 }
@@ -159,7 +159,7 @@ void verify(const Volume& scan, const Recording& recording) {
                      fmt::format("differs from tick {} on ({:.3f} s): {}", difference->record,
                                  difference->time_s, difference->what));
   }
-  fmt::print("same: {} ticks (wrenches, tool, milling), the bone after {} of them\n", verified.ticks,
+  fmt::print("same: {} ticks (wrenches, tool, milling), and the bone after {} of them\n", verified.ticks,
              verified.compared_bones);
 }
 
@@ -307,7 +307,7 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
 void refuse_what_is_recorded(const ReplayOptions& options) {
   const auto refuse = [&](const std::string& option) {
     if (options.is_given(option))
-      throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
+      throw CLI::ValidationError(option, "is defined by the recording, and cannot be given");
   };
   for (const Field<ScanOptions>& option : fields_of<ScanOptions>()) refuse("--" + option.option);
   for (const char* option : {"--exercise", "--trainee"}) refuse(option);

@@ -174,7 +174,7 @@ int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
 std::unique_ptr<CLI::App> osteomill::app::make_program(const std::string& command_line,
                                                        WindowDriver* driver) {
   auto program = std::make_unique<CLI::App>(
-      "6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
+      "6-DOF haptic bone milling in CT scans, and measurements of haptic algorithms", "osteomill");
   program->set_version_flag("--version", OSTEOMILL_VERSION);
   program->formatter(std::make_shared<HelpText>());
   program->get_formatter()->label("SUBCOMMAND", "COMMAND");

@@ -93,7 +93,7 @@ void run_mesh(const WriteOptions& options) {
 
 void run_save(const WriteOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".nrrd") {
-    throw InputError(options.out, "a scan is saved as .nrrd");
+    throw InputError(options.out, "the file name must end in .nrrd");
   }
   if (options.recording.empty()) {
     // Writes the densities, so no isovalue is needed.

@@ -33,7 +33,7 @@ Vec3 spacing_of(const std::string& given) {
     spacing_mm[static_cast<Eigen::Index>(n)] = *number;
     if (n == 2) return spacing_mm;
   }
-  throw std::invalid_argument(given + " is not three numbers above 0 with commas between");
+  throw std::invalid_argument(given + " is not three positive numbers separated by commas");
 }
 
 }  // namespace
@@ -214,7 +214,7 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
   }
   if (const BuiltinPhantom* phantom = phantom_of(options.scan))
     return {phantom->isovalue, "between air and all of its bone", boundaries_in(scan.grid)};
-  if (scan.is_labels) return {isovalue_of_labels(scan.grid), "below all that is labelled"};
+  if (scan.is_labels) return {isovalue_of_labels(scan.grid), "below all labels"};
   return suggest_isovalue(scan.grid, scan.in_hounsfield_units);
 }
 
@@ -264,7 +264,7 @@ LabelsRead labels_of(const ScanOptions& options, const Scan& scan) {
   if (files.map.empty()) {
     if (!files.table.empty() || !files.no_go.empty())
       throw InputError(options.scan.empty() ? "the built-in tooth" : options.scan,
-                       "has no labels; --labels gives them");
+                       "has no labels; --labels names a label map");
     return {};
   }
   return read_labels(files, scan.grid.geometry(), options.read.max_memory_bytes);

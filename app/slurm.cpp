@@ -20,8 +20,7 @@ namespace {
 std::string output_of(const std::vector<std::string>& words) {
   ProcessResult result = run_program(words);
   if (result.exit_code == ProcessResult::kNoProgram)
-    throw InputError(words.front(),
-                     "is not installed, and --on slurm submits with it (package slurm-client)");
+    throw InputError(words.front(), "is not installed, but --on slurm needs it (package slurm-client)");
   while (!result.text.empty() && result.text.back() == '\n') result.text.pop_back();
   if (result.exit_code == 0) return result.text;
   std::string last = result.text.substr(result.text.rfind('\n') + 1);
@@ -39,11 +38,10 @@ void write_submit_script(const fs::path& folder) {
     fmt::print(
         out,
         "#!/bin/sh\n"
-        "# A slice of a study for each task of an array; osteomill study hands it to sbatch, with the "
-        "number\n"
-        "# of the array's first slice and --chdir, so that all of it is relative to this folder, which may "
-        "be moved.\n"
-        "# Yours to change: it is not written again.\n"
+        "# Runs one slice of a study per array task. osteomill study passes it to sbatch with the number of "
+        "the\n"
+        "# array's first slice and --chdir, so paths are relative to this folder, which may be moved.\n"
+        "# You may edit this file; it is not overwritten.\n"
         "#SBATCH --job-name=osteomill\n"
         "#SBATCH --cpus-per-task=1\n"
         "#SBATCH --output=logs/%A_%a.txt\n"
@@ -89,7 +87,7 @@ std::size_t slurm_array_limit() {
   if (digits != std::string::npos)
     std::from_chars(config.data() + digits, config.data() + config.size(), limit);
   // An array's tasks are numbered from 0 to MaxArraySize - 1.
-  if (limit < 2) throw InputError("slurm", "takes no arrays of jobs here (MaxArraySize)");
+  if (limit < 2) throw InputError("slurm", "does not accept job arrays here (MaxArraySize)");
   return limit;
 }
 

@@ -109,7 +109,7 @@ void estimate(StudyTrials& study, int threads) {
   };
   fmt::print(
       "{} trials; three of them took {:.3g}, {:.3g} and {:.3g} s of CPU\n"
-      "{} of CPU in all by the median ({} to {} by the others), {} on {} threads\n",
+      "{} of CPU in total by the median ({} to {} by the others), {} on {} threads\n",
       study.design().trial_count(), taken_s[0], taken_s[1], taken_s[2], shown_time(all(taken_s[1])),
       shown_time(all(taken_s[0])), shown_time(all(taken_s[2])), shown_time(all(taken_s[1]) / threads),
       threads);
@@ -222,8 +222,8 @@ void go_on(BegunStudy& study, const StudyOptions& options) {
   require_same_program(folder);
   if (options.slice) {
     if (*options.slice >= folder.record.slices())
-      throw InputError(folder.path.string(), fmt::format("has slices 0 to {}, and no {}",
-                                                         folder.record.slices() - 1, *options.slice));
+      throw InputError(folder.path.string(),
+                       fmt::format("has slices 0 to {}, not {}", folder.record.slices() - 1, *options.slice));
     // Another task may have run it while this one waited in the queue.
     if (!read_slice(folder, *options.slice))
       run_slice(study, *options.slice, options.threads, events_on_terminal());

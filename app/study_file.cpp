@@ -93,7 +93,8 @@ class Reader {
                            value(*range_table, "log", false)};
     if (!std::isfinite(range.from) || !std::isfinite(range.to) || range.to < range.from ||
         (range.logarithmic && !(range.from > 0)))
-      refuse(*entry.value, fmt::format("{} has no range from {} to {}", entry.key, range.from, range.to));
+      refuse(*entry.value,
+             fmt::format("{} has an invalid range from {} to {}", entry.key, range.from, range.to));
     return range;
   }
 
@@ -141,7 +142,7 @@ class Reader {
         hypercube.axes.push_back({entry.key, {}, axis(entry)});
       }
     }
-    if (hypercube.axes.empty()) refuse(table, "latin-hypercube has nothing to spread over its trials");
+    if (hypercube.axes.empty()) refuse(table, "latin-hypercube has no options to vary");
     return hypercube;
   }
 

@@ -141,7 +141,7 @@ TrialSpec trial_spec(const StudySettings& settings) {
   for (const auto& [key, text] : settings) set_one(asked, key, text);
   for (const auto& [key, text] : settings)
     if (asked.draw_hand && key.starts_with("hand-"))
-      throw std::invalid_argument("draw-hand draws what " + key + " sets");
+      throw std::invalid_argument("draw-hand draws the hand, so " + key + " cannot be set");
   asked.scan.refinement = TrialSpec().voxel_mm / asked.voxel_mm;
   return asked;
 }

@@ -26,7 +26,7 @@ void require_readable(const std::string& file) {
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     if (std::count(line.begin(), line.end(), '.') > kMaxDots)
-      throw InputError(file, fmt::format("line {}: has a name of over {} parts", number, kMaxDots));
+      throw InputError(file, fmt::format("line {}: has a name with over {} parts", number, kMaxDots));
   }
 }
 

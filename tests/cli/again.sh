@@ -41,7 +41,7 @@ refused 1 "nosuch.h5: no such file" live --from nosuch.h5 --at 1
 refused 1 "x.h5: has to lie beside a.h5" replay --from a.h5 --at 1 --record elsewhere/x.h5
 refused 1 "b.h5: continues a.h5, which is missing" replay elsewhere/b.h5 --verify
 refused 2 "needs\|requires" live --from a.h5
-refused 2 "recording's own" live --from a.h5 --at 1 --burr-radius 2
+refused 2 "defined by the recording" live --from a.h5 --at 1 --burr-radius 2
 /usr/bin/python3 - <<'CHANGE'
 import h5py
 with h5py.File("d.h5") as f:

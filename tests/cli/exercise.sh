@@ -66,9 +66,9 @@ cp tasks/hole.toml tasks/other.toml
 cp tasks/hole.toml tasks/good.toml
 echo '# later' >>tasks/hole.toml
 "$osteomill" debrief good.h5 --out good >/dev/null 2>error
-grep -q "tasks/hole.toml: is not the exercise as it was" error || fault "$(cat error)"
+grep -q "tasks/hole.toml: differs from the exercise recorded in" error || fault "$(cat error)"
 
-refused "tasks/hole.toml: its tools are burrs of 1 mm" replay good.csv --exercise tasks/hole.toml --record x.h5
+refused "tasks/hole.toml: allows burrs of 1 mm" replay good.csv --exercise tasks/hole.toml --record x.h5
 refused "good.csv: is not a recording" replay good.csv --verify
 "$osteomill" save --out tooth.nrrd --quiet >/dev/null
 sed -i 's/^scan = .*/scan = "..\/ball.nrrd"/' tasks/other.toml
@@ -128,7 +128,7 @@ with h5py.File("named.h5") as f:
 CHECK
 named --burr-radius 0.75 >/dev/null
 code=0; named --burr-name cutting-2 >said 2>error || code=$?
-[ $code -eq 1 ] && grep -q "its tools are burrs of diamond-2, 0.75 mm radius" error || fault "another burr: $code, $(cat error)"
+[ $code -eq 1 ] && grep -q "allows burrs of diamond-2, 0.75 mm radius" error || fault "another burr: $code, $(cat error)"
 sed 's/diamond-2"/diamond-2.2"/' tasks/named.toml >tasks/no-burr.toml
 refused "tasks/no-burr.toml: line 3: there is no burr diamond-2.2; did you mean diamond-2" exercise tasks/no-burr.toml --check
 code=0; named --burr-name diamnd-2 >said 2>error || code=$?

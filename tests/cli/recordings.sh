@@ -34,7 +34,7 @@ refused() { local reason=$1; shift; "$osteomill" replay "$@" --quiet >/dev/null 
 "$osteomill" save --after c/line-proxy-milling.h5 --out milled.nrrd --quiet >/dev/null
 same c/line-proxy-milling.h5 tooth.nrrd
 refused "another scan" c/line-proxy-milling.h5 milled.nrrd --verify
-refused "recording's own" c/line-proxy-milling.h5 --burr-radius 2 --out x.csv
+refused "defined by the recording" c/line-proxy-milling.h5 --burr-radius 2 --out x.csv
 refused "is not a recording" other.csv --verify
 refused "nosuch.h5: no such file" nosuch.h5 --verify
 mv c/line-proxy-milling.h5 c/away.h5
