@@ -73,7 +73,7 @@ const std::vector<Field<app::ScanOptions, std::string>>& fields_of<app::ScanOpti
                "several volumes in a series) or by the start of its UID (default: the largest CT)"),
           [](auto& s) -> auto& { return s.read.series; }),
       {text("scan.spacing", "spacing", "X,Y,Z", app::kSourceField,
-            "Voxel spacing of a stack of PNG or TIFF images, mm: along columns, rows and slices"),
+            "Voxel spacing of a stack of PNG or TIFF images, mm: between columns, rows and slices"),
        [](const S& s) {
          return s.read.spacing_mm ? fmt::format("{}", fmt::join(*s.read.spacing_mm, ",")) : std::string();
        },

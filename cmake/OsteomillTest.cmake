@@ -2,9 +2,9 @@ add_custom_target(tests)  # All test programs of OSTEOMILL_TESTS.
 
 # osteomill_test(NAME SOURCES ... LINK ... [INSIDES rooms...] [IN release] [THREADS filter]): a GoogleTest program, which may
 # include private headers of those rooms. ctest runs it in two shards, so that it reads its scans at most twice and not once per
-# test. Each program belongs to one preset (OSTEOMILL_TESTS): the one with the address and undefined-behaviour sanitizers, or with
-# IN release, release, for tests that sanitizers cannot build or that check exact bits. Tests that match the THREADS filter also run
-# under the thread sanitizer.
+# test. Each program belongs to one preset (OSTEOMILL_TESTS): the one with the address and undefined-behaviour sanitizers, or, with
+# IN release, the release preset, for tests of targets that the sanitizer presets do not build and for tests of exact bits. Tests
+# that match the THREADS filter also run under the thread sanitizer.
 function(osteomill_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK;INSIDES;IN;THREADS" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})

@@ -11,7 +11,7 @@ export __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null
 
 fault() { echo "FAILED: $1"; exit 1; }
 same() { "$osteomill" replay "$1" --verify --quiet >said 2>error || fault "$1: $(cat error)"; grep -q "^same: $2 ticks" said || fault "$1: $(cat said)"; }
-refused() { local code=$1 reason=$2; shift 2; "$osteomill" "$@" --quiet >/dev/null 2>error && fault "$* was taken"
+refused() { local code=$1 reason=$2; shift 2; "$osteomill" "$@" --quiet >/dev/null 2>error && fault "$* was accepted"
   [ $? -eq "$code" ] && [ "$(wc -l <error)" -eq 1 ] && grep -q "$reason" error || fault "$*: $(cat error)"; }
 
 printf 'time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling\n' >poses.csv

@@ -86,7 +86,7 @@ sed 's/^title/titl/' tasks/hole.toml >tasks/typo.toml
 refused "tasks/typo.toml: line 1: an exercise has no titl; did you mean title[?]" exercise tasks/typo.toml --check
 
 # The start page's picture, if OpenGL is available.
-if "$osteomill" exercise tasks/other.toml --picture none/hole.png --quiet >/dev/null 2>&1; then fault "a picture in no folder"; fi
+if "$osteomill" exercise tasks/other.toml --picture none/hole.png --quiet >/dev/null 2>&1; then fault "a picture was written into a missing folder"; fi
 if "$osteomill" exercise tasks/good.toml --picture hole.png --quiet >said 2>error; then
   [ "$(head -c 24 hole.png | tail -c 8 | od -An -tu1 | xargs)" = "0 0 1 44 0 0 0 240" ] || fault "the picture is not 300 x 240"
 else
@@ -95,7 +95,7 @@ fi
 
 # A guard keeps the burr away, replays bit for bit only with the exercise, and works with one algorithm only.
 sed 's/^name = "pulp horn"/&\nguard_mm = 0.5/; s/^title = .*/title = "Guarded"/' tasks/hole.toml >tasks/guarded.toml
-"$osteomill" exercise tasks/guarded.toml --check | grep -q "warning below 3 mm, burr held off by 0.5 mm" || fault "--check says no guard"
+"$osteomill" exercise tasks/guarded.toml --check | grep -q "warning below 3 mm, burr held off by 0.5 mm" || fault "--check does not list the guard"
 poses 16 >deep.csv
 guarded() { "$osteomill" replay deep.csv --exercise tasks/guarded.toml --burr-radius 1 --quiet "$@"; }
 work deep; "$osteomill" debrief deep.h5 --out deep --quiet >/dev/null

@@ -50,7 +50,7 @@ told 1 "deep.toml: line 1: .*1000 parts" "$osteomill" compare --config "$found/d
 
 # A scan with few values is not a label map: its bone is the same as with lifted values, which cannot be labels.
 read_as "$found/few_values_phantom.nrrd" "^isovalue +[0-9]+ suggested" "^bone +112979 voxels"
-grep -q "label" out.txt && fault "a phantom is taken for labels"
+grep -q "label" out.txt && fault "a phantom is read as labels"
 # SHAPE OFFSET LIFT: a scan of air, one intermediate value and bone by a signed distance in voxels; LIFT is added to all values.
 few_values() {
   printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 24 24 24\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
@@ -71,7 +71,7 @@ for shape in "plane 0" "edge 0.5" "ball 0.25"; do
     awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_z_N") z = n } $z > 0.1 { felt = 1 } END { exit !(z && felt) }' few.csv ||
       fault "$algorithm feels nothing of the $shape"
     # Compares all columns except for times.
-    cmp <(cut -d, -f-23 few.csv) <(cut -d, -f-23 lifted.csv) || fault "$shape of few values is felt otherwise by $algorithm"
+    cmp <(cut -d, -f-23 few.csv) <(cut -d, -f-23 lifted.csv) || fault "$shape of few values gives other results with $algorithm"
   done
 done
 
@@ -80,7 +80,7 @@ few_values ball 0 0 | sed 's/1000/0/; s/2000/7/' >mask.nrrd
 read_as mask.nrrd "^isovalue +3.5 suggested" "^warning: looks like a label map: .*--as scan"
 "$osteomill" info mask.nrrd --as scan | grep -q "label" && fault "--as scan does not decide"
 "$osteomill" info few.nrrd --as labels | grep -q "^warning: is a label map" || fault "--as labels does not decide"
-"$osteomill" info mask.nrrd --iso 3 | grep -q "label" && fault "a scan with --iso is taken for labels"
+"$osteomill" info mask.nrrd --iso 3 | grep -q "label" && fault "a scan with --iso is read as labels"
 
 # Very long header values and names, and trailing blanks.
 head_of() { printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: ascii\n'; }

@@ -9,7 +9,7 @@ for command in "" simulate compare live rates replay report info mesh save setti
   wide=$(awk 'length > 80' <<<"$help")
   [ -z "$wide" ] || fault "$command --help is wider than 80 columns: $wide"
   twice=$(grep -oE '^  --[a-z-]+' <<<"$help" | sort | uniq -d || true)
-  [ -z "$twice" ] || fault "$command --help says twice: $twice"
+  [ -z "$twice" ] || fault "$command --help lists twice: $twice"
 done
 help=$("$osteomill" compare --help)
 for group in "Scan:" "Tool:" "Cutting:" "The hand and its device:" "Options:"; do

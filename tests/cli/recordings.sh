@@ -29,7 +29,7 @@ cmp -s <(cut -d, -f2-8 other.csv) <(cut -d, -f2-8 b/line-proxy-milling.csv) || f
 # Wrong inputs: another scan, a damaged one, options that a recording does not accept.
 "$osteomill" save --out tooth.nrrd --quiet >/dev/null
 "$osteomill" mesh --after c/line-proxy-holding.h5 --out after.ply --quiet >/dev/null || fault "the bone after both phases"
-refused() { local reason=$1; shift; "$osteomill" replay "$@" --quiet >/dev/null 2>said.err && fault "$* was taken"
+refused() { local reason=$1; shift; "$osteomill" replay "$@" --quiet >/dev/null 2>said.err && fault "$* was accepted"
   [ "$(wc -l <said.err)" -eq 1 ] && grep -q "$reason" said.err || fault "$*: $(cat said.err)"; }
 "$osteomill" save --after c/line-proxy-milling.h5 --out milled.nrrd --quiet >/dev/null
 same c/line-proxy-milling.h5 tooth.nrrd

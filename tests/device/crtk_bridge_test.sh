@@ -27,8 +27,8 @@ bash "$here/../window/ball.sh" >ball.nrrd
 "$osteomill" live ball.nrrd --device "udp:127.0.0.1:$port" --device-scale 0.1 --seconds 6 \
   --spindle --algorithm line-proxy >said 2>errors || fail "live ended with $?"
 sleep 0.5
-grep -q "is not driven: it is not calibrated" errors || fail "an arm that is not homed was taken"
+grep -q "is not driven: it is not calibrated" errors || fail "an arm that is not homed was accepted"
 awk '{ force = sqrt($2 * $2 + $3 * $3 + $4 * $4) }
   !$1 && force > 0 { exit 1 }
   { most = force > most ? force : most }
-  END { exit !(most > 0.1 && most <= 6 && force == 0) }' hand || fail "what the hand got"
+  END { exit !(most > 0.1 && most <= 6 && force == 0) }' hand || fail "the force on the hand"

@@ -51,7 +51,7 @@ grep -q "udp:127.0.0.1:$port: another program has the device in use" second || f
 kill -9 $program
 sleep 0.3
 kill $device
-wait $device || fail "the device ended otherwise"
+wait $device || fail "the device failed"
 judge 1 "osteomill killed"
 
 # osteomill is terminated: it sends a zero wrench before the timeout.

@@ -23,7 +23,7 @@ bash "$here/../window/ball.sh" >ball.nrrd
 judge() {
   for _ in $(seq 50); do ! grep -q "closed" hand || break; sleep 0.1; done
   tail -n 1 hand | awk '{ for (n = 1; n <= NF; ++n) { if ($n == "most") most = $(n + 1); if ($n == "last") at = n } }
-    END { exit !(most > 0.1 && $(at + 1) == 0 && $(at + 2) == 0 && $(at + 3) == 0) }' || fail "$1: what the hand got"
+    END { exit !(most > 0.1 && $(at + 1) == 0 && $(at + 2) == 0 && $(at + 3) == 0) }' || fail "$1: the force on the hand"
 }
 
 mills() {  # DEVICE NAME DOWN AWAY OPTIONS...: rotations of the device so that the handle moves down, or away from the viewer

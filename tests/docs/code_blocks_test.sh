@@ -43,21 +43,21 @@ HEADERS
 done
 for block in "$folder"/*.toml; do
   if grep -q '^\[target\]' "$block"; then
-    "$osteomill" exercise "$block" --check >/dev/null || fault "${block##*/} is no exercise"
+    "$osteomill" exercise "$block" --check >/dev/null || fault "${block##*/} is not a valid exercise"
   else
-    "$osteomill" study "$block" --list >/dev/null || fault "${block##*/} is no study"
+    "$osteomill" study "$block" --list >/dev/null || fault "${block##*/} is not a valid study"
   fi
 done
 
 # Runs them in the folder with the comparison that they read.
 cd "$folder"
 "$osteomill" compare --algorithm point-shell --seconds 0.3 --out osteomill-comparison >compare.log 2>&1 ||
-  { cat compare.log; fault "there is nothing to read"; }
+  { cat compare.log; fault "the comparison failed"; }
 for block in *.python; do
   /usr/bin/python3 "$block" >"$block.out" && [ -s "$block.out" ] || fault "$block does not run"
 done
 for block in *.matlab; do
-  /usr/bin/python3 - "$block" <<'CHECK' || fault "$block reads what is not there"
+  /usr/bin/python3 - "$block" <<'CHECK' || fault "$block reads fields that do not exist"
 import re, sys
 import h5py
 text = open(sys.argv[1]).read()
@@ -69,7 +69,7 @@ CHECK
 done
 cd "$OLDPWD"
 for block in "$folder"/*.[0-9]*.*; do
-  [[ $block =~ \.(cpp|toml|python|matlab|out)$ ]] || fault "${block##*/} is of a language that is not looked at"
+  [[ $block =~ \.(cpp|toml|python|matlab|out)$ ]] || fault "${block##*/} has an unknown language"
 done
 for language in cpp toml python matlab; do
   compgen -G "$folder/*.$language" >/dev/null || fault "no $language is found"

@@ -100,4 +100,4 @@ for told in "bits with -O3 -march=native -ffp-contract=fast" "bits by pkg-config
 done
 # Without the flags that the package requires, a program with another layout must not compile.
 ! echo '#include <osteomill/base/pose.h>' | g++ -std=c++20 -march=x86-64-v3 -fsyntax-only -x c++ \
-  -isystem /usr/include/eigen3 -I prefix/include - 2>/dev/null || fail "a Quat that lies otherwise is taken"
+  -isystem /usr/include/eigen3 -I prefix/include - 2>/dev/null || fail "a Quat with another layout compiles"

@@ -122,7 +122,7 @@ same wheeled whole towards_viewer; changed wheeled whole focus; changed wheeled 
 changed whole found focus; is found tool_px "640 400"; same whole found towards_viewer
 is found ui_scale 1.00; is larger ui_scale 1.25; is usual ui_scale 1.00
 is menu-full size "1400 x 900"; shows larger "Start page"; hides no-menu "Start page"
-[ -s controls-1-light.png ] && ! cmp -s controls-1-light.png controls-1-window.png || fault "the light panels look as the dark ones do"
+[ -s controls-1-light.png ] && ! cmp -s controls-1-light.png controls-1-window.png || fault "the light panels look like the dark ones"
 for moment in first laboratory larger light dark; do
   for fact in unexplained cut_off outside covered; do is $moment $fact ""; done
   awk -v c="$(value $moment contrast)" 'BEGIN { exit !(c >= 4.5) }' || fault "at $moment text has a contrast of $(value $moment contrast)"
@@ -283,7 +283,7 @@ drag burr radius 60 ;; settle ;; wait 0.2 ;; state wide
 close
 END
 more pressing out tool_seen 3; more in-hole pressing tool_seen 3; more in-hole out tool_seen 3; is out force_N 0.000
-awk -v f="$(value pressing force_N)" 'BEGIN { exit !(f > 0) }' || fault "the tool was taken away where it only pressed"
+awk -v f="$(value pressing force_N)" 'BEGIN { exit !(f > 0) }' || fault "the tool was moved away although it only pressed"
 awk -v f="$(value released force_N)" 'BEGIN { exit !(f < 0.05) }' || fault "a tool that was let go presses with $(value released force_N) N"
 is wide burr_mm 4.00
 
@@ -366,7 +366,7 @@ wait 0.2 ;; open small.nrrd ;; settle ;; wait 0.3 ;; state too-large ;; key esca
 close
 END
 # A tool that does not fit the bone is refused, wherever it is set.
-value too-large dialogue | grep -q "^small.nrrd: a burr of .* mm radius is wider than the whole bone" || fault "a burr wider than the bone is taken"
+value too-large dialogue | grep -q "^small.nrrd: a burr of .* mm radius is wider than the whole bone" || fault "a burr wider than the bone is accepted"
 is too-large scan ball.nrrd; is as-before dialogue ""; is as-before scan ball.nrrd
 xvfb-run -a timeout 60 "$osteomill" simulate ball.nrrd --burr-radius 50 >said 2>errors && fault "a burr of 50 mm begins" || code=$?
 [ "$code" -eq 1 ] && grep -q "^osteomill: ball.nrrd: a burr of 50 mm radius is wider than the whole bone" errors ||

@@ -91,12 +91,12 @@ done
 [ "$(value clutched.tool_W)" = "$(value clutched_on.tool_W)" ] || fail "the clutch does not hold the tool"
 [ "$(value moving.spindle)" = true ] || fail "its button does not mill"
 grep -q "^calibrated.dialogue=The two moves were shorter than 10 mm" said || fail "moves of no length calibrate"
-grep -qE "^stopped.device_fault=has given no pose for" said || fail "a stopped device is not said"
+grep -qE "^stopped.device_fault=has given no pose for" said || fail "a stopped device is not reported"
 for place in Calibrate "Start milling"; do
   [ -n "$(value "going_on.place of $place")" ] && [ "$(value "going_on.place of $place")" = "$(value "explained.place of $place")" ] ||
     fail "$place moves as a fault comes and goes"
 done
-[ "$(value stopped.force_arrow_N)" = 0.000 ] || fail "something is felt of a stopped device"
-[ "$(sed -n 's/^scale = //p' config/osteomill/devices/example-device.toml)" = 0.5 ] || fail "its workspace is not kept"
+[ "$(value stopped.force_arrow_N)" = 0.000 ] || fail "a stopped device still gets force"
+[ "$(sed -n 's/^scale = //p' config/osteomill/devices/example-device.toml)" = 0.5 ] || fail "its workspace is not stored"
 "$osteomill" report ./*recording.h5 --out report >text
 grep -q "example device" report/report.html || fail "the recording does not name it"

@@ -42,7 +42,7 @@ look() {
     echo "screenshot layout-$name-laboratory.png ;; click Algorithm ;; click Tool ;; click Burr and drive ;; wait 0.2 ;; state drive ;; screenshot layout-$name-drive.png"
     echo "quit ;; wait 0.3 ;; state closing ;; screenshot layout-$name-closing.png ;; click Close without"
   } | window "$size" --ui-scale "$2" --labels labels.nrrd
-  [ "$(grep -cE '\.(unexplained|cut_off|outside|covered|contrast)=' said)" -eq 55 ] || fail "the window was not looked at"
+  [ "$(grep -cE '\.(unexplained|cut_off|outside|covered|contrast)=' said)" -eq 55 ] || fail "the window was not checked at all moments"
   for moment in menu start help burrs recording saved cuts bone laboratory drive closing; do
     for fact in unexplained cut_off outside covered; do is $moment $fact ""; done
     awk -v c="$(value $moment contrast)" 'BEGIN { exit !(c >= 4.5) }' || fail "at $moment text has a contrast of $(value $moment contrast)"
@@ -105,6 +105,6 @@ END
 is usual ui_scale 1.00
 
 for wrong in 0 100 large; do
-  "$osteomill" simulate --ui-scale $wrong >said 2>errors && fail "--ui-scale $wrong is taken"
-  [ $? -eq 2 ] || fail "--ui-scale $wrong ends otherwise"
+  "$osteomill" simulate --ui-scale $wrong >said 2>errors && fail "--ui-scale $wrong is accepted"
+  [ $? -eq 2 ] || fail "--ui-scale $wrong has another exit code"
 done

@@ -110,7 +110,7 @@ is chosen scan "$folder/scans/ball 2 ä.nrrd"; hides chosen "Open this folder"
 is cancelled scan "$folder/scans/ball 2 ä.nrrd"; hides cancelled "Open this folder"
 shows refused "Open this folder"
 # The dialog starts in the folder of the last opened scan.
-printf 'file %s\nfolder %s\nfile %s\n' "$folder/scans/more" "$folder/scans" "$folder/scans" | diff - asked || fail "the portal was asked otherwise"
+printf 'file %s\nfolder %s\nfile %s\n' "$folder/scans/more" "$folder/scans" "$folder/scans" | diff - asked || fail "the portal got other requests"
 
 [ -e "$two_series" ] || { echo "without the series, which are not on this machine"; exit 0; }
 window 1024x600 scans/ball.nrrd --no-help <<END

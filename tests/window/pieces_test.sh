@@ -111,7 +111,7 @@ window --exercise "$exercises/layers.toml" <<END || fail "exit code $?"
 wait 0.3 ;; settle ;; wait 0.5 ;; glide 640 344 0.1 ;; press right ;; release right ;; wait 0.2 ;; state asked ;; close
 END
 value asked message | grep -q "exercise" || fail "no message gives the reason: '$(value asked message)'"
-! value asked shown | grep -qF "[Remove this piece]" || fail "an exercise lets pieces be removed"
+! value asked shown | grep -qF "[Remove this piece]" || fail "pieces can be removed in an exercise"
 
 # --- The table of a scanned head ------------------------------------------------------------------------------------------
 cranium=$shared/cranium/cranium_256x256x108_i16.nrrd

@@ -52,7 +52,7 @@ is milled-again unsaved true; is saved unsaved false
 is reset removed_mm3 0.000; is reset unsaved false; is milled-last unsaved true
 [ -z "$(value still-there scan)" ] || fail "it did not close after saving"
 [ "$(ls out/*-milled.nrrd | wc -l)" -eq 2 ] || fail "there should be two saved scans"
-[ "$(autosaves)" -eq 0 ] || fail "an autosave is left of what was saved or discarded"
+[ "$(autosaves)" -eq 0 ] || fail "an autosave of saved or discarded bone is left"
 
 # --- Killed ---------------------------------------------------------------------------------------------------
 # Another window open at the same time does not offer the autosave.
@@ -84,7 +84,7 @@ removed=$(sed -n 's/^killed\.removed_mm3=//p' said-killed)
 awk -v kept="$(value restored removed_mm3)" -v all="$removed" 'BEGIN { exit !(kept > 0 && kept <= all) }' ||
   fail "of $removed mm³, $(value restored removed_mm3) are kept"
 is restored unsaved true; is restored cuts 1; is restored isovalue "$(sed -n 's/^killed\.isovalue=//p' said-killed)"
-! value restored message | grep -q "not kept" || fail "what is taken up again is not kept: $(value restored message)"
+! value restored message | grep -q "not kept" || fail "the restored bone is not autosaved: $(value restored message)"
 is undone removed_mm3 0.000; is undone unsaved false
 # The program was killed and its scan is gone, so the start continues with the named scan.
 mv ball.nrrd moved.nrrd
@@ -92,7 +92,7 @@ cp other.nrrd ball.nrrd
 window <<<"wait 0.1 ;; click Open it ;; settle ;; wait 0.3 ;; state changed ;; click Close ;; wait 0.1 ;; close" || fail "exit code $?"
 value changed dialogue | grep -q "ball.nrrd: has changed since" || fail "milled bone went into another scan"
 is changed removed_mm3 0.000
-[ "$(autosaves)" -eq 1 ] || fail "what could not be opened is gone"
+[ "$(autosaves)" -eq 1 ] || fail "the autosave that could not be opened is gone"
 window <<<"wait 0.1 ;; click Delete it ;; settle ;; wait 0.3 ;; state deleted ;; close" || fail "exit code $?"
 [ -z "$(ls -A state/osteomill/autosave)" ] || fail "there is still $(ls -A state/osteomill/autosave)"
 window <<<"wait 0.3 ;; state nothing ;; close" || fail "exit code $?"

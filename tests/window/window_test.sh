@@ -49,4 +49,4 @@ echo "bone voxels before $before, in the saved scan $after"
 # The recording is complete and contains the milling.
 "$osteomill" report out/*-recording.h5 --out report >/dev/null || fail "the recording cannot be read"
 grep -q "^barrier-shell,part 1," report/summary.csv && grep -q "^surface-points,part 2," report/summary.csv ||
-  fail "the report does not know the run"
+  fail "the report lacks the run"
