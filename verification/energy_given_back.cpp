@@ -125,15 +125,13 @@ Section energy_given_back() {
   const double lag = kSpeed_mm_s * kTick_s / kDeep_mm;
   const double ideal = (1 + lag) / (1 - lag);
   Section section{
-      "Energy given back",
+      "Energy returned to the device",
       fmt::format(
-          "Must hold for 4: a device that is pressed {} mm into bone and drawn back at {:.0f} mm/s gets at "
-          "most "
-          "5 % more of what was put in than a spring that is sampled at 1 kHz gives, {:.3f}, and one that is "
-          "pressed and leant {} times in a hole, burr and shaft at once, gets no more either. Measured at "
-          "the device: the wrench of a tick times the movement until the next; {} turns of the scene against "
-          "the "
-          "grid; given back / put in, median (worst).",
+          "Must hold for 4: if a device is pressed {} mm into bone and drawn back at {:.0f} mm/s, the "
+          "ratio of energy returned to energy put in is at most 5 % above that of a spring sampled at 1 "
+          "kHz, {:.3f}; so is that of a device that is pressed and leant {} times in a hole, with burr "
+          "and shaft at once. Measured at the device: the wrench of a tick times the motion until the "
+          "next; {} rotations of the scene against the grid; energy returned / put in, median (worst).",
           kDeep_mm, kSpeed_mm_s, ideal, kPresses, kWays),
       {"algorithm", "burr on a plane", "shaft on an edge", "in a hole", ""},
       {},

@@ -30,14 +30,13 @@ std::vector<Run> runs(const Bones& bones, const Effort& effort) {
 
 Section energy_of_barrier_shell(const Bones& bones, const Effort& effort) {
   Section section{
-      "What barrier-shell stores",
-      "Must hold: the stored energy falls in every tick, also while bone is removed, except for what new "
-      "points add because their areas are not quite the old ones': at most 0.001 N mm in a tick, and in all "
-      "a "
-      "thousandth "
-      "of the work that the burr's force pays for. A rise is measured at the start of a tick, at the poses "
-      "of tool and device at the end of the last tick. The solver's passes are sums over the points; an "
-      "unfinished tick ends at the best pose that was certified.",
+      "Stored energy of barrier-shell",
+      "Must hold: the stored energy falls in every tick, also while bone is removed, except for the "
+      "increase from new points, whose areas differ slightly from those of the old ones: at most "
+      "0.001 N mm in a tick, and in total a thousandth of the work that the burr's force pays for. "
+      "A rise is measured at the start of a tick, at the poses of tool and device at the end of the "
+      "previous tick. A pass of the solver is one sum over the points; an unfinished tick ends at "
+      "the best certified pose.",
       {"bone, push", "ticks with a rise", "risen in all, N mm", "at worst in a tick, N mm", "passes a tick",
        "unfinished ticks", "nearest to a core, share of the skin", "force mean, N", "removed, mm3", ""},
       {},

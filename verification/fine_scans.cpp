@@ -140,12 +140,12 @@ Section fine_scans(const Effort& effort) {
   Section section{
       "Voxels of 0.031 mm",
       fmt::format(
-          "Must hold: the mean force while milling and while holding is that at {} mm within {:g} %, every "
-          "wrench is finite, no tick takes over {:g} us of CPU time. A block of 440 x 440 x 300 voxels, "
-          "and the built-in tooth of 1024 x 1024 x 704, milled for {:g} s (longer until the shaft has leant) "
-          "and held, push 1.5 N, seed 11, one trial at a time; a tick's times are the least of {} runs of "
-          "the same trial. In brackets against {} mm. Memory: the trial's memory beside the scan, including "
-          "the pages that milling copied.",
+          "Must hold: the mean force while milling and while holding equals that at {} mm within {:g} "
+          "%, every wrench is finite, and no tick takes over {:g} us of CPU time. A block of 440 x 440 "
+          "x 300 voxels, and the built-in tooth of 1024 x 1024 x 704, milled for {:g} s (longer until "
+          "the shaft has leant) and held, push 1.5 N, seed 11, one trial at a time; a tick's times are "
+          "the minimum over {} runs of the same trial. In brackets: relative to {} mm. Memory: the "
+          "trial's memory in addition to the scan, including the pages that milling copied.",
           kCoarse_mm, 100 * kForceWithin, kMaxTick_us, phase_s, kRuns, kCoarse_mm),
       {"bone", "force milling, N", "force holding, N", "force step, N", "torque step, N mm", "faults",
        "step p99, us", "milling p99, us", "longest tick, us CPU", "memory, MiB", ""},
@@ -163,12 +163,13 @@ Section time_of_a_tick(const Effort& effort) {
   const Vec3 size_mm(16, 16, 8);
   Section section{
       "What a tick takes, whatever the burr and the voxels",
-      fmt::format("Must hold: 99.9 % of the ticks take at most {:g} us of CPU time, and none over {:g}. A "
-                  "block of {:g} x {:g} x {:g} mm, milled for {:g} s with a push of 1.5 N a millimetre of "
-                  "the burr's radius (at least 1.5 N) and held for half as long, seed 11, one trial at a "
-                  "time; a tick's time is the least of {} runs of the same trial. Owed: pending bricks, "
-                  "whose points a tick leaves to later ticks.",
-                  kMost_us, kEver_us, size_mm.x(), size_mm.y(), size_mm.z(), phase_s, kRuns),
+      fmt::format(
+          "Must hold: 99.9 % of the ticks take at most {:g} us of CPU time, and none over {:g}. A block "
+          "of {:g} x {:g} x {:g} mm, milled for {:g} s with a push of 1.5 N per millimetre of the "
+          "burr's radius (at least 1.5 N) and held for half as long, seed 11, one trial at a time; a "
+          "tick's time is the minimum over {} runs of the same trial. Owed: pending bricks, whose "
+          "points a tick leaves to later ticks.",
+          kMost_us, kEver_us, size_mm.x(), size_mm.y(), size_mm.z(), phase_s, kRuns),
       {"burr, voxels", "median, us", "99.9 %, us", "longest, us", "owed, median", "owed, most", ""},
       {},
       {}};

@@ -332,15 +332,15 @@ void add_spindles(Section& section) {
 Section force_against_feed() {
   Section section{
       "Force against feed, push and speed",
-      "What the program with `--law chips` says of published measurements: whole sessions, in "
-      "which a device moves steadily, as in `replay`, or pushes with a constant force. Forces, "
-      "power and the spindle's speed are those of the records. Drills and saws press harder than "
-      "`barrier-shell` can, 20 N, and go with `line-proxy` at 5000 N/mm; all else is "
-      "`barrier-shell` at 50 N/mm. Must hold: fit rows within 10 %, held-out rows within 20 % or "
-      "the source's standard deviation; of signs, the sign. Nothing was tuned on a held-out row. "
-      "A row that misses is what the law cannot say; the thrust of a drill and a saw tooth's cuts "
-      "thinner than its edge are not those of a burr. In D3 the feed was not published, and 2 mm/s "
-      "is taken.",
+      "Published measurements against the program with `--law chips`, in whole sessions: a device "
+      "moves steadily, as in `replay`, or pushes with a constant force. Forces, power and the "
+      "spindle's speed are taken from the records. Drills and saws press harder than the 20 N that "
+      "`barrier-shell` can hold, so they use `line-proxy` at 5000 N/mm; all others use "
+      "`barrier-shell` at 50 N/mm. Must hold: fit rows within 10 %; held-out rows within 20 % or "
+      "the source's standard deviation; sign rows have the published sign. Nothing was tuned on a "
+      "held-out row. A row that misses shows a limit of the law; the thrust of a drill, and cuts of "
+      "a saw tooth thinner than its edge, differ from those of a burr. In D3 the feed was not "
+      "published; 2 mm/s is assumed.",
       {"row", "what", "program", "published", "error", "use", "source", ""},
       {},
       {}};

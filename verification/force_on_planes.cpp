@@ -82,11 +82,12 @@ void point_shell_rows(Section& section) {
 Section force_on_planes() {
   Section section{
       "Force on a plane",
-      fmt::format("Reported: the error of 1 against `k d` along the normal, and of the contact of 3 against "
-                  "`kA pi (r - d) d^2`, with the depth `d` of the simulated tool. {} planes of random "
-                  "slope and place, 0.2 mm voxels, the shaft up "
-                  "to 40 degrees off the normal; errors as shares, median (worst).",
-                  kPlanes),
+      fmt::format(
+          "Reported: the error of 1 against `k d` along the normal, and of the contact of 3 against `kA "
+          "pi (r - d) d^2`, where `d` is the depth of the simulated tool. {} planes of random slope and "
+          "position, 0.2 mm voxels, the shaft up to 40 degrees off the normal; relative errors, median "
+          "(worst).",
+          kPlanes),
       {"what", "error along the normal", "sideways"},
       {},
       {}};

@@ -9,10 +9,11 @@ namespace osteomill::verification {
 
 Section haptic_rates(const Bones& bones, const Effort& effort) {
   Section section{
-      "The haptic rate halved and doubled",
-      fmt::format("Must hold: milling is as calm (force above 20 Hz over its mean at most 0.06) and removes "
-                  "as much as at 1 kHz within 5 %. On {}, push 1.5 N, seed 11.",
-                  bones.tooth_name),
+      "Half and double the haptic rate",
+      fmt::format(
+          "Must hold: force above 20 Hz over its mean is at most 0.06, and the removed volume is that "
+          "at 1 kHz within 5 %. On {}, push 1.5 N, seed 11.",
+          bones.tooth_name),
       {"rate", "force above 20 Hz / mean", "torque step, N mm", "force step, N", "removed, mm3", ""},
       {},
       {}};

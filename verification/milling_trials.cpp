@@ -112,12 +112,12 @@ Section milling_the_tooth(const Bones& bones, const Effort& effort) {
   Section section{
       "Milling the tooth",
       fmt::format(
-          "Must hold for 4: force above 20 Hz over its mean, torque step and force step are at most "
-          "{}, {} N mm and {} N; in the usual hand the mean force is at least {} N, at least {} mm3 go "
-          "in 20 s, the mean torque is at least {} N mm; what is removed is what the burr's force paid "
-          "for within 1 %. On {}, the "
-          "simulated hand of `compare` for {:.0f} s, seeds {} to {} (settings were chosen on "
-          "others); median (worst) over the seeds. Times were taken with another trial beside.",
+          "Must hold for 4: force above 20 Hz over its mean, torque step and force step are at most {}, "
+          "{} N mm and {} N; in the usual hand the mean force is at least {} N, at least {} mm3 are "
+          "removed in 20 s, and the mean torque is at least {} N mm; the removed volume is what the "
+          "burr's force paid for within 1 %. On {}, the simulated hand of `compare` for {:.0f} s, seeds "
+          "{} to {} (settings were chosen on others); median (worst) over the seeds. Times were taken "
+          "with another trial running in parallel.",
           kMostHpOverMean, kMostTorqueStep_Nmm, kMostForceStep_N, kMinForce_N, kMinRemoved_mm3,
           kMinTorque_Nmm, bones.tooth_name, effort.phase_s, kFirstSeed,
           kFirstSeed + static_cast<std::uint64_t>(effort.seeds) - 1),
@@ -131,11 +131,13 @@ Section milling_the_tooth(const Bones& bones, const Effort& effort) {
 
 Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort) {
   Section section{
-      "Milling while the cutting pulls at the burr",
-      fmt::format("The same on {} with `--cutting-reaction`: the hand feels the burr held back along its "
-                  "speed, which pushes it aside and turns the handle. Must hold for 4: as calm as without, "
-                  "and the removed bone is what the force paid for, less at the pole than at the equator.",
-                  bones.tooth_name),
+      "Milling with the cutting reaction",
+      fmt::format(
+          "As above, on {} with `--cutting-reaction`: the hand feels the bone's resistance to the "
+          "burr's rotation, which pushes the burr aside and turns the handle. Must hold for 4: it is as "
+          "calm as without the reaction, and the removed volume is what the force paid for, which is "
+          "less at the pole than at the equator.",
+          bones.tooth_name),
       kHeader,
       {},
       {}};
@@ -153,12 +155,12 @@ Section no_rhythm_of_its_own(const Bones& bones, const Effort& effort) {
   };
   constexpr Encoder kUsual{"5 um, 0.1 mrad", 5e-3, 1e-4}, kFine{"1 um, 0.01 mrad", 1e-3, 1e-5};
   Section section{
-      "No rhythm of its own",
+      "No oscillation at half the haptic rate",
       fmt::format(
-          "Must hold for 4: no 0.1 s of leaning has a torque of {} N mm or more at half the haptic rate, "
-          "at which updates that take turns would make the tool sink; with the fine encoder no step of "
-          "torque is over {} N mm. The hand of `compare` milling {} for {:.0f} s, seeds 11 to {}; "
-          "median (worst).",
+          "Must hold for 4: in no 0.1 s of leaning does the torque at half the haptic rate reach {} N "
+          "mm (updating the bone's bricks in turns would make the tool sink at that rate); with the "
+          "fine encoder no step of torque exceeds {} N mm. The hand of `compare` milling {} for {:.0f} "
+          "s, seeds 11 to {}; median (worst).",
           kMostHalfRate_Nmm, kMostStep_Nmm, bones.tooth_name, effort.phase_s, 10 + effort.seeds),
       {"push, encoder", "torque at half the rate, N mm", "torque step, N mm", "force step, N", ""},
       {},
@@ -189,12 +191,13 @@ Section no_rhythm_of_its_own(const Bones& bones, const Effort& effort) {
 }
 
 Section milling_the_second_scan(const Bones& bones, const Effort& effort) {
-  Section section{"Milling a scan on which nothing was chosen",
-                  fmt::format("The same on {}; load and removal depend on the bone and are only reported.",
-                              bones.second_name),
-                  kHeader,
-                  {},
-                  {}};
+  Section section{
+      "Milling a scan not used for tuning",
+      fmt::format("As above, on {}; load and removed volume depend on the bone and are only reported.",
+                  bones.second_name),
+      kHeader,
+      {},
+      {}};
   if (bones.second) add_rows(section, *bones.second, effort, {});
   return section;
 }

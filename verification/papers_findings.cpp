@@ -95,7 +95,7 @@ std::vector<Choice> choices() {
     return Choice{what, kAll, [change](TrialSettings& s) { change(s.hand_and_device); }};
   };
   Choice softer = setting(3, "translational-stiffness", 2);
-  softer.what = "`point-shell` coupled by 2 N/mm and 1000 N mm/rad";
+  softer.what = "`point-shell` with a coupling of 2 N/mm and 1000 N mm/rad";
   softer.change = [](TrialSettings& settings) {
     settings.haptics.named.push_back({"point-shell", "translational-stiffness", 2});
     settings.haptics.named.push_back({"point-shell", "torsional-stiffness", 1000});
@@ -108,12 +108,12 @@ std::vector<Choice> choices() {
       setting(3, "scale", 1),
       setting(3, "damping-time", 0),
       std::move(softer),
-      of_person("the hand's damping 20 N s/m, twice the most that is drawn",
+      of_person("a hand damping of 20 N s/m, twice the largest drawn",
                 [](OperatorSettings& p) {
                   p.hand.damping_Ns_per_mm = 0.02;
                   p.hand.torsional_damping_Nmms_per_rad = 20;
                 }),
-      of_person("the hand's tremor without turning", [](OperatorSettings& p) { p.hand.tremor_rad = 0; }),
+      of_person("a hand tremor without rotation", [](OperatorSettings& p) { p.hand.tremor_rad = 0; }),
       of_person("a push of 3 N", [](OperatorSettings& p) { p.hand.push_N = 3; }),
       of_person("a device of 0.1 kg",
                 [](OperatorSettings& p) {
@@ -161,7 +161,7 @@ std::size_t add_choice(Section& section, const std::string& name, std::vector<Me
 // Returns how many findings hold on this bone with the choice that leaves the fewest.
 std::string add_choices(Section& section, const Volume& bone, const std::string& name, double phase_s) {
   const std::vector<MeasuredRun> as_it_is = rows_on(bone, kChosenWith, phase_s);
-  std::size_t fewest = add_choice(section, fmt::format("{}, as it is", name), as_it_is);
+  std::size_t fewest = add_choice(section, fmt::format("{}, unchanged", name), as_it_is);
   std::string with = "nothing changed";
   for (const Choice& choice : choices()) {
     std::vector<MeasuredRun> rows = rows_on(bone, kChosenWith, phase_s, choice.algorithms, choice.change);
@@ -183,15 +183,12 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
   Section section{
       "What the paper found",
       fmt::format(
-          "Must hold: the nine findings of section 8 of the paper, in the medians over hands, by the rules "
-          "of "
-          "a comparison's report. *Not settled*: too few hands for its sign test, which the medians need not "
-          "pass. "
-          "The paper's three algorithms, hands drawn by seed ({} to {}, with which the choices that it "
-          "leaves open were made on the built-in tooth, and {} to {}), the phases of `compare --seconds "
-          "{:g}`. "
-          "Medians of the hands in which the tool kept contact, if those are more than half; a finding "
-          "that could not be tested misses.",
+          "Must hold: the nine findings of section 8 of the paper, in the medians over hands, by the "
+          "rules of the report of `compare`. *Not settled*: too few hands agree for the report's sign "
+          "test, which the medians need not pass. The paper's three algorithms, hands drawn by seed ({} "
+          "to {}, with which the paper's open choices were settled on the built-in tooth, and {} to "
+          "{}), and the phases of `compare --seconds {:g}`. Medians are over the hands in which the "
+          "tool kept contact, if those are more than half; a finding that could not be tested misses.",
           kChosenWith.first, kChosenWith.last, kOthers.first, kOthers.last, effort.phase_s),
       {"bone, hands: the paper found", "medians", "holds in hands", ""},
       {},
@@ -203,17 +200,18 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
     unsettled += add_findings(section, bones.tooth, bones.tooth_name, hands, effort.phase_s);
   }
   section.reservation =
-      fmt::format("in the medians; {} of them not settled by the hands' sign test", unsettled);
+      fmt::format("in the medians, {} of them not settled by the sign test over hands", unsettled);
   return section;
 }
 
 Section papers_choices(const Bones& bones, const Effort& effort) {
   Section section{
       "What the paper leaves open",
-      fmt::format("Reported: the same findings, numbered as above from 1 to 9, with one choice, the hand or "
-                  "the device changed. Hands {} to {}, medians; force above 20 Hz (rms, "
-                  "N) and torque above 20 Hz (rms, N mm) of 1 / 2 / 3.",
-                  kChosenWith.first, kChosenWith.last),
+      fmt::format(
+          "Reported: the same findings, numbered as above from 1 to 9, with one choice, the hand or the "
+          "device changed. Hands {} to {}, medians; force above 20 Hz (rms, N) and torque above 20 Hz "
+          "(rms, N mm) of 1 / 2 / 3.",
+          kChosenWith.first, kChosenWith.last),
       {"bone, with", "findings that hold", "force milling", "force holding", "torque milling",
        "torque holding"},
       {},
@@ -221,7 +219,7 @@ Section papers_choices(const Bones& bones, const Effort& effort) {
   const std::string on_builtin = add_choices(section, Volume(builtin_tooth(), kBuiltinToothIsovalue),
                                              "the built-in tooth", effort.phase_s);
   section.reservation =
-      fmt::format("with a choice, the hand or the device changed, as few as {} and {}", on_builtin,
+      fmt::format("with one choice, the hand or the device changed, as few as {} and {}", on_builtin,
                   add_choices(section, bones.tooth, bones.tooth_name, effort.phase_s));
   return section;
 }

@@ -26,14 +26,13 @@ std::string counts(const std::vector<PushOutcome>& all, Depth PushOutcome::*dept
 
 Section random_pushes(const Bones& bones, const Effort& effort) {
   Section section{
-      "Pushes from anywhere",
+      "Random pushes",
       fmt::format(
-          "Must hold for 4: the simulated tool is never more than {} mm past the surface. {} pushes "
-          "of 2 to 10 N at 20 to "
-          "300 mm/s against {}, burr or shaft first, from any side and in any pose, checked every "
-          "{} ms independently of the algorithms, with the tool's radii and as its centreline. Each as "
-          "pushes that end deeper / ever "
-          "are deeper / end through (deeper than {} mm, the shaft's radius).",
+          "Must hold for 4: the simulated tool is never more than {} mm past the surface. {} pushes of "
+          "2 to 10 N at 20 to 300 mm/s against {}, burr or shaft first, from any side and in any pose, "
+          "checked every {} ms independently of the algorithms, with the tool's radii and as its "
+          "centreline. Each cell has the number of pushes that end deeper / are ever deeper / end "
+          "through (deeper than {} mm, the shaft's radius).",
           kDeepest_mm, effort.pushes, bones.tooth_name, kTicksBetweenLooks, kThrough_mm),
       {"algorithm", "tool", "centreline", "tool at the end: median, mm", "99.9 %, mm", "deepest, mm", ""},
       {},

@@ -47,9 +47,9 @@ Section shaft_levers() {
       "The shaft alone on an edge",
       fmt::format(
           "Must hold for 4: torque = lever x force within 1 %, with the right sign, and a force that is "
-          "felt. The shaft lies across the crest of a square edge, 0.3 mm deep (algorithm 1: "
-          "its centreline), in {} random orientations of the scene; 0.2 mm voxels; torque's "
-          "error as a share of lever x force, median (worst).",
+          "felt. The shaft lies across the crest of a square edge, 0.3 mm deep (algorithm 1: its "
+          "centreline), in {} random orientations of the scene; 0.2 mm voxels; torque error relative to "
+          "lever x force, median (worst).",
           kOrientations),
       {"algorithm, lever, edge", "torque error", "least force, N", ""},
       {},

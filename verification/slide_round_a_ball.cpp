@@ -53,10 +53,10 @@ void slide(std::string_view algorithm, const Volume& ball, double ball_mm, doubl
 Section slide_round_a_ball() {
   Section section{
       "Sliding round a ball",
-      "Must hold for 4: the force's direction errs by at most 0.1 degree (median) and 0.5 (99 %), and "
-      "steps by at most 0.002 N from tick to tick; in 1 mm voxels and with an edge of one voxel it errs "
-      "by at most 0.5 and 1.5. A burr 0.5 mm deep in a ball at 16 mm/s, 1 N/mm, over the top in three "
-      "planes.",
+      "Must hold for 4: the error of the force's direction is at most 0.1 degree (median) and 0.5 "
+      "(99 %), and the force steps by at most 0.002 N from tick to tick; in 1 mm voxels, and with "
+      "an edge of one voxel, the limits of the error are 0.5 and 1.5. A burr 0.5 mm deep in a ball "
+      "slides over its top at 16 mm/s in three planes, 1 N/mm.",
       {"algorithm, voxels, edge, ball", "direction, degrees: median", "99 %", "largest step, N", ""},
       {},
       {}};

@@ -155,12 +155,12 @@ Section soak(const Bones& bones, const Effort& effort) {
   Section section{
       "A long session",
       fmt::format(
-          "Must hold over {:.0f} minutes of simulated session (milling and holding in turns, by a hand that "
-          "is drawn again for each cycle, with changes of the algorithm and undone cuts): memory (measured "
-          "with line-proxy) grows by at most 5 % after the first sixth; everything is finite, "
-          "force and torque within "
-          "the device's 20 N and 500 N mm; the last cycle, which repeats the first, is the same to the "
-          "bit; the recording reads back and replays to the bit. On {}.",
+          "Must hold over {:.0f} minutes of simulated session (milling and holding in turns, by a hand "
+          "that is drawn again for each cycle, with changes of the algorithm and undone cuts): memory "
+          "(measured with line-proxy) grows by at most 5 % after the first sixth; all values are "
+          "finite, and force and torque are within the device's 20 N and 500 N mm; the last cycle, "
+          "which repeats the first, gives the same bits; the recording can be read and replays to the "
+          "bit. On {}.",
           effort.soak_min, bones.tooth_name),
       {"minutes", "mean force, N", "force, torque max, N, N mm", "tool from device, mm", "energy given, N mm",
        "memory, MiB", ""},

@@ -13,20 +13,21 @@ namespace {
 
 constexpr const char* kHowToRead =
     R"(# Verification
-`scripts/verify` measures everything that osteomill promises of forces, torques and milling, and what the paper found, and writes
-this page. Tables are of the default settings unless they say otherwise.
+`scripts/verify` measures everything that osteomill promises of forces, torques and milling, and the paper's findings, and
+writes this page. Tables use the default settings unless they say otherwise.
 
 ## Summary
-Each section first says what *must hold*, and each of its rows *holds* or **misses**. The promises are those of `barrier-shell`, the
-default algorithm, which is also called 4 here. The paper's 1 `line-proxy`, 2 `surface-points` and 3 `point-shell` are as published,
-with their faults. Their rows are *reported* and judge nothing, except that the paper's own findings must come out.
+Each section begins with what *must hold*, and each of its rows *holds* or **misses**. The promises are those of
+`barrier-shell`, the default algorithm, also called 4 here. The paper's 1 `line-proxy`, 2 `surface-points` and 3 `point-shell`
+are as published, faults included: their rows are *reported* and not judged, except that they must reproduce the paper's
+findings.
 
 )";
 
 constexpr const char* kMore =
-    R"(A row that misses is a known fault and stays here until it is corrected. Numbers are medians, with the worst in brackets, unless
-the section says otherwise. Hands are drawn by seed, so everything except times is the same on any machine. How each algorithm
-works is in [algorithms.md](algorithms.md).
+    R"(A row that misses is a known fault and stays here until it is corrected. Numbers are medians, with the worst in
+brackets, unless the section says otherwise. Hands are drawn by seed, so everything except times is the same on any machine.
+[algorithms.md](algorithms.md) describes each algorithm.
 
 )";
 
@@ -38,14 +39,15 @@ struct Question {
 const std::vector<Question>& questions() {
   static const std::vector<Question> all{
       {"Are the force on a wall and the torque at a lever right?", {"planes", "levers", "ball", "turned"}},
-      {"Does it stay still, and give back no more energy than it got?", {"drops", "returned", "passivity"}},
+      {"Is it stable, and does it return no more energy than it received?",
+       {"drops", "returned", "passivity"}},
       {"Does the tool stay out of bone?", {"pushes", "tools", "sheets", "spongy", "through"}},
-      {"Is the hole what the burr swept?", {"voxels", "swept"}},
+      {"Is the hole the volume that the burr swept?", {"voxels", "swept"}},
       {"Does it keep 1000 Hz, also in fine scans?", {"fine", "ticks", "rates"}},
       {"Is it calm while a hand mills?", {"tooth", "reaction", "rhythm", "second", "energy", "rig"}},
-      {"Does what the paper found come out?", {"paper", "choices"}},
-      {"Does cutting resist as published?", {"feed"}},
-      {"Does a long session stay sound?", {"soak"}},
+      {"Are the paper's findings reproduced?", {"paper", "choices"}},
+      {"Do cutting forces agree with published ones?", {"feed"}},
+      {"Does a long session stay stable?", {"soak"}},
   };
   return all;
 }

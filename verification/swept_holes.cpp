@@ -116,22 +116,17 @@ void add_all_voxels(Section& section, const std::vector<Hole>& holes, const std:
 
 Section swept_holes(const Effort& effort) {
   Section section{
-      "What is cut and what the burr sweeps",
+      "Cut volume and swept volume",
       fmt::format(
-          "Must hold: the volume cut is what the shown burr sweeps along its path while it presses, within "
-          "{:.0f} %; no bone is left deeper inside the swept volume than half a voxel, and none is lost "
-          "farther outside it than a "
-          "quarter of a voxel and 0.03 mm; what is removed is what the burr's force paid for within {:.0f} "
-          "%. "
-          "Blocks of bone, milled and leant against by the simulated hand (burr of 1.5 mm radius, 1.5 N, "
-          "{:.0f} "
-          "s in the middling rows); surfaces are interpolated, and counted only inside bone that reached two "
-          "voxels around. "
-          "Edges that two passes leave between them are rounded within their voxels, because densities are "
-          "interpolated; they are reported separately and not judged. With one burr and push the shares cut "
-          "in all voxels are "
-          "alike "
-          "within {:g} %.",
+          "Must hold: the cut volume equals the volume that the drawn burr sweeps while it presses, "
+          "within {:.0f} %; no bone remains deeper inside the swept volume than half a voxel, and none "
+          "is removed farther outside it than the lesser of a quarter of a voxel and 0.03 mm; the "
+          "removed volume is what the burr's force paid for within {:.0f} %. Blocks of bone, milled and "
+          "leant against by the simulated hand (burr of 1.5 mm radius, 1.5 N, {:.0f} s in most "
+          "rows); surfaces are interpolated, and counted only inside bone that extends two "
+          "voxels around. Edges that remain between two passes are rounded within their voxels, because "
+          "densities are interpolated; they are reported separately and not judged. With one burr and "
+          "push the cut shares agree within {:g} % over all voxel sizes.",
           100 * kVolumeWithin, 100 * kPaidWithin, effort.phase_s / 2, 100 * kAlikeWithin),
       {"voxels", "swept, mm3", "cut / swept", "left, mm", "lost, mm", "lost at edges, mm",
        "removed / paid for", ""},

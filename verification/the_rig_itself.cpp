@@ -17,15 +17,12 @@ constexpr double kNoExcess = 1.05;
 
 Section the_rig_itself(const Bones& bones, const Effort& effort) {
   Section section{
-      "What the rig itself does",
-      fmt::format(
-          "Must hold for 4: milling adds nothing to the force above 20 Hz that the hand's tremor makes with "
-          "the "
-          "spindle off (5 %). The hand of `compare` on {} for {:.0f} s, seed 11, "
-          "with "
-          "the spindle on, with the spindle off, and with the spindle on but the handle's pose read without "
-          "rounding: one step of the encoder, 1e-4 rad, is 0.1 N mm by itself at 1000 N mm/rad.",
-          bones.tooth_name, effort.phase_s),
+      "Noise of the simulated rig",
+      fmt::format("Must hold for 4: milling adds at most 5 % to the force above 20 Hz that the hand's tremor "
+                  "causes with the spindle off. The hand of `compare` on {} for {:.0f} s, seed 11, with the "
+                  "spindle on, with the spindle off, and with the spindle on but without rounding of the "
+                  "handle's pose: one step of the encoder, 1e-4 rad, alone gives 0.1 N mm at 1000 N mm/rad.",
+                  bones.tooth_name, effort.phase_s),
       {"algorithm, push", "force above 20 Hz / mean", "spindle off", "no rounding", "torque step, N mm",
        "spindle off", "no rounding", "force step, N", "spindle off", "no rounding", ""},
       {},

@@ -68,10 +68,10 @@ Section thin_bone() {
   Section section{
       "Sheets of bone",
       fmt::format(
-          "Must hold for 4: no push goes through. Sheets in {} mm voxels, edges one "
-          "voxel wide; {} pushes each with the burr, with the shaft and with the shaft's end first, the "
-          "device {} mm past at 20 to 300 mm/s and not held back; through: the tool's centreline "
-          "ends more than {} mm beyond the sheet.",
+          "Must hold for 4: no push goes through. Sheets in {} mm voxels, edges one voxel wide; {} "
+          "pushes each with the burr, with the shaft and with the shaft's end first. The device goes {} "
+          "mm past the sheet at 20 to 300 mm/s without resistance. Through: the tool's centreline ends "
+          "more than {} mm beyond the sheet.",
           kVoxel_mm, kPushesAWay, kPast_mm, kDeepest_mm),
       {"algorithm, sheet", "burr first", "shaft first", "shaft's end first", ""},
       {},
@@ -103,10 +103,10 @@ Section spongy_bone(const Bones& bones) {
   constexpr int kPushes = 300;
   Section section{
       "Pushes into spongy bone",
-      fmt::format("Must hold for 4: the tool is never more than {} mm past the surface. {} pushes of 2 to 10 "
-                  "N against {}, 0.0195 mm voxels, a burr of 0.5 mm radius on a shaft "
-                  "of 0.35 mm.",
-                  kDeepest_mm, kPushes, bones.spongy_name),
+      fmt::format(
+          "Must hold for 4: the tool is never more than {} mm past the surface. {} pushes of 2 to 10 N "
+          "against {}, 0.0195 mm voxels, with a burr of 0.5 mm radius on a shaft of 0.35 mm.",
+          kDeepest_mm, kPushes, bones.spongy_name),
       {"algorithm", "end deeper", "ever deeper", "deepest, mm", ""},
       {},
       {}};

@@ -32,13 +32,11 @@ Section tools_and_pushes(const Bones& bones, const Effort& effort) {
   Section section{
       "Other tools and pushes",
       fmt::format(
-          "Must hold for 4: what is removed is what the burr's force paid for within {:g} %, and the tool is "
-          "never more than {} mm past the surface; all else is reported. Against "
-          "{}, tools from 0.5 to 3 mm, shafts thinner than the burr and as thick: {} pushes of 0.5 "
-          "to 9 N at 20 to "
-          "300 mm/s (end deeper / ever deeper), and the hand of `compare` milling for {:.0f} "
-          "s, seed 11. "
-          "Settings were chosen for the default tool and hand.",
+          "Must hold for 4: the removed volume is what the burr's force paid for within {:g} %, and the "
+          "tool is never more than {} mm past the surface; the rest is reported. Against {}, tools of "
+          "0.5 to 3 mm with shafts thinner than the burr or as thick: {} pushes of 0.5 to 9 N at 20 to "
+          "300 mm/s (end deeper / ever deeper), and the hand of `compare` milling for {:.0f} s, seed "
+          "11. Settings were chosen for the default tool and hand.",
           100 * kPaidWithin, kDeepest_mm, bones.tooth_name, pushes, effort.phase_s),
       {"algorithm, burr / shaft, push", "deeper", "force above 20 Hz / mean", "torque step, N mm",
        "force step, N", "force mean, N", "torque mean, N mm", "removed, mm3", "removed / paid", ""},
@@ -85,11 +83,12 @@ Section tools_and_pushes(const Bones& bones, const Effort& effort) {
 Section breaking_through(const Effort& effort) {
   Section section{
       "Breaking through into a hollow",
-      fmt::format("Must hold for 4: its force steps by at most {} N, and its torque by {} N mm when "
-                  "pushed by {} N, {} by {} N. A plate of 2.5 mm over a hollow, 0.125 mm "
-                  "voxels, milled by the hand of `compare` for {:.0f} s, seed 11.",
-                  kMostForceStep_N, kMostTorqueSteps[0].step_Nmm, kMostTorqueSteps[0].push_N,
-                  kMostTorqueSteps[1].step_Nmm, kMostTorqueSteps[1].push_N, effort.phase_s),
+      fmt::format(
+          "Must hold for 4: the force steps by at most {} N, and the torque by {} N mm with a push of "
+          "{} N, {} with {} N. A plate of 2.5 mm over a hollow, 0.125 mm voxels, is milled by the hand "
+          "of `compare` for {:.0f} s, seed 11.",
+          kMostForceStep_N, kMostTorqueSteps[0].step_Nmm, kMostTorqueSteps[0].push_N,
+          kMostTorqueSteps[1].step_Nmm, kMostTorqueSteps[1].push_N, effort.phase_s),
       {"algorithm, push", "force step, N", "torque step, N mm", "force mean, N", ""},
       {},
       {}};

@@ -72,14 +72,14 @@ Difference difference(std::string_view algorithm, const Volume& straight, const 
 
 Section turned_scans() {
   Section section{
-      "Turning scan and poses together",
-      fmt::format("Must hold for 4: the wrench turns with them, within 0.002 of the greatest if the grid "
-                  "is turned as well, and within a tenth, the voxel error, if the bone is turned in the "
-                  "grid. {} random turns; "
-                  "the burr stands in a hole of 4 mm in a ball, then the shaft leans on the rim; 0.125 "
-                  "mm voxels; greatest difference over {} ticks as a share of the greatest wrench, "
-                  "median (worst).",
-                  kTurns, kTicks),
+      "Rotating scan and poses together",
+      fmt::format(
+          "Must hold for 4: the wrench rotates with them, within 0.002 of the largest if the grid is "
+          "rotated too, and within a tenth, the voxel error, if the bone is rotated in the grid. {} "
+          "random rotations; the burr stands in a hole of 4 mm in a ball, then the shaft leans on the "
+          "rim; 0.125 mm voxels; largest difference over {} ticks relative to the largest wrench, "
+          "median (worst).",
+          kTurns, kTicks),
       {"algorithm, what is turned", "force", "torque", "at most", ""},
       {},
       {}};

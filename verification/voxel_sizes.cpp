@@ -47,11 +47,10 @@ double hole_mm3(double spacing_mm, double seconds) {
 
 Section voxel_sizes(const Effort& effort) {
   Section section{
-      "The hole and the voxels",
-      fmt::format("Must hold: the hole's volume changes by less than 2 % from voxels of 0.25 to 0.10 "
-                  "mm. A block of bone with an edge {} mm wide, milled and leant against by the "
-                  "simulated hand for {:.0f} s, push 1.5 N; the volume counted from the densities that "
-                  "are left.",
+      "Hole volume by voxel size",
+      fmt::format("Must hold: the hole's volume changes by less than 2 % from voxels of 0.25 to 0.10 mm. A "
+                  "block of bone with an edge {} mm wide, milled and leant against by the simulated hand for "
+                  "{:.0f} s, push 1.5 N; the volume is counted from the remaining densities.",
                   kEdge_mm, effort.phase_s / 2),
       {"voxels", "hole, mm3", "against 0.10 mm", "at most", ""},
       {},
