@@ -17,8 +17,8 @@ constexpr int kCentrelineVertices = 51;
 constexpr double kBin_mm = 1;
 constexpr double kBinReach_mm = 0.87;  // half the diagonal of a bin
 
-// Adds the points between a voxel and its next along each axis at which the density passes the isovalue, in
-// voxel coordinates.
+// Adds, for each axis, the point between the voxel and its next neighbour at which the density crosses the
+// isovalue, in W.
 void add_crossings(const Volume& volume, const VoxelIndex& v, std::vector<Vec3>& points) {
   const double here = volume.grid()[v];
   const std::array<VoxelIndex, 3> neighbours{{{v.i + 1, v.j, v.k}, {v.i, v.j + 1, v.k}, {v.i, v.j, v.k + 1}}};

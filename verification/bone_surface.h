@@ -7,23 +7,22 @@
 
 namespace osteomill::verification {
 
-/// The bone's surface as points, sought independently of every algorithm: where the density between two
-/// neighbouring voxels passes the isovalue. The
-/// volume outlives it.
+/// Samples the bone's surface independently of every algorithm: a point on each grid edge on which the
+/// density crosses the isovalue. The volume must outlive it.
 class BoneSurface {
  public:
   explicit BoneSurface(const Volume& volume);
 
   const std::vector<Vec3>& points() const { return points_; }
 
-  /// Returns how deep the deepest point of the surface lies in the tool; negative if none touches it.
+  /// Returns the depth of the surface's deepest point in the tool, mm; negative if none touches it.
   double deepest_mm(const MillingTool& tool, const Pose& X_WT) const;
 
-  /// Returns how deep the deepest point of the tool's centreline lies in bone; 0 if none does.
+  /// Returns the depth in bone of the centreline's deepest point, mm; 0 if none is in bone.
   double centreline_deep_mm(const MillingTool& tool, const Pose& X_WT) const;
 
  private:
-  // Points that lie in one cube of space.
+  // Points in one cube of space.
   struct Bin {
     Vec3 centre_W;
     std::size_t first;

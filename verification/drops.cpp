@@ -16,7 +16,7 @@ constexpr double kWeight_N = 2.94;  // of the handle's 0.3 kg
 constexpr double kMax_s = 1;
 constexpr int kSlopes = 6;
 
-// Lets one tick pass: the weight falls against `normal`, the device's own damping holds it back.
+// Advances the handle by one tick, under its weight along -`normal` and the device's own damping.
 void fall(SimulatedHandle& handle, const Vec3& normal) {
   const int substeps = static_cast<int>(kTick_s / handle.settings().substep_s + 0.5);
   for (int n = 0; n < substeps; ++n) {
@@ -24,8 +24,8 @@ void fall(SimulatedHandle& handle, const Vec3& normal) {
   }
 }
 
-// The share of its kinetic energy with which a dropped handle leaves a plane of random slope again; 0 if
-// it stays.
+// Returns the ratio of a dropped handle's kinetic energy after the rebound from a plane of random slope to
+// that before; 0 if it stays.
 double rebound(std::string_view algorithm, double stiffness, double height_mm, SeededRandom& random) {
   using namespace testing_support;
   const Vec3 normal = random_direction(random);

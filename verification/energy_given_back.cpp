@@ -22,7 +22,7 @@ Vec3 turn_between(const Pose& from, const Pose& to) {
   return rotation_vector(to.orientation * from.orientation.conjugate());
 }
 
-// Watches what goes through the device: a wrench is held for a tick, in which the device moves.
+// Sums the energy that passes through the device: a wrench is held for a tick, in which the device moves.
 struct PassivityObserver {
   double put_in_Nmm = 0;
   double given_back_Nmm = 0;
@@ -35,8 +35,8 @@ struct PassivityObserver {
   double share() const { return given_back_Nmm / put_in_Nmm; }
 };
 
-// Takes the device from one pose to the next at the speed of the section, by its burr or by the turn at the
-// shaft's lever, whichever is longer.
+// Moves the device to a pose at kSpeed_mm_s, measured at the burr or as rotation at the shaft's lever,
+// whichever is longer.
 void go(HapticAlgorithm& algorithm, Pose& X_WD, const Pose& X_WD_to, PassivityObserver& observer) {
   const Vec3 way_mm = X_WD_to.position_mm - X_WD.position_mm;
   const Vec3 turn_rad = turn_between(X_WD, X_WD_to);
@@ -61,7 +61,7 @@ std::unique_ptr<HapticAlgorithm> usual(std::string_view algorithm, const Volume&
   return prepared(algorithm, bone, MillingTool{}, algorithm == "surface-points" ? 20 : 2);
 }
 
-// Pressed in and drawn back along one line.
+// Presses the tool in and draws it back along one line. Returns energy returned / put in.
 double pressed_once(std::string_view algorithm, const Volume& bone, const Pose& X_W_touching,
                     const Vec3& out) {
   const auto felt = usual(algorithm, bone);
@@ -95,7 +95,7 @@ double with_the_shaft(std::string_view algorithm, SeededRandom& random) {
                       turn * Vec3::UnitZ());
 }
 
-// Pressed and leant at random in a hole, again and again: burr and shaft at once, and two walls at once.
+// Presses and leans the tool at random in a hole, so that burr and shaft, or two walls, touch at once.
 double in_a_hole(std::string_view algorithm, SeededRandom& random) {
   const Vec3 axis = random_direction(random);
   const double radius_mm = felt_radius_mm(algorithm, MillingTool{}.burr_radius_mm);
@@ -121,7 +121,7 @@ double in_a_hole(std::string_view algorithm, SeededRandom& random) {
 }  // namespace
 
 Section energy_given_back() {
-  // In: the wrench of the tick before, too little by half a tick's way; out: too much.
+  // The wrench lags by half a tick's motion on average: too small on the way in, too large on the way out.
   const double lag = kSpeed_mm_s * kTick_s / kDeep_mm;
   const double ideal = (1 + lag) / (1 - lag);
   Section section{

@@ -22,11 +22,11 @@ namespace {
 
 constexpr double kForceWithin = 0.03;
 constexpr double kMaxTick_us = 1000;
-// Runs of each trial: the machine itself may stop for milliseconds, but hardly in the same tick of each run.
+// Runs of each trial. The machine may stall for milliseconds, but hardly in the same tick of every run.
 constexpr int kRuns = 3;
 constexpr double kCoarse_mm = 0.125, kFine_mm = 0.03125;
 
-// Returns a block of this size, with a margin about the bone.
+// Returns a block of bone within a margin; `size_mm` includes the margin.
 Volume block(double spacing_mm, const Vec3& size_mm) {
   constexpr double kMargin_mm = 0.375, kEdge_mm = 0.25;
   GridGeometry geometry;
@@ -41,7 +41,7 @@ Volume block(double spacing_mm, const Vec3& size_mm) {
       geometry, [&](const Vec3& p) { return ((p - middle_W).cwiseAbs() - middle_W).maxCoeff() + kMargin_mm; },
       kEdge_mm / spacing_mm);
 }
-// 440 x 440 x 300 of the fine voxels.
+// 440 x 440 x 300 fine voxels.
 const Vec3 kBlock_mm(13.75, 13.75, 9.375);
 
 struct Figures {
@@ -71,7 +71,7 @@ Phases run_trial(const Volume& bone, double phase_s, TrialSettings settings) {
   return phases;
 }
 
-// A tick's times, the least of those of the same tick in another run.
+// Replaces each tick's times by those of the same tick in another run if they are lower.
 void take_less(std::vector<TickRecord>& records, const std::vector<TickRecord>& others) {
   for (std::size_t n = 0; n < records.size(); ++n) {
     for (const auto time_us : {&TickRecord::compute_us, &TickRecord::milling_us, &TickRecord::tick_cpu_us}) {
@@ -80,7 +80,7 @@ void take_less(std::vector<TickRecord>& records, const std::vector<TickRecord>& 
   }
 }
 
-// Runs a trial `runs` times; a tick's times are the least of them.
+// Runs a trial `runs` times; each tick gets the lowest times of all runs.
 Phases run_trials(const Volume& bone, double phase_s, int runs, const TrialSettings& settings) {
   Phases phases = run_trial(bone, phase_s, settings);
   for (int run = 1; run < runs; ++run) {
@@ -175,7 +175,7 @@ Section time_of_a_tick(const Effort& effort) {
       {}};
   for (const double spacing_mm : {0.5, 0.25, 0.125, 0.0625, kFine_mm}) {
     const Volume bone = block(spacing_mm, size_mm);
-    // No burr is felt that is over 150 voxels.
+    // Burrs over 150 voxels are not supported.
     for (const double burr_radius_mm : {0.5, 1.5, 3.0, std::min(6.0, 144 * spacing_mm)}) {
       TrialSettings settings;
       settings.tool = {burr_radius_mm, std::min(1.0, burr_radius_mm), 25};

@@ -29,7 +29,7 @@ constexpr double kFitWithin = 0.10, kHeldOutWithin = 0.20;
 
 enum class Use { fit, held_out, reported };
 
-// A published figure, or the two ends of one that was published as a range.
+// A published figure, or the ends of a published range.
 struct Published {
   const char* name;
   const char* what;
@@ -40,13 +40,14 @@ struct Published {
   const char* source;
 };
 
-// A bone and the way in which the burr goes into it.
+// A bone and the burr's direction of motion.
 struct Task {
   Volume bone;
   Vec3 along_W;
 };
 
-// The burr's pole in a bowl of its own shape, or of a part of its width.
+// The burr plunges with its pole into a bowl of its own shape, or into a strip of it of relative width
+// `width`.
 Task plunge(double radius_mm, double width = 1) {
   return {shape_volume(centred_cube(52, radius_mm / 10),
                        [=](const Vec3& p) {
@@ -56,7 +57,8 @@ Task plunge(double radius_mm, double width = 1) {
           -Vec3::UnitZ()};
 }
 
-// The burr's equator in a plate as thick as its radius, in half a bowl of its own shape.
+// The burr cuts with its equator into the edge of a plate as thick as its radius, from half a bowl of its own
+// shape.
 Task side_cut(double radius_mm, int length_voxels = 220) {
   GridGeometry geometry = centred_cube(40, radius_mm / 10);
   geometry.dims[0] = length_voxels;
@@ -67,8 +69,8 @@ Task side_cut(double radius_mm, int length_voxels = 220) {
           Vec3::UnitX()};
 }
 
-// The setup of the window and `live`, without anything that only a hand feels. A drill's and a saw's forces
-// are beyond what barrier-shell's coupling holds, so these go with the stiffest of the paper's algorithms.
+// Returns the setup of the window and `live`, without effects that only a hand feels. Drills and saws press
+// harder than barrier-shell's coupling can hold, so they use the stiffest of the paper's algorithms.
 MillingSetup program(double radius_mm, double speed_rpm, bool by_hand) {
   MillingSetup setup;
   setup.law = CuttingLaw::chips;
@@ -81,13 +83,13 @@ MillingSetup program(double radius_mm, double speed_rpm, bool by_hand) {
   return setup;
 }
 
-// The means of the second half of a session, as its records have them.
+// Means over the second half of a session's records.
 struct Cut {
   double force_N = 0;
   double torque_Nmm = 0;
   double feed_mm_s = 0;
   double speed_share = 0;
-  // The torque that cutting puts on the handle about the spindle.
+  // Torque of the cutting reaction on the handle about the spindle.
   double felt_Nmm = 0;
   Vec3 device_N = Vec3::Zero();
 };
@@ -126,17 +128,17 @@ std::vector<TickRecord> replayed(const Task& task, const MillingSetup& setup, co
   return records;
 }
 
-// A device that goes on steadily for the burr's radius, as `osteomill replay` has it.
+// Moves the device steadily by the burr's radius, as in `osteomill replay`.
 Cut at_feed(const MillingSetup& setup, double feed_mm_s, double width = 1) {
   const double radius_mm = setup.tool.burr_radius_mm;
   const Task task = plunge(radius_mm, width);
-  // The tool of line-proxy is a line, and its burr lies a radius before what the line touches.
+  // The tool of line-proxy is a line; its burr's centre is a radius outside the contact point.
   const bool by_line = setup.algorithm.id == "line-proxy";
   const Vec3 from_W_mm = by_line ? Vec3(radius_mm * task.along_W) : Vec3::Zero();
   return mean_cut(replayed(task, setup, from_W_mm, feed_mm_s, radius_mm / feed_mm_s), setup, task.along_W);
 }
 
-// A device that pushes, as hard as `push_N` has it at a time.
+// Runs a session with a device that pushes with `push_N(time_s)`.
 std::vector<TickRecord> pushed(const Task& task, const MillingSetup& setup, double seconds,
                                const std::function<double(double time_s)>& push_N) {
   constexpr double kSettles_per_s = 400;
@@ -156,14 +158,14 @@ Cut at_push(const Task& task, const MillingSetup& setup, double push_N, double s
   return mean_cut(pushed(task, setup, seconds, [=](double) { return push_N; }), setup, task.along_W);
 }
 
-// A twist drill of two lips.
+// A twist drill with two lips.
 MillingSetup drill(double radius_mm, double speed_rpm) {
   MillingSetup setup = program(radius_mm, speed_rpm, false);
   setup.chip_edges = 2;
   return setup;
 }
 
-// The law of a material of its own, from two torques of a drill.
+// Sets the chip law of a material so that it reproduces two torques of a drill.
 MillingSetup through_torques(MillingSetup setup, double torque_a_Nmm, double torque_c_Nmm) {
   constexpr double kRadius_mm = 1.6, kFeed_mm_s = 2, kSpeedA_rpm = 1000, kSpeedC_rpm = 1500, kChip_mm = 0.048;
   const auto energy = [&](double torque_Nmm, double rpm) {
@@ -226,7 +228,7 @@ void add_drills(Section& section) {
 }
 
 void add_saws(Section& section) {
-  // A cut of a depth h is a feed of h in a turn.
+  // A cut of depth h is a feed of h per turn.
   const MillingSetup saw = program(1.5, 6000, false);
   const auto force = [&](double chip_um) {
     return at_feed(saw, 1e-3 * chip_um * saw.cutting.spindle_speed_rpm / 60).force_N;
@@ -242,7 +244,7 @@ void add_saws(Section& section) {
       thick_N / force(2.5));
 }
 
-// Returns the force along the feed of a burr that mills a wall beside it, with or against its turning.
+// Returns the force along the feed of a burr that mills a wall beside it, in climb or conventional milling.
 double feed_force_N(bool climbs) {
   constexpr double kRadius_mm = 1.5, kDeep_mm = 0.4, kFeed_mm_s = 2, kWay_mm = 4;
   GridGeometry geometry = centred_cube(80, 0.1);
@@ -291,9 +293,9 @@ void add_spindles(Section& section) {
     setup.handpiece = handpiece;
     return setup;
   };
-  // Pushed harder in each run, through a plate that is longer than it cuts, until it stands at the end. A
-  // hand that follows the bone late lets it run down before its stall, so the torque there is that of the
-  // line through the first and the last run.
+  // Pushes harder in each run, in a plate longer than the cut, until the spindle stands still at the end. A
+  // device that lags behind the bone stops it before its stall torque, so the stall torque is extrapolated
+  // from the first and the last run.
   constexpr double kTurbineBurr_mm = 0.8, kStep_N = 0.25, kMost_N = 20, kRun_s = 1.5, kEnd_s = 0.3;
   constexpr int kPlate_voxels = 900;
   const Task plate = side_cut(kTurbineBurr_mm, kPlate_voxels);

@@ -17,7 +17,7 @@ struct OnAPlane {
   double tool_depth_mm;
 };
 
-// One press of the burr on a plane of random slope, `depth_mm` deep, the shaft within 40 degrees of upright.
+// Presses the burr `depth_mm` deep on a plane of random slope, the shaft within 40 degrees of the normal.
 OnAPlane press(std::string_view algorithm, double stiffness, double depth_mm, double edge_voxels,
                const std::vector<HapticSettings::Named>& named, SeededRandom& random) {
   using namespace testing_support;
@@ -43,7 +43,7 @@ void line_proxy_rows(Section& section) {
     std::vector<double> sideways;
     for (int n = 0; n < kPlanes; ++n) {
       const double depth = random.uniform(0.2, 1.2);
-      // The spring acts on the centreline's tip: its depth is the centre's own.
+      // The spring acts on the centreline's tip, so the depth is the centre's.
       const OnAPlane felt =
           press("line-proxy", 1, depth + MillingTool{}.burr_radius_mm, edge_voxels, {}, random);
       errors.push_back(std::abs(felt.along_N / depth - 1));

@@ -8,7 +8,7 @@
 
 namespace osteomill::verification {
 
-/// Calls `job(0)` to `job(count - 1)`, as many at a time as there are cores. Throws what the first job threw.
+/// Calls `job(0)` to `job(count - 1)`, one per core at a time. Rethrows the first exception of a job.
 inline void in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
   run_in_parallel(count, allowed_threads(), job, [](std::size_t) {});
 }

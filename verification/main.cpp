@@ -1,5 +1,6 @@
 // Measures what osteomill promises of its forces and its milling, and writes the tables of
-// docs/verification.md. Exit code 0 if everything holds that must, 3 if something does not.
+// docs/verification.md. Exit code 0 if all judged rows hold, 3 if any misses, 1 for faulty input, 2 for
+// faulty options.
 #include <chrono>
 #include <ctime>
 #include <exception>
@@ -116,7 +117,7 @@ bool wanted(const Options& options, const Named& section) {
          std::find(options.only.begin(), options.only.end(), section.name) != options.only.end();
 }
 
-// Measures the sections that are wanted and for which the scans are there.
+// Measures the selected sections, except those whose scan is missing.
 MeasuredSections measure(const Options& options) {
   const Bones bones = load_bones(options);
   MeasuredSections measured;

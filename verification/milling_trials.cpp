@@ -15,14 +15,14 @@ namespace {
 constexpr std::uint64_t kFirstSeed = 11;
 
 constexpr double kPushes_N[] = {1.5, 3};
-// The most that each figure of ours may be.
+// Upper limits for barrier-shell.
 constexpr double kMostHpOverMean = 0.02, kMostTorqueStep_Nmm = 0.1, kMostForceStep_N = 0.02;
 constexpr double kMinForce_N = 0.8;
 constexpr double kMinRemoved_mm3 = 30;
 constexpr double kMinTorque_Nmm = 4;
 constexpr double kPaidWithin = 0.01;
 
-// One figure over the seeds.
+// Values of each figure over the seeds.
 struct OverSeeds {
   std::vector<double> hp, torque_step, force_step, force, torque, removed, paid, step_us, milling_us;
 };
@@ -62,7 +62,7 @@ std::string lowest_and_median(const std::vector<double>& values) {
 struct Rows {
   std::vector<std::string> algorithms = algorithm_names();
   bool random_hands = false;
-  /// Whether force, torque and removal must reach what stands above too.
+  /// Also requires kMinForce_N, kMinTorque_Nmm and kMinRemoved_mm3.
   bool loaded = false;
   bool cutting_reaction = false;
   bool by_chips = false;

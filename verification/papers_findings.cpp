@@ -21,14 +21,14 @@ namespace {
 struct Hands {
   std::uint64_t first, last;
 };
-// Settings were chosen with the first, on the built-in tooth.
+// Settings were chosen with kChosenWith, on the built-in tooth.
 constexpr Hands kChosenWith{1, 8};
 constexpr Hands kOthers{9, 24};
 
 using Change = std::function<void(TrialSettings&)>;
 
-// Runs these of the paper's algorithms (numbered from 1) on the bone in every hand, algorithm 2 in every
-// grip.
+// Runs the given algorithms of the paper (numbered from 1) on the bone with every hand, algorithm 2 also with
+// every grip.
 std::vector<MeasuredRun> rows_on(const Volume& bone, Hands hands, double phase_s,
                                  const std::vector<std::size_t>& algorithms, const Change& change) {
   TrialSettings settings;
@@ -58,7 +58,7 @@ std::vector<MeasuredRun> rows_on(const Volume& bone, Hands hands, double phase_s
   return rows_on(bone, hands, phase_s, kAll, kNothing);
 }
 
-// Adds a row for each finding. Returns how many of them the hands do not settle.
+// Adds a row for each finding. Returns the number of findings that the hands do not settle.
 std::size_t add_findings(Section& section, const Volume& bone, const std::string& name, Hands hands,
                          double phase_s) {
   int number = 0;
@@ -75,10 +75,10 @@ std::size_t add_findings(Section& section, const Volume& bone, const std::string
   return unsettled;
 }
 
-// A choice that the paper leaves open, or a hand or device that it does not know, another way.
+// A change of one of the paper's open choices, of the hand or of the device.
 struct Choice {
   std::string what;
-  // Those whose trials it changes.
+  // Algorithms whose trials it changes, numbered from 1.
   std::vector<std::size_t> algorithms;
   Change change;
 };
@@ -134,8 +134,8 @@ double median_of(const Study& study, std::size_t algorithm, std::string_view pha
       .median;
 }
 
-// Adds a row: how many findings hold, the numbers of those that do not, and the figures that the choices
-// change. Returns how many hold.
+// Adds a row: the number of findings that hold, the numbers of the others, and the figures that the choices
+// change. Returns the number that hold.
 std::size_t add_choice(Section& section, const std::string& name, std::vector<MeasuredRun> rows) {
   const Study study(std::move(rows));
   std::vector<std::size_t> missing;
@@ -158,7 +158,8 @@ std::size_t add_choice(Section& section, const std::string& name, std::vector<Me
   return findings.size() - missing.size();
 }
 
-// Returns how many findings hold on this bone with the choice that leaves the fewest.
+// Adds a row for each choice. Returns, as text, the fewest findings that hold and the choice that leaves
+// them.
 std::string add_choices(Section& section, const Volume& bone, const std::string& name, double phase_s) {
   const std::vector<MeasuredRun> as_it_is = rows_on(bone, kChosenWith, phase_s);
   std::size_t fewest = add_choice(section, fmt::format("{}, unchanged", name), as_it_is);

@@ -15,16 +15,17 @@ namespace osteomill::verification {
 inline constexpr double kTick_s = 1e-3;
 inline constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// A unit vector, evenly over the sphere.
+/// Returns a unit vector, uniformly distributed over the sphere.
 Vec3 random_direction(SeededRandom& random);
 Quat random_orientation(SeededRandom& random);
 
-/// The algorithm with its defaults except `named`, ready to feel the volume, which must outlive it.
+/// Returns the algorithm, prepared for the volume, with default settings except the stiffness and `named`.
+/// The volume must outlive it.
 std::unique_ptr<HapticAlgorithm> prepared(std::string_view algorithm, const Volume& volume,
                                           const MillingTool& tool, double stiffness_N_per_mm,
                                           std::vector<HapticSettings::Named> named = {});
 
-/// Moves the device from `from_W` to `to_W` in moves of 0.02 mm and waits there; the last step.
+/// Moves the device from `from_W` to `to_W` in steps of 0.02 mm and waits there. Returns the last step.
 HapticStep approach(HapticAlgorithm& algorithm, const Vec3& from_W, const Vec3& to_W,
                     const Quat& orientation);
 

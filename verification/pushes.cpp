@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kBatch = 250;
 
-// A way for the tool to come at the bone: from free space, along a line, at a speed.
+// A straight approach of the tool from free space.
 struct Push {
   Pose X_W_start;
   Vec3 direction_W;
@@ -22,7 +22,8 @@ struct Push {
   double speed_mm_s;
 };
 
-// Towards a random point of the surface, from any side, the shaft any way; begun a little before it touches.
+// Returns a push towards a random surface point, in a random direction and orientation, that starts shortly
+// before contact.
 Push random_push(const BoneSurface& surface, const PushKind& kind, SeededRandom& random) {
   const MillingTool& tool = kind.tool;
   Push push;
@@ -32,7 +33,7 @@ Push random_push(const BoneSurface& surface, const PushKind& kind, SeededRandom&
   push.X_W_start.orientation = random_orientation(random);
   push.force_N = random.uniform(kind.min_N, kind.max_N);
   push.speed_mm_s = random.uniform(kind.min_mm_s, kind.max_mm_s);
-  // The tool grown by 0.3 mm, from far outside up to where it first meets bone.
+  // Brings a tool grown by 0.3 mm from far outside to its first contact.
   const MillingTool grown{tool.burr_radius_mm + 0.3, tool.shaft_radius_mm + 0.3, tool.shaft_length_mm + 0.3};
   for (double back_mm = 45; back_mm > 0; back_mm -= 0.5) {
     const Vec3 next = aim - back_mm * push.direction_W;

@@ -8,7 +8,7 @@
 
 namespace osteomill::verification {
 
-/// Pushes of a handle by a hand: how hard, how fast, with which tool.
+/// Tool, forces and speeds of random pushes by a hand.
 struct PushKind {
   MillingTool tool;
   double min_N = 2;
@@ -17,7 +17,7 @@ struct PushKind {
   double max_mm_s = 300;
 };
 
-/// How far past the surface something came, at any time and at the end.
+/// Largest and final depth past the surface, mm; negative outside.
 struct Depth {
   double ever_mm = -1;
   double at_end_mm = -1;
@@ -28,7 +28,7 @@ struct Depth {
   }
 };
 
-/// How deep the simulated tool came, as its centreline and with its radii.
+/// Depths of the simulated tool, taken as its centreline and with its radii.
 struct PushOutcome {
   Depth centreline;
   Depth tool;
@@ -36,13 +36,13 @@ struct PushOutcome {
 
 inline constexpr int kTicksBetweenLooks = 4;
 
-/// Returns the outcomes of pushes against a bone, equal for each algorithm: towards random points of its
-/// surface, from any side and in any pose, each begun in free space; checked every `kTicksBetweenLooks` ticks
-/// independently of the algorithm.
+/// Pushes towards random points of the bone's surface, from any side and in any pose, starting in free space.
+/// Every algorithm gets the same pushes. Depths are checked every `kTicksBetweenLooks` ticks, independently
+/// of the algorithm.
 std::vector<PushOutcome> push_outcomes(std::string_view algorithm, const Volume& bone,
                                        const BoneSurface& surface, const PushKind& kind, int count);
 
-/// Returns how many came deeper than `limit_mm` at some time or at the end.
+/// Counts the outcomes of which the selected depth exceeds `limit_mm`.
 std::size_t count_deeper(const std::vector<PushOutcome>& all, Depth PushOutcome::*what, double Depth::*when,
                          double limit_mm);
 

@@ -12,10 +12,10 @@ namespace osteomill::verification {
 namespace {
 
 constexpr double kDeepest_mm = 0.3;
-// The shaft lies with its middle in the surface: whatever is deeper is through.
+// At this depth the shaft's axis is in the surface; deeper counts as through.
 constexpr double kThrough_mm = 0.99;
 
-// "end deeper / ever deeper / through at the end".
+// Returns "end deeper / ever deeper / through at the end".
 std::string counts(const std::vector<PushOutcome>& all, Depth PushOutcome::*depths) {
   return fmt::format("{} / {} / {}", count_deeper(all, depths, &Depth::at_end_mm, kDeepest_mm),
                      count_deeper(all, depths, &Depth::ever_mm, kDeepest_mm),

@@ -8,31 +8,32 @@
 
 namespace osteomill::verification {
 
-/// One table of docs/verification.md: what was measured, how, and whether it is what it must be.
+/// One table of docs/verification.md, with its description and the rows that miss.
 struct Section {
   std::string title;
-  /// Markdown: what must hold, and how it was measured.
+  /// Conditions that must hold, and the method of measurement, in Markdown.
   std::string about;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
-  /// The rows, by their first cell, that are not what they must be.
+  /// First cells of the rows that miss.
   std::vector<std::string> misses;
-  /// The condition on its rows that the summary must name beside their number; empty for none.
+  /// Reservation that the summary prints after the number of rows; empty if there is none.
   std::string reservation = {};
 
-  /// Adds a row; a last cell says whether it holds.
+  /// Adds a row, with its verdict as an additional last cell.
   void add(std::vector<std::string> cells, bool holds);
-  /// Adds a row of an algorithm: of ours as `add` does; those of the paper are reported, whatever they do.
+  /// Adds a row of an algorithm. Rows of the default algorithm are judged as by `add`; others are only
+  /// reported.
   void add_of(std::string_view algorithm, std::vector<std::string> cells, bool holds);
 };
 
-/// The section as Markdown.
+/// Returns the section as Markdown.
 std::string to_markdown(const Section& section);
 
-/// A number with three significant digits; "-" for what could not be measured.
+/// Returns the number with three significant digits, or "-" for NaN.
 std::string figure(double value);
 
-/// "median (worst)" of figures that must be small.
+/// Returns "median (worst)", for figures of which smaller is better.
 std::string median_and_worst(std::vector<double> values);
 
 }  // namespace osteomill::verification

@@ -8,23 +8,23 @@
 
 #include "verification/section.h"
 
-// Declares the tables of docs/verification.md, a function for each. Except for compute times each is equal on
-// any machine.
+// The tables of docs/verification.md, a function for each. Except for compute times they are the same on any
+// machine.
 namespace osteomill::verification {
 
-/// The bones that are milled and pushed against.
+/// Bones used by the sections.
 struct Bones {
   Volume tooth;
   std::string tooth_name;
-  /// A second scan, on which no setting was chosen.
+  /// Second scan, not used to choose settings.
   std::optional<Volume> second;
   std::string second_name;
-  /// Micro-CT of spongy bone.
+  /// Micro-CT of spongy bone; none skips its section.
   std::optional<Volume> spongy;
   std::string spongy_name;
 };
 
-/// How much to do: the counts of the full run, or of a quick look.
+/// Amount of work; the defaults are those of the full run.
 struct Effort {
   int pushes = 10000;
   int seeds = 5;
@@ -33,7 +33,7 @@ struct Effort {
 };
 
 Section force_on_planes();
-/// Compares the law of chips and the spindles with published measurements.
+/// Compares the chip law and the spindles with published measurements.
 Section force_against_feed();
 Section shaft_levers();
 Section slide_round_a_ball();
@@ -47,7 +47,7 @@ Section tools_and_pushes(const Bones& bones, const Effort& effort);
 Section breaking_through(const Effort& effort);
 /// Measures the paper's findings with the algorithms as published.
 Section papers_findings(const Bones& bones, const Effort& effort);
-/// Measures them with one choice changed that the paper leaves open.
+/// Measures the findings with one of the paper's open choices, the hand or the device changed.
 Section papers_choices(const Bones& bones, const Effort& effort);
 Section energy_of_barrier_shell(const Bones& bones, const Effort& effort);
 Section the_rig_itself(const Bones& bones, const Effort& effort);
@@ -59,7 +59,7 @@ Section haptic_rates(const Bones& bones, const Effort& effort);
 Section random_pushes(const Bones& bones, const Effort& effort);
 Section milling_the_tooth(const Bones& bones, const Effort& effort);
 Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort);
-/// Measures what updates of bone in turns would do to the torque.
+/// Measures the torque's amplitude at half the haptic rate.
 Section no_rhythm_of_its_own(const Bones& bones, const Effort& effort);
 Section milling_the_second_scan(const Bones& bones, const Effort& effort);
 Section soak(const Bones& bones, const Effort& effort);

@@ -18,8 +18,8 @@ struct OnAnEdge {
   bool turns_away;
 };
 
-// The shaft alone, 0.3 mm deep on the crest of a square edge, `lever_mm` from the burr; the scene is turned
-// at random against the grid.
+// Presses the shaft 0.3 mm deep on the crest of a square edge, `lever_mm` from the burr, in a scene rotated
+// randomly against the grid.
 OnAnEdge press(std::string_view algorithm, double lever_mm, double edge_voxels, SeededRandom& random) {
   using namespace testing_support;
   const Quat turn = random_orientation(random);

@@ -25,7 +25,8 @@ struct Slide {
   double largest_step_N = 0;
 };
 
-// From 50 degrees on one side over the top to 50 on the other, the shaft upright, in the plane at `azimuth`.
+// Slides from 50 degrees on one side over the top to 50 on the other, the shaft upright, in the plane at
+// `azimuth`.
 void slide(std::string_view algorithm, const Volume& ball, double ball_mm, double azimuth, Slide& felt) {
   const MillingTool tool;
   const auto haptics = prepared(algorithm, ball, tool, 1);

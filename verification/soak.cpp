@@ -30,7 +30,7 @@ constexpr double kTick_s = 1e-3;
 constexpr double kCycle_s = 20;
 
 double resident_MiB() {
-  // Freed memory must not count as in use.
+  // Returns freed memory to the system, so that it is not counted.
   ::malloc_trim(0);
   std::ifstream in("/proc/self/statm");
   double all_pages = 0, pages = 0;
@@ -38,7 +38,7 @@ double resident_MiB() {
   return pages * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
-// Holds the figures of a part of the hour.
+// Figures of one part of the session.
 struct Stretch {
   double force_sum_N = 0, force_max_N = 0, torque_max_Nmm = 0, apart_max_mm = 0, energy_max_Nmm = 0;
   std::size_t ticks = 0;
@@ -56,8 +56,8 @@ struct Stretch {
   }
 };
 
-// Mills a bone and holds against it in cycles, by a hand that the seed draws again for each; between two
-// cycles the algorithm is changed, the cycle undone or the tool placed at the beginning again.
+// Mills a bone and holds against it in cycles, each with a hand drawn by its seed. Between cycles it changes
+// the algorithm, undoes the cycle, or places the tool at the start again.
 class Soak {
  public:
   Soak(const Volume& scan, const std::filesystem::path& path)
@@ -99,12 +99,12 @@ class Soak {
     }
   }
 
-  // Returns the memory that must not grow in an hour: that of one algorithm on the present bone.
+  // Returns the memory that must not grow: that of one algorithm on the current bone.
   double memory_MiB() {
     switch_to(bone_, "line-proxy", session_->removed_mm3(), session_->handover());
     return resident_MiB();
   }
-  // Starts from the scan without any state of the last session.
+  // Restarts from the scan, without any state of the last session.
   void reset() { switch_to(std::make_shared<Volume>(scan_), "line-proxy", 0, {}); }
   void close() { recorder_->close(); }
   double time_s() const { return time_s_; }
@@ -188,7 +188,7 @@ Section soak(const Bones& bones, const Effort& effort) {
                  : is_last  ? &last
                             : nullptr);
     }
-    // In memory from now on, as what the last cycle keeps.
+    // Takes the last cycle's memory now, so that it counts from the first part on.
     if (n == 0) last = first;
     const double now_MiB = soak.memory_MiB();
     if (n == 0) memory_MiB = now_MiB;

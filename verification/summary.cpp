@@ -52,7 +52,7 @@ const std::vector<Question>& questions() {
   return all;
 }
 
-// Returns the link to a heading of the page, as GitHub makes its name.
+// Returns a link to a heading of the page, with GitHub's anchor.
 std::string link_to(const std::string& title) {
   std::string anchor;
   for (const char c : title) {
@@ -71,7 +71,7 @@ std::size_t rows_with(const Section& section, const std::string& verdict) {
       section.rows, [&](const auto& row) { return !row.empty() && row.back() == verdict; }));
 }
 
-// Returns the question's row of the table; an empty text if none of its sections was measured.
+// Returns the question's row of the table, or an empty text if none of its sections was measured.
 std::string row_of(const Question& question, const MeasuredSections& measured) {
   std::vector<std::string> links;
   std::string reservations;

@@ -8,11 +8,11 @@
 
 namespace osteomill::verification {
 
-/// Holds the sections that were measured, each with its name on the command line, in the order of the page.
+/// Measured sections with their names on the command line, in the order of the page.
 using MeasuredSections = std::vector<std::pair<std::string, Section>>;
 
-/// Returns the head of docs/verification.md: how to read it, and for each question its sections, how many of
-/// their rows hold, with which reservations, and which miss.
+/// Returns the head of docs/verification.md: an introduction; for each question its sections, the number of
+/// rows that hold, and reservations; and the rows that miss.
 std::string summary(const MeasuredSections& measured);
 
 }  // namespace osteomill::verification

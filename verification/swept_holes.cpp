@@ -21,7 +21,7 @@ using testing_support::Carving;
 
 constexpr double kVolumeWithin = 0.02;
 constexpr double kPaidWithin = 0.01;
-// Largest difference between the shares cut with one burr and push.
+// Largest difference between the cut shares of holes with the same burr and push.
 constexpr double kAlikeWithin = 0.015;
 
 struct Hole {
@@ -29,7 +29,7 @@ struct Hole {
   Vec3 spacing_mm = Vec3::Constant(0.2);
   double burr_radius_mm = 1.5;
   double push_N = 1.5;
-  // Side of the block, mm, and length of the run as a share of the usual one.
+  // Side of the block, mm, and duration relative to the usual one.
   double side_mm = 10;
   double time = 1;
   Quat turn = Quat::Identity();
@@ -51,7 +51,7 @@ std::vector<Hole> holes() {
           {"0.20 mm, 9 N", Vec3::Constant(0.2), 1.5, 9, 16, 0.7}};
 }
 
-// Turned with its grid, so that an entry is found as in the straight one.
+// Returns a block that is rotated with its grid, so that an entry is found as in the unrotated one.
 Volume block(const Hole& hole) {
   GridGeometry grid;
   grid.spacing_mm = hole.spacing_mm;
@@ -99,7 +99,7 @@ Milled mill(const Hole& hole, double seconds) {
   return {testing_support::carving(bone, trial.volume(), path), removed_mm3 / paid_for_mm3};
 }
 
-// Adds a row for the holes that differ only in their voxels.
+// Adds a row that compares the holes that differ only in voxel size.
 void add_all_voxels(Section& section, const std::vector<Hole>& holes, const std::vector<Milled>& milled) {
   const Hole usual{};
   std::vector<double> shares;

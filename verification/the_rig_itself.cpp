@@ -9,8 +9,8 @@ namespace osteomill::verification {
 
 namespace {
 
-// The force above 20 Hz over its mean may be so much more than with the spindle off: what two runs of one
-// hand differ by.
+// Largest ratio of force above 20 Hz over its mean with the spindle on to that with it off; two runs of one
+// hand differ by as much.
 constexpr double kNoExcess = 1.05;
 
 }  // namespace

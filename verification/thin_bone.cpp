@@ -21,7 +21,7 @@ constexpr double kVoxel_mm = 0.25;
 
 struct Way {
   const char* name;
-  /// The shaft's lean from straight up, degrees.
+  /// Angle of the shaft from upright, degrees.
   double min_lean_deg;
   double max_lean_deg;
 };
@@ -39,7 +39,7 @@ double lowest_mm(const Pose& X_WT, const MillingTool& tool) {
   return std::min(X_WT.position_mm.z(), (X_WT * Vec3(0, 0, tool.shaft_length_mm)).z());
 }
 
-// Returns whether the simulated tool's centreline ends beyond the sheet that the device was pushed through.
+// Returns true if the simulated tool's centreline ends beyond the sheet that the device was pushed through.
 bool goes_through(HapticAlgorithm& algorithm, const MillingTool& tool, const Way& way, double thick_mm,
                   SeededRandom& random) {
   algorithm.reset();
@@ -48,7 +48,7 @@ bool goes_through(HapticAlgorithm& algorithm, const MillingTool& tool, const Way
   const double speed_mm_s = 20 * std::pow(15, random.uniform(0, 1));
   Pose X_WD;
   X_WD.orientation = quaternion_from_rotation_vector(lean * Vec3(std::cos(about), std::sin(about), 0));
-  // The middle of the tool over the middle of the sheet, a little above it.
+  // Starts with the middle of the tool slightly above the middle of the sheet.
   X_WD.position_mm = -(X_WD.orientation * Vec3(0, 0, 0.5 * tool.shaft_length_mm));
   X_WD.position_mm.z() = 0;
   X_WD.position_mm.z() = tool.burr_radius_mm + 1.5 - lowest_mm(X_WD, tool);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPaidWithin = 0.01;
 constexpr double kDeepest_mm = 0.3;
-// Breaking through: what the calmest algorithm of ours did until now, and 5 %.
+// Limits when breaking through: the smallest steps that one of our algorithms had reached, plus 5 %.
 constexpr double kMostForceStep_N = 0.052;
 struct MostTorqueStep {
   double push_N, step_Nmm;
@@ -57,7 +57,7 @@ Section tools_and_pushes(const Bones& bones, const Effort& effort) {
       kind.tool = cases[n].tool;
       kind.min_N = 0.5;
       kind.max_N = 9;
-      // The pushes do not depend on the milling hand's push: once a tool.
+      // The pushes do not depend on the milling hand's push, so they run once per tool.
       const bool is_first = n < 4;
       std::string felt = "-";
       std::size_t ever = 0;

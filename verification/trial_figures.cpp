@@ -37,7 +37,7 @@ TrialSettings settings_of(const TrialVariant& variant) {
   return settings;
 }
 
-// Returns the amplitude of what alternates from tick to tick in the worst window.
+// Returns the amplitude of the component that alternates from tick to tick, in the worst window.
 double half_rate_Nmm(const std::vector<TickRecord>& records, double tick_s) {
   constexpr double kWindow_s = 0.1, kLeaning_Nmm = 1;
   const auto window = static_cast<std::size_t>(std::lround(kWindow_s / tick_s));

@@ -12,49 +12,49 @@
 
 namespace osteomill::verification {
 
-/// How a trial differs from the default one.
+/// Differences of a trial from the default one.
 struct TrialVariant {
   std::string algorithm = default_algorithm().id.name;
   double push_N = 1.5;
   std::uint64_t seed = 1;
   double phase_s = 20;
   double tick_s = 1e-3;
-  /// A hand drawn by the seed instead of the default one.
+  /// Draws the hand by the seed instead of using the default one.
   bool random_hand = false;
-  /// False lets the hand go through its motions without removing bone.
+  /// If false, the hand makes the same motions without removing bone.
   bool spindle = true;
-  /// The steps of the handle's encoder; 0 reads without rounding.
+  /// Steps of the handle's encoder; 0 disables rounding.
   double encoder_mm = HandleSettings{}.position_step_mm;
   double encoder_rad = HandleSettings{}.rotation_step_rad;
-  /// True has the hand feel what cutting does to the burr (CuttingReaction).
+  /// Adds the cutting reaction (CuttingReaction) to the wrench.
   bool cutting_reaction = false;
-  /// True cuts by chips with a surgical drill, and has the hand feel the reaction and the drag.
+  /// Cuts by the chip law with a surgical drill, with cutting reaction and drag.
   bool by_chips = false;
   std::vector<HapticSettings::Named> named = {};
   MillingTool tool = {};
 };
 
-/// One algorithm's milling in the test of section 8.2.
+/// Figures of one algorithm's milling phase in the test of section 8.2.
 struct TrialFigures {
   RunMetrics metrics;
-  /// Removed volume / (kappa times the integral of the paying part of the burr's force); with chips not a
-  /// number.
+  /// Removed volume / (kappa times the integral of the paying part of the burr's force); NaN with the chip
+  /// law.
   double paid_share = 0;
-  /// The amplitude of the torque at half the haptic rate, in the worst 0.1 s of leaning.
+  /// Amplitude of the torque at half the haptic rate, in the worst 0.1 s of leaning.
   double half_rate_Nmm = 0;
-  /// Counts of barrier-shell; none for other algorithms.
+  /// Set for barrier-shell only.
   std::optional<barrier_shell::Counts> counts;
-  /// Time of each tick's milling, with everything that follows the volume, us.
+  /// Time per tick for milling and the updates that follow a change of the volume, us.
   Distribution milling_us;
 
   double hp_over_mean() const { return metrics.force_N.hp_rms / metrics.force_N.mean; }
 };
 
-/// Runs the milling phase on a copy of the bone, from its top downwards. Throws std::invalid_argument if
-/// settings do not go together, InputError if the bone has no place to enter.
+/// Runs the milling phase on a copy of the bone, from its top downwards. Throws std::invalid_argument if the
+/// settings contradict each other, InputError if the bone has no entry for the tool.
 TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant);
 
-/// The figures of all variants, in their order, as many at a time as there are cores.
+/// Returns the figures of all variants, in their order. Runs one trial per core at a time.
 std::vector<TrialFigures> milling_figures(const Volume& bone, const std::vector<TrialVariant>& variants);
 
 }  // namespace osteomill::verification

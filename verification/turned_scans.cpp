@@ -15,7 +15,8 @@ constexpr int kTicks = 400;
 constexpr double kBall_mm = 5;
 constexpr double kHole_mm = 2;
 
-// A ball with a hole from its top, in which the burr can stand and the shaft lean on the rim.
+// Signed distance to a ball with a hole from its top, in which the burr can stand while the shaft leans on
+// the rim.
 double distance_to_holed_ball_mm(const Vec3& p) {
   const double above_floor = std::max(0.0, -p.z());
   const double into_hole = kHole_mm - std::hypot(p.x(), p.y(), above_floor);
@@ -32,7 +33,7 @@ Volume holed_ball(const Quat& turn, bool grid_turns_too) {
   return shape_volume(grid, [&](const Vec3& p) { return distance_to_holed_ball_mm(turn.conjugate() * p); });
 }
 
-// Down onto the hole's floor, a little into it, then over until the shaft is against the rim.
+// Path of the tool: down, slightly into the hole's floor, then tilting until the shaft presses on the rim.
 Pose stand_and_lean(double progress) {
   const double down = std::min(1.0, 2 * progress);
   const double lean = std::max(0.0, progress - 0.5);
@@ -44,8 +45,8 @@ struct Difference {
   double torque_share;
 };
 
-// The greatest difference of two runs whose bones and poses differ by `turn`, as shares of the greatest
-// wrench.
+// Returns the largest differences between two runs whose bones and poses differ by the rotation `turn`,
+// relative to the largest wrench.
 Difference difference(std::string_view algorithm, const Volume& straight, const Volume& turned,
                       const Quat& turn) {
   const MillingTool tool;

@@ -28,7 +28,7 @@ Volume block(double spacing_mm) {
       kEdge_mm / spacing_mm);
 }
 
-// The volume (mm^3 of full density) that the trial took out of the block, counted from what is left.
+// Returns the volume removed from the block, mm^3 of full density, counted from the remaining densities.
 double hole_mm3(double spacing_mm, double seconds) {
   const Volume bone = block(spacing_mm);
   TrialSettings settings;
