@@ -1,5 +1,5 @@
 // Measures what osteomill promises of its forces and its milling, and writes the tables of
-// docs/verification.md. Exit code 0 if all judged rows hold, 3 if any misses, 1 for faulty input, 2 for
+// docs/verification.md. Exit code 0 if all judged rows hold, 3 if any misses, 1 after an error, 2 for
 // faulty options.
 #include <chrono>
 #include <ctime>
