@@ -56,8 +56,8 @@ struct Stretch {
   }
 };
 
-// Mills a bone and holds against it in cycles, each with a hand drawn by its seed. Between cycles it changes
-// the algorithm, undoes the cycle, or places the tool at the start again.
+// Mills a bone and holds against it in cycles, each with a hand drawn by its seed. Places the tool at
+// the entry before each cycle; after it changes the algorithm, undoes the cycle, or continues.
 class Soak {
  public:
   Soak(const Volume& scan, const std::filesystem::path& path)
@@ -71,7 +71,7 @@ class Soak {
     recorder_ = std::make_unique<Recorder>(path, description());
   }
 
-  // With which hand the bone is milled, and after that what is done.
+  // Runs a cycle. `seed` draws the hand and the action after the cycle.
   void cycle(unsigned seed, Stretch& stretch, std::vector<TickRecord>* kept = nullptr) {
     std::mt19937 random(seed);
     OperatorSettings person;
