@@ -12,25 +12,25 @@
 
 namespace osteomill {
 
-/// Measurements beside the recordings.
+/// Measurements in addition to the recordings.
 struct ReportExtras {
-  /// Runs in other hands, grips and tremors than the recordings'.
+  /// Runs in other hands, grips and tremors than those of the recordings.
   std::vector<MeasuredRun> others;
   std::vector<PassivityRow> passivity;
-  /// Holdings of all algorithms in the same hole, of each hand (hold_in_one_hole).
+  /// Holds of all algorithms in the same hole, for each hand (hold_in_one_hole).
   std::vector<MeasuredRun> in_one_hole;
 };
 
-/// Returns whether these are recordings of the test of section 8.2, and not of anything else that was milled.
+/// Returns whether these recordings are of the test of section 8.2.
 bool are_of_comparison(const std::vector<Recording>& recordings);
 
-/// Writes the report of any session (write_report) with what the test of section 8.2 adds: what was compared
-/// and the verdict ahead of all, the paper's findings held against it, and a section on each of the extras.
-/// Their numbers go into study.csv, stability.csv and one-hole.csv, which are written even if the report
-/// fails. If no extras are `measured`, these tables are read where they stand beside the recordings and are
-/// of the same comparison, so that the page is the one that the comparison had. Draws no conclusions from
-/// recordings that differ in more than the algorithm (differences_table). Returns the page's path, and puts
-/// the results, the tables at its top, into `came_out`. Throws as write_report does.
+/// Writes the report of any session (write_report) plus the parts of the test of section 8.2: first what was
+/// compared and the verdict, then the paper's findings tested on it, and a section on each of the extras.
+/// Writes their numbers to study.csv, stability.csv and one-hole.csv even if the report fails. Without
+/// `measured`, reads these tables if they are next to the recordings and of the same comparison, so that the
+/// page is the same as the comparison's own. Draws no conclusions from recordings that differ in more than
+/// the algorithm (differences_table). Returns the page's path, and puts the tables of results at its top into
+/// `came_out`. Throws as write_report.
 std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
                                               const std::filesystem::path& out_dir,
                                               const std::optional<ReportExtras>& measured = {},

@@ -11,22 +11,21 @@
 
 namespace osteomill {
 
-/// Returns how much of the surface that milling left, by the voxels along it, the camera sees: 1 if nothing
-/// was milled. `milled` was the bone before and was only milled since. Not for the tick.
+/// Returns the fraction of the surface exposed by milling, counted in voxels, that the camera sees; 1 if no
+/// bone was removed. `milled` must be `before` with bone removed. Not real-time safe.
 double share_seen(const Volume& before, const Volume& milled, const Camera& camera);
 
-/// Takes PNGs of a bone from obliquely above an entry, before milling and after it, all from the same view,
-/// those of a patient with the letters of the patient's directions. If OpenGL cannot be had there are none,
-/// and a warning says so.
+/// Renders PNGs of a bone from obliquely above an entry, before and after milling, from the same view, with
+/// direction letters if the bone is a patient's. Renders none, with a warning, if OpenGL is not available.
 class EntryPictures {
  public:
   EntryPictures(const Volume& before, double reference_density, const MillingEntry& entry,
                 const RunEvents& events, bool of_patient = false);
 
   bool can_be_had() const { return before_.has_value(); }
-  /// Returns a recording's picture of this name: before, after, or straight along the entry, which there is
-  /// only if fewer than half of what milling left of the surface is seen in the others, as behind a ridge.
-  /// Nothing if OpenGL failed since.
+  /// Returns a recording's picture of this name: before, after, or straight along the entry. The last exists
+  /// only if the others show less than half of the milled surface, e.g. behind a ridge. Returns nothing if
+  /// OpenGL has failed since construction.
   std::optional<std::vector<unsigned char>> of(std::string_view name, const Volume& milled,
                                                const RunEvents& events) const;
 

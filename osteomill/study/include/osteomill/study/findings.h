@@ -10,28 +10,26 @@
 
 namespace osteomill {
 
-/// The number of findings that check_findings() returns.
+/// /// Number of findings that check_findings() returns.
 inline constexpr std::size_t kFindings = 9;
 
-/// The verdict on a Finding. `not_settled`: the recordings speak neither for it nor against it;
-/// `not_recorded`: runs that it needs are not there; `too_little_contact`: a run that it needs had not enough
-/// contact.
+/// Verdict on a Finding. `not_settled`: the recordings neither support nor contradict it; `not_recorded`:
+/// runs that it needs are missing; `too_little_contact`: a run that it needs has too little contact.
 enum class Verdict : unsigned char { agrees, does_not_agree, not_settled, not_recorded, too_little_contact };
 
 /// Returns "agrees", "does not agree", "not settled", "not recorded" or "too little contact".
 std::string_view name_of(Verdict verdict);
-/// Returns whether the recordings sufficed to apply the finding's rule.
+/// Returns whether the recordings were sufficient to apply the finding's rule.
 inline bool is_tested(Verdict verdict) {
   return verdict <= Verdict::not_settled;
 }
 
-/// One thing that the paper says it found, held against the recordings by a rule that is stated
-/// (check_findings()).
+/// A claim of the paper, tested on the recordings by an explicit rule (check_findings()).
 struct Finding {
-  /// In its own words, restored where its text has gaps.
+  /// The paper's own words, restored if its text has gaps.
   std::string paper_says;
   std::string rule;
-  /// The numbers that the rule was applied to, and which of their runs did not reach all of their plan.
+  /// The numbers that the rule was applied to, and which of their runs did not complete their plan.
   std::string measured;
   Verdict verdict = Verdict::not_recorded;
 };
@@ -40,23 +38,23 @@ struct Finding {
 /// damping (gripping, hand.h).
 inline constexpr std::array<double, 3> kGrips{0.5, 1, 2};
 
-/// Algorithm 2's force while it is held in one grip.
+/// Force of algorithm 2 while holding, in one grip.
 struct GripForce {
-  /// Above 20 Hz, rms; not a number if it was not felt for long enough, in several hands by most.
+  /// Rms above 20 Hz; NaN if it was not felt long enough, or not in most of several hands.
   double hp_rms_N = 0;
-  /// The number of hands in which it was felt for long enough, and that of all.
+  /// Number of hands in which it was felt long enough, and of all hands.
   std::size_t felt = 1;
   std::size_t hands = 1;
 };
 /// One for each of `kGrips`; empty if only one grip was tried.
 using GripForces = std::vector<GripForce>;
 
-/// Returns why a figure of a run, or the median of several runs, is not a number.
+/// Returns why a figure of a run, or the median of several runs, is NaN.
 using WhyNotMeasured =
     std::function<std::string(const MeasuredRun& run, double (*figure)(const RunMetrics&))>;
 
-/// Returns the nine findings of the paper's section 8, as its text has them. One that needs runs which are
-/// not there is `not_recorded`, one that needs a run that had not enough contact `too_little_contact`.
+/// Checks the nine findings of the paper's section 8, in the order of its text. Returns `not_recorded` for
+/// one whose runs are missing, `too_little_contact` for one that needs a run with too little contact.
 std::vector<Finding> check_findings(
     const RunGroup& group, const GripForces& grips,
     const WhyNotMeasured& why = [](const MeasuredRun& run, auto) {

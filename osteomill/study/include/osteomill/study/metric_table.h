@@ -9,28 +9,28 @@
 
 namespace osteomill {
 
-/// Returns a text with its unit behind it: "force above 20 Hz, rms (N)".
+/// Returns a text followed by its unit: "force above 20 Hz, rms (N)".
 std::string with_unit(const std::string& text, const std::string& unit);
 /// Returns a field's description with its unit.
 inline std::string label_of(const FieldDescription& field) {
   return with_unit(field.doc, field.unit);
 }
 
-/// Returns the head of summary.csv, without a line end.
+/// Returns the header of summary.csv, without a line end.
 std::string summary_columns();
 /// Returns a run's row of summary.csv, without a line end.
 std::string summary_fields(const MeasuredRun& run);
 
-/// Returns the names of fields as a part of the head of a CSV file, each behind a comma.
+/// Returns the names of fields for a CSV header, each preceded by a comma.
 template <typename Struct>
 std::string csv_names(const std::vector<Field<Struct>>& fields) {
   std::string names;
   for (const Field<Struct>& metric : fields) names += "," + metric.name;
   return names;
 }
-/// Returns a number as a field of that file, behind a comma; one that is not a number is empty.
+/// Returns a number as a CSV field, preceded by a comma; the field is empty for NaN.
 std::string csv_value(double value);
-/// Returns the values of the fields of `s` as a part of a row of that file, each as `csv_value`.
+/// Returns the values of the fields of `s` for a CSV row, each as `csv_value`.
 template <typename Struct>
 std::string csv_values(const std::vector<Field<Struct>>& fields, const Struct& s) {
   std::string values;
@@ -38,8 +38,8 @@ std::string csv_values(const std::vector<Field<Struct>>& fields, const Struct& s
   return values;
 }
 
-/// Returns a table of rows: the columns of `header`, whose cells `named` gives, and then one for each field
-/// that is a number in any row.
+/// Returns a table of rows: first the columns of `header`, with cells from `named`, then a column for each
+/// field that is a number in at least one row.
 template <typename Row, typename Named>
 Table table_of(const std::vector<Row>& rows, const std::vector<std::string>& header, const Named& named) {
   Table table{header, {}, true};

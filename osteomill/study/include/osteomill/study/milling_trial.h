@@ -7,28 +7,28 @@
 
 namespace osteomill {
 
-/// All that a trial depends on but the bone and the entry. No person feels it, so that nothing but the limits
-/// stands between the algorithm and the simulated hand (GuardSettings::for_simulation).
+/// Everything that a trial depends on except for the bone and the entry. No person feels it, so only the
+/// limits apply between the algorithm and the simulated hand (GuardSettings::for_simulation).
 struct TrialSettings : MillingSetup {
   TrialSettings() : TrialSettings(MillingSetup{}) {}
   explicit TrialSettings(const MillingSetup& setup, const OperatorSettings& hand = {});
 
   OperatorSettings hand_and_device;
-  /// The damping of the device itself, for a press on a wall without a hand.
+  /// Damping of the device itself, for a press on a wall without a hand.
   double device_damping_Ns_per_mm = 0.005;
-  /// False lets the hand go through its motions without removing bone, as section 8.1 measures rates.
+  /// If false, the hand goes through its motions without removing bone, as section 8.1 measures rates.
   bool spindle = true;
 };
 
-/// Returns the CPU time that this thread has taken so far, in s. A system call, so not for the tick.
+/// Returns the CPU time of this thread, s. A system call, so not real-time safe.
 double thread_cpu_s();
 
 /// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the
-/// shaft on its edge, and then stands in it with the spindle off. The same settings give the same records on
-/// any machine, except for the compute times.
+/// shaft on its edge, and then holds still in it with the spindle off. The same settings give the same
+/// records on any machine, except for the compute times.
 class MillingTrial {
  public:
-  /// A tick of the trial.
+  /// One tick of the trial.
   struct Tick {
     TickRecord record;
     /// True in the first part of the test, false while the hand holds still.
@@ -38,16 +38,16 @@ class MillingTrial {
   /// Copies the bone. Throws std::invalid_argument if a setting is out of range.
   MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
                const TrialSettings& settings);
-  /// Goes on where `milled` is, on a copy of its bone and in a copy of its hand, with the algorithm of
-  /// `other`, whose hand, device and script do not count. Throws as the other constructor does.
+  /// Continues from the state of `milled`, on copies of its bone and its hand, with the algorithm of `other`,
+  /// whose hand, device and script are ignored. Throws std::invalid_argument if a setting is out of range.
   MillingTrial(const MillingTrial& milled, const TrialSettings& other);
 
-  /// Returns whether the next tick is of the milling, and not of the holding.
+  /// Returns whether the next tick belongs to milling rather than holding.
   bool is_milling() const { return operator_.is_spindle_requested(); }
   bool finished() const { return operator_.finished(); }
-  /// Returns what the hand could not bring about.
+  /// Returns the parts of the script that the hand did not achieve.
   const ScriptShortfall& shortfall() const { return operator_.shortfall(); }
-  /// Runs and returns the next tick; then the hand and the device move on. No allocation.
+  /// Runs and returns the next tick, then advances the hand and the device. Does not allocate.
   Tick tick();
 
   /// Returns the bone as milled so far.
@@ -55,7 +55,7 @@ class MillingTrial {
   const HapticAlgorithm& algorithm() const { return session_.algorithm(); }
 
  private:
-  // The time that it takes to move on is not the tick's.
+  // Records the time at which the tick ended: the time to advance the hand does not count.
   class TimedOperator final : public SimulatedOperator {
    public:
     using SimulatedOperator::SimulatedOperator;

@@ -6,9 +6,9 @@
 
 namespace osteomill {
 
-/// Returns the least difference between two values of this size that a hand notices, by the thresholds that
-/// `about_noticeable` lists. 0 for a figure that no hand feels, as bone removed or time. `value` has the
-/// figure's unit.
+/// Returns the smallest difference from `value` that a hand notices, by the thresholds that
+/// `about_noticeable` lists. 0 for a figure that a hand cannot feel, such as bone removed or time. `value`
+/// has the figure's unit.
 double least_noticeable(const FieldDescription& figure, double value);
 
 /// Returns a paragraph with these thresholds and their sources.

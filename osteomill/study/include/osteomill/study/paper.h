@@ -7,14 +7,14 @@
 
 namespace osteomill {
 
-/// The phase of a recording of the first part of the test of section 8.2.
+/// Phase name of a recording of the first part of the test of section 8.2.
 inline constexpr std::string_view kMilling = "milling";
-/// The phase of a recording of the second part.
+/// Phase name of a recording of the second part.
 inline constexpr std::string_view kHolding = "holding";
 /// Both phases in their order.
 inline constexpr std::array<std::string_view, 2> kPhases{kMilling, kHolding};
 
-/// Returns the place of a phase in kPhases; the one after the last for any other phase.
+/// Returns the index of a phase in kPhases; kPhases.size() for any other phase.
 inline std::size_t phase_number(std::string_view phase) {
   return static_cast<std::size_t>(std::ranges::find(kPhases, phase) - kPhases.begin());
 }

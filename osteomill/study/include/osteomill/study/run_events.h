@@ -6,14 +6,14 @@
 
 namespace osteomill {
 
-/// The reports of a long run to the caller who started it, in the caller's thread; by default they go
-/// nowhere.
+/// Callbacks of a long run; by default they do nothing. `run_trials` calls `progress` on its worker threads,
+/// one call at a time.
 struct RunEvents {
-  /// Called with what is being done, and the share of it that is done, 0 to 1.
+  /// Called with the current work and the fraction of it that is done, 0 to 1.
   std::function<void(std::string_view what, double fraction_done)> progress = [](std::string_view, double) {};
-  /// Called with a line that people should see.
+  /// Called with a line to show to the user.
   std::function<void(const std::string& line)> warn = [](const std::string&) {};
-  /// Called with a line if the burr has come into a no-go structure.
+  /// Called with a line when the burr enters a no-go structure.
   std::function<void(const std::string& line)> no_go = [](const std::string&) {};
 };
 

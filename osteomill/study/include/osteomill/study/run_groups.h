@@ -8,9 +8,10 @@
 
 namespace osteomill {
 
-/// Returns what a recording says about its run, with these figures; the result points to the recording.
+/// Returns a run with these figures and with what its recording describes; the result points to the
+/// recording.
 MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics);
-/// Returns the run with the figures of all its ticks (run_metrics, which says what it throws).
+/// Returns the run with the figures of all its ticks. Throws as run_metrics.
 MeasuredRun measured_run(const Recording& recording);
 
 /// The runs of a report, by phase, then by algorithm.
@@ -22,13 +23,13 @@ struct RunGroup {
 
   /// Returns the runs of a phase.
   std::vector<const MeasuredRun*> runs_of(std::string_view phase) const;
-  /// Returns the phases that have a run, in the order in which they began.
+  /// Returns the phases that have a run, in the order of their first runs.
   std::vector<std::string> phases() const;
   /// Returns the algorithms that have a run, in the order of their labels.
   std::vector<AlgorithmId> algorithms() const;
 };
 
-/// Measures recordings; the runs point into `recordings`. Throws InputError if there are none, if two are of
+/// Measures recordings; the runs point into `recordings`. Throws InputError if there are none, if two have
 /// the same algorithm and phase, or if one cannot be measured (run_metrics).
 RunGroup group_runs(const std::vector<Recording>& recordings,
                     MeasuredRun (*measure)(const Recording&) = measured_run);

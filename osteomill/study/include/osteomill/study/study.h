@@ -12,25 +12,25 @@
 
 namespace osteomill {
 
-/// Returns what is compared: force, torque, shaft, bone removed and compute time, in the order in which
-/// people should read them.
+/// Returns the figures to compare: force, torque, shaft, bone removed and compute time, in reading order.
 std::vector<Field<RunMetrics>> key_metrics();
 
-/// The quantity that runs are compared by: a figure, or anything else that follows from a run's figures.
+/// Quantity by which runs are compared: a figure, or anything else computed from a run's figures.
 using RunFigure = std::function<double(const RunMetrics&)>;
 
-/// Returns the first word of an algorithm's label, for narrow places: "1" of "1 line-proxy".
+/// Returns the first word of an algorithm's label, where space is short: "1" of "1 line-proxy".
 std::string short_label(const AlgorithmId& algorithm);
 
-/// Trials of several algorithms, repeated with many seeds, each seed in a hand of its own, so that algorithms
-/// can be compared seed by seed.
+/// Trials of several algorithms, repeated with many seeds, each seed being a different hand, so that
+/// algorithms can be compared seed by seed.
 class Study {
  public:
-  /// Takes rows in any order; those of other grips and tremors are kept apart. Throws std::invalid_argument
-  /// if there are none, or if a seed lacks an algorithm and phase that another has, or has it twice.
+  /// Takes rows in any order; those of other grips and tremors are kept separately. Throws
+  /// std::invalid_argument if there are none, or if a seed lacks an algorithm and phase that another has, or
+  /// has it twice.
   explicit Study(std::vector<MeasuredRun> rows);
 
-  /// Returns the rows by seed, in the order in which seeds first came; within a seed as in summary.csv.
+  /// Returns the rows by seed, in the order of first appearance; within a seed as in summary.csv.
   const std::vector<MeasuredRun>& rows() const { return rows_; }
   /// Returns the rows of hands in other grips and with other tremors.
   const std::vector<MeasuredRun>& rows_beside() const { return beside_; }
@@ -46,28 +46,28 @@ class Study {
   /// be significant.
   std::size_t seeds_needed() const;
 
-  /// Returns the key metrics without those that are zero throughout a phase (bone removed while holding).
+  /// Returns the key metrics except for those that are zero throughout a phase (bone removed while holding).
   std::vector<Field<RunMetrics>> metrics_of(std::string_view phase) const;
 
-  /// Returns the figure's values, one a seed in the order of `seeds`, not a number if there was not enough
-  /// contact to measure it; none if the algorithm was not tried.
+  /// Returns the figure's values, one per seed in the order of `seeds`, NaN if there was too little contact
+  /// to measure it; empty if the algorithm was not tried.
   std::vector<double> all_values(const AlgorithmId& algorithm, std::string_view phase,
                                  const RunFigure& figure) const;
   /// Returns those of `all_values` that are numbers.
   std::vector<double> values(const AlgorithmId& algorithm, std::string_view phase,
                              const RunFigure& figure) const;
-  /// Returns the figure's values in the runs of one hand that differ in its tremor alone; none if no hand
-  /// tried others.
+  /// Returns the figure's values in the runs of one hand that differ only in tremor; empty if no other
+  /// tremors were tried.
   std::vector<double> values_by_tremor(const AlgorithmId& algorithm, std::string_view phase,
                                        const RunFigure& figure) const;
   /// Returns why the figure could not be measured (contact_words), with the number of hands for each reason
   /// if there are several hands; empty if it was measured in all.
   std::string why_not_measured(const AlgorithmId& algorithm, std::string_view phase,
                                const RunFigure& figure) const;
-  /// Returns which parts of the plan were not reached (MeasuredRun::not_reached), and in how many hands if
-  /// there are several; empty for none.
+  /// Returns which parts of the plan were not completed (MeasuredRun::not_reached), and in how many hands if
+  /// there are several; empty if all were.
   std::string not_reached(const AlgorithmId& algorithm, std::string_view phase) const;
-  /// Returns true if this number of seeds is more than half of all, and so stands for them.
+  /// Returns whether this number of seeds is more than half of all.
   bool are_most(std::size_t seeds) const { return 2 * seeds > seeds_.size(); }
 
  private:
@@ -76,21 +76,21 @@ class Study {
   std::vector<std::uint64_t> seeds_;
 };
 
-/// Returns a line for each algorithm that did not do all of the test in some of the hands, or of the trials
-/// beside them: in how many, and what it did not reach.
+/// Returns a line for each algorithm that did not complete the test in some of the hands or extra trials: in
+/// how many, and what it did not complete.
 std::vector<std::string> unreached_lines(const Study& study);
 
-/// Writes study.csv: seed, the hand's stiffness (N/m) and damping (N s/m), its grip, the number of another
-/// tremor, and the columns of summary.csv; rows of other grips and tremors last. The file appears whole or
-/// not at all. Throws InputError if it cannot be written.
+/// Writes study.csv atomically: seed, the hand's stiffness (N/m) and damping (N s/m), its grip, the number of
+/// another tremor, and the columns of summary.csv; rows of other grips and tremors last. Throws InputError if
+/// it cannot be written.
 void write_study_csv(const std::filesystem::path& path, const Study& study);
 
-/// Returns the rows of a table that `write_study_csv` wrote, those of the algorithms and phases that `like`
-/// has; none if there is no such table.
+/// Reads the rows of a table from `write_study_csv` that have the algorithms and phases of `like`; returns
+/// none if there is no such table.
 std::vector<MeasuredRun> read_study_csv(const std::filesystem::path& path,
                                         const std::vector<MeasuredRun>& like);
 
-/// Returns whether each of these runs is among the rows, with the same figures, times left aside.
+/// Returns whether all these runs are among the rows, with the same figures except for times.
 bool has_runs(const std::vector<MeasuredRun>& rows, const std::vector<MeasuredRun>& runs);
 
 }  // namespace osteomill

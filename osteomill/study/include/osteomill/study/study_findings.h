@@ -12,19 +12,19 @@ namespace osteomill {
 struct StudyFinding {
   /// The rule applied to the medians over the seeds.
   Finding of_medians;
-  /// The verdict of the hands: agreement, or its absence, if it is the same in enough more than half for the
-  /// sign test to be significant, which takes five hands; else it is not settled. If it could be tested in
-  /// no more than half, it is the verdict of the medians.
+  /// Verdict over the hands: agreement or disagreement in more than half of them if the sign test is
+  /// significant, which takes five hands; otherwise `not_settled`. The verdict of the medians if those could
+  /// not be tested; `too_little_contact` if at most half of the hands could be.
   Verdict verdict = Verdict::not_recorded;
-  /// In how many seeds the rule holds, and to how many it can be applied.
+  /// Number of seeds in which the rule holds, and to which it can be applied.
   std::size_t agreeing = 0;
   std::size_t tested = 0;
-  /// The chance of this number, or more, by tossing a coin: the sign test that the rule holds in more than
-  /// half of all hands. 1 if it was not tested.
+  /// Probability of this number or more in coin tosses: sign test of the rule holding in more than half of
+  /// all hands. 1 if it was not tested.
   double p = 1;
 };
 
-/// Holds the paper's findings against a study.
+/// Tests the paper's findings on a study.
 std::vector<StudyFinding> check_study_findings(const Study& study);
 
 }  // namespace osteomill

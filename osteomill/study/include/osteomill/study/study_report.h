@@ -9,21 +9,21 @@
 
 namespace osteomill {
 
-/// The treatment, by `write_study_report`, of trials that did not do all of their test
-/// (MeasuredRun::not_reached): counted with the others and marked, or left out.
+/// How `write_study_report` treats trials that did not complete their test (MeasuredRun::not_reached):
+/// included and marked, or left out.
 enum class Unreached : unsigned char { marked, dropped };
 
-/// Writes into the folder's report/ what the study's slices hold so far: trials.csv, a row for each part of
-/// each trial (docs/studies.md), and report.html with the design's maps and, where it asks for them, the
-/// paper's findings; both say what share of the study they are of, and how many trials did not do all of
-/// their test. Whole or not at all. Returns the page's path. Throws InputError if no trial is done, a map
-/// has nothing to show, or writing fails.
+/// Writes the results of the finished slices into the folder's report/: trials.csv, a row for each part of
+/// each trial (docs/studies.md), and report.html with the design's maps and, if requested, the paper's
+/// findings. Both state the fraction of the study that is done, and how many trials did not complete their
+/// test. Writes all files or none. Returns the page's path. Throws InputError if no trial is done, a map has
+/// nothing to show, or writing fails.
 std::filesystem::path write_study_report(const StudyDesign& design, const StudyFolder& study,
                                          Unreached unreached = Unreached::marked);
 
-/// Returns the head of a study's list of trials, "trial,algorithm,push (N)": what varies.
+/// Returns the header of a study's list of trials, with the varying options: "trial,algorithm,push (N)".
 std::string list_head(const StudyDesign& design);
-/// Returns the row of the trial of this number, from 0, in that list.
+/// Returns the row for this trial, numbered from 0, in that list.
 std::string list_row(const StudyDesign& design, std::size_t number);
 
 }  // namespace osteomill

@@ -10,13 +10,13 @@
 
 namespace osteomill {
 
-/// The test that each trial of a study runs: section 8.2 of the paper in a simulated hand, which gives a row
-/// for each phase; or a device without a hand is pressed on a flat wall (wall_press.h), one row.
+/// Test that each trial of a study runs: section 8.2 of the paper with a simulated hand, one row per phase;
+/// or a device without a hand pressed on a flat wall (wall_press.h), one row.
 enum class StudyTest : unsigned char { milling, wall };
 
-/// The names of the tests, in their order.
+/// Names of the tests, in the order of StudyTest.
 inline constexpr std::string_view kStudyTests[] = {"milling", "wall"};
-/// Returns the name of a test, as files of studies have it.
+/// Returns the name of a test, as used in study files.
 inline std::string_view name_of(StudyTest test) {
   return kStudyTests[static_cast<int>(test)];
 }
@@ -24,21 +24,21 @@ inline std::string_view name_of(StudyTest test) {
 /// Returns the names of a test's parts, one row each.
 std::span<const std::string_view> parts_of(StudyTest test);
 
-/// The figures of a press on a wall, as a TrialRow has them.
+/// Figures of a press on a wall, for a TrialRow.
 struct WallFigures {
-  /// 1 if the handle came to rest; not a number if the wall gave way.
+  /// 1 if the handle came to rest; NaN if the wall gave way.
   double passive = kNotMeasured;
   /// 1 if the wall carried the force.
   double carries = 0;
   /// WallPressResult::felt_N_per_mm.
   double felt_N_per_mm = kNotMeasured;
-  /// The greatest stiffness of an ideal wall there (passive_stiffness_rule_N_per_mm).
+  /// Largest passive stiffness of an ideal wall there (passive_stiffness_rule_N_per_mm).
   double rule_N_per_mm = 0;
 };
 /// Returns the figures of a press with these settings.
 WallFigures wall_figures(const TrialSettings& settings, const WallPressResult& result);
 
-/// A part of a trial: of `milling` a run, of `wall` a press.
+/// Result of one part of a trial: a run for `milling`, a press for `wall`.
 struct TrialRow {
   std::size_t trial = 0;
   std::size_t part = 0;
@@ -46,7 +46,7 @@ struct TrialRow {
   WallFigures wall = {};
 };
 
-/// Returns the numbers of a test's rows: of `milling` the hand and every figure of its run.
+/// Returns the numeric fields of a test's rows: for `milling` the hand and every figure of its run.
 const std::vector<Field<TrialRow>>& columns_of(StudyTest test);
 
 }  // namespace osteomill
