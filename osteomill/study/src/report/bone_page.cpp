@@ -63,7 +63,7 @@ BrickMesh simplified(const BrickMesh& mesh, std::size_t max_vertices, double vox
 json body_of(const BodyLook& look, const BrickMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const MeshVertex& vertex : mesh.vertices) box.extend(vec3_of(vertex.position_mm));
-  // Places in 16 bits of the mesh's box.
+  // Quantizes positions to 16 bits over the mesh's bounding box.
   constexpr double kSteps = 65535;
   const double step_mm = std::max(box.sizes().maxCoeff(), 1e-6) / kSteps;
   std::vector<std::uint16_t> places;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kScript = "script.gp";
 
-// That says something: gnuplot ends with a mark under what it did not understand.
+// Returns the last meaningful line: gnuplot ends with a mark below the part it could not parse.
 std::string last_line(const std::string& text) {
   std::istringstream in(text);
   std::string last;
@@ -40,7 +40,7 @@ void write_bytes(const fs::path& path, std::string_view bytes) {
   write_text_atomically(path, [&](std::ostream& out) { out << bytes; });
 }
 
-// Two indices of each bin, as `pick(first, last)` chooses them.
+// Returns two indices of each bin, chosen by `pick(first, last)`.
 template <typename Pick>
 std::vector<std::size_t> two_of_each(std::size_t count, std::size_t bins, Pick pick) {
   std::vector<std::size_t> kept;
@@ -62,8 +62,8 @@ std::vector<std::size_t> two_of_each(std::size_t count, std::size_t bins, Pick p
 
 void run_gnuplot(const fs::path& folder, const std::string& script, const std::string& program) {
   write_bytes(folder / kScript, valid_utf8(script));
-  // gnuplot does not look at what could not be written; a limit to its files ends it. -d: the settings of the
-  // user's own must not change the figures.
+  // gnuplot ignores write errors; the default SIGXFSZ ends it at a file size limit. -d: ignores the user's
+  // own settings, which must not change the figures.
   const ProcessResult said =
       run_program({"env", "--default-signal=XFSZ", "--chdir=" + folder.string(), program, "-d", kScript});
   if (said.exit_code == ProcessResult::kNoProgram) {

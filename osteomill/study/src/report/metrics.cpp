@@ -18,7 +18,7 @@ constexpr double kFelt_N = 0.02;
 constexpr double kFelt_Nmm = 0.2;
 constexpr double kLost_s = 1;
 
-// The angle of two unit vectors; an arc cosine would lose the small ones.
+// Returns the angle between two unit vectors; acos would lose small angles.
 double angle_rad(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -81,7 +81,7 @@ double torque_following_force(std::span<const Vec3> torque_Nmm, std::span<const 
                               high_pass(force_N, rate_hz, kBuzzAbove_hz), reach, shaft_touches);
 }
 
-// The device's pose is left out: a device may give one that is not finite.
+// Ignores the device's pose, which a device may report as not finite.
 bool all_finite(const TickRecord& r) {
   return std::isfinite(r.time_s) && is_finite(r.X_WT) && r.wrench.force_N.allFinite() &&
          r.wrench.torque_Nmm.allFinite() && std::isfinite(r.removed_mm3) && std::isfinite(r.compute_us) &&
@@ -105,8 +105,9 @@ void require_usable(const Recording& recording, std::span<const TickRecord> reco
   }
 }
 
-// Milling takes and only an undo or a reset gives; a redo takes it again from one session to the next. What
-// the first tick of a session mills counts as that, too: one tick is nothing against a cut.
+// Sums the bone restored by undo or reset within a session, and the change from one session to the next,
+// which may also redo a cut. This counts the bone milled in the first tick of a session too; one tick is
+// negligible.
 double put_back_mm3(std::span<const TickRecord> records) {
   double sum_mm3 = 0;
   for (std::size_t n = 1; n < records.size(); ++n) {
@@ -155,7 +156,7 @@ ContactShares contact_shares(std::span<const TickRecord> records) {
 
 namespace {
 
-// A reason for which nothing was measured; `words` has a place for the number.
+// Reason why nothing was measured; `words` has a placeholder for the number.
 struct Reason {
   const char* words;
   double number = 0;

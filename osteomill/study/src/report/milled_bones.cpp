@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kMostRuns = 8, kFewestVertices = 1000;
 
-// The place at which runs cut, and the side from which they were held.
+// Region that runs cut, and the side on which the tool was held.
 struct CutPlace {
   Eigen::AlignedBox3d box_W;
   Vec3 towards_hand_W = Vec3::Zero();
@@ -31,7 +31,7 @@ struct CutPlace {
     auto next = recording.sessions.begin();
     for (std::size_t n = 0; n < recording.records.size(); ++n) {
       const TickRecord& record = recording.records[n];
-      // A cut that is made again between two sessions was not made by the tool.
+      // Excludes cuts that were redone between two sessions rather than made by the tool.
       for (; next != recording.sessions.end() && next->first <= n; ++next)
         removed_mm3 = next->start.removed_mm3;
       if (std::exchange(removed_mm3, record.removed_mm3) >= record.removed_mm3) continue;
@@ -39,7 +39,7 @@ struct CutPlace {
       towards_hand_W += record.X_WT.orientation * Vec3::UnitZ();
     }
   }
-  // About the bone's middle if nothing was cut.
+  // Returns a ball about the cuts, or about the middle of the bone if nothing was cut.
   Sphere ball(const GridGeometry& scan, double burr_radius_mm) const {
     if (box_W.isEmpty()) {
       const Vec3 first_W = scan.world_from_voxel(scan.all_voxels().first),
@@ -51,7 +51,7 @@ struct CutPlace {
   Vec3 up_W() const { return towards_hand_W.norm() > 0 ? towards_hand_W.normalized() : Vec3::UnitZ(); }
 };
 
-// Returns the part of a bone about a place that a page has room for; all of it if it is small.
+// Returns the part of a bone about a position that fits into a page; all of it if it is small.
 Volume part_about(const Volume& bone, const Vec3& place_W) {
   constexpr int kMostVoxels = 300;
   const GridGeometry& scan = bone.geometry();
@@ -69,7 +69,7 @@ Volume part_about(const Volume& bone, const Vec3& place_W) {
   return {DensityGrid(own, std::move(densities)), bone.isovalue()};
 }
 
-// Returns the bone as it was when the recording ended.
+// Returns the bone at the end of the recording.
 Volume bone_after(const Volume& scan, const Recording& recording) {
   Volume bone = scan;
   repeat_milling(bone, recording);
@@ -125,7 +125,7 @@ MilledBones milled_bones(const RunGroup& group, const ScanOf& scan_of, std::size
   } catch (const WorkStopped&) {
     throw;
   } catch (const std::exception& error) {
-    // The rest of the page is worth having without it.
+    // The rest of the page is useful without it.
     bones.notices = {fmt::format("No bone in 3D: {}.", error.what())};
   }
   return bones;

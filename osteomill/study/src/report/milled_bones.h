@@ -11,16 +11,17 @@
 
 namespace osteomill {
 
-/// The bones that runs left, as a page shows them in 3D.
+/// Bones that runs left, for a 3D view in a page.
 struct MilledBones {
-  /// The page's data (bone_page.h); null if it shows none.
+  /// Data of the page (bone_page.h); null if it shows no bones.
   nlohmann::json data;
-  /// Why bones are missing.
+  /// Reasons for missing bones.
   std::vector<std::string> notices;
 };
 
-/// Mills the bone of the first runs again and returns each as a body of its own, with the bone before; in at
-/// most `max_bytes` of a page. A run that another recording began has no bone of its own. Long work.
+/// Repeats the milling of each run's first recording and returns each resulting bone as a body, with the bone
+/// before, in at most `max_bytes` of a page. Runs that continue another recording have no bone of their own.
+/// Slow.
 MilledBones milled_bones(const RunGroup& group, const ScanOf& scan_of, std::size_t max_bytes);
 
 }  // namespace osteomill

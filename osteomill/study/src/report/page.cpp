@@ -17,7 +17,7 @@ namespace osteomill {
 
 namespace {
 
-// Returns the length in bytes of the character with which the text begins; 0 if it begins with none.
+// Returns the length in bytes of the UTF-8 character at the start of the text; 0 if it is invalid.
 std::size_t length_of_first(std::string_view text) {
   const auto byte = [&](std::size_t n) -> std::uint32_t { return static_cast<unsigned char>(text[n]); };
   const std::uint32_t first = byte(0);
@@ -107,7 +107,7 @@ std::string table_row(const std::vector<Cell>& cells, bool header) {
   return row + "</tr>\n";
 }
 
-// Returns text as it stands in a URL within quotes. Takes a fifth less than base 64.
+// Escapes text for a quoted URL. Takes a fifth less space than base 64.
 std::string in_url(std::string_view text) {
   std::string url;
   for (const char c : text) {
@@ -117,8 +117,7 @@ std::string in_url(std::string_view text) {
   return url;
 }
 
-// Embeds the figure as an image, not as elements of the page, because the figures' SVGs use the same
-// identifiers.
+// Embeds the figure as an image, not as inline SVG: the figures use the same ids.
 std::string html_figure(const CaptionedFigure& figure) {
   const std::string bytes = bytes_of(figure.file);
   return fmt::format(
@@ -189,7 +188,7 @@ std::string html(const Page& page) {
   std::string body;
   for (const Section& section : page.sections) body += html(section);
   if (!page.data.empty()) {
-    // In JSON, "<" only stands in texts; as it is, one of them could end the element.
+    // In JSON, "<" occurs only in strings; unescaped, one could close the element.
     body += "<script type=\"application/json\" id=\"page-data\">";
     for (const char c : page.data) body += c == '<' ? "\\u003c" : std::string(1, c);
     body += "</script>\n";
@@ -220,12 +219,12 @@ std::string Cell::text() const {
 
 namespace {
 
-// Bytes that do not begin a character take no room.
+// Counts characters: continuation bytes have no width.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-// The text's lines, broken if they are wider than this.
+// Returns the text's lines, wrapped at `most` characters.
 std::vector<std::string> lines_of(const std::string& text, std::size_t most) {
   std::vector<std::string> lines;
   std::istringstream in(text);

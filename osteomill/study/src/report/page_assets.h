@@ -4,7 +4,7 @@
 
 namespace osteomill {
 
-/// three.js with its control of the camera by mouse and touch, and our own script and style for bones.
+/// three.js with its orbit controls, and osteomill's own script and style for bones.
 std::string_view three_js();
 std::string_view orbit_controls_js();
 std::string_view bone_view_js();

@@ -19,7 +19,7 @@ namespace osteomill {
 
 namespace {
 
-// Width of a panel in two columns, so that the SVG, which holds the pictures, stays small.
+// Width of a panel in two columns; limits the size of the SVG, which embeds the pictures.
 constexpr int kPanelWidth_px = 560;
 
 Image shrunk(const Recording& recording, const RunPicture& picture) {
@@ -29,7 +29,7 @@ Image shrunk(const Recording& recording, const RunPicture& picture) {
                      fmt::format("the picture '{}' is not a whole PNG of sensible size", picture.name));
   }
   const int factor = (image->width + kPanelWidth_px - 1) / kPanelWidth_px;
-  // A picture less high than this factor would vanish.
+  // A picture with fewer rows than this factor would vanish.
   return averaged_down(*image, std::min(factor, image->height));
 }
 
@@ -46,8 +46,7 @@ const RunPicture* picture_named(const Recording& recording, std::string_view nam
   return nullptr;
 }
 
-// Each bone before, then after each algorithm; of an algorithm's phases the first that has a picture is
-// shown.
+// Returns the bone before, for each scan, then after each algorithm, from its first phase with a picture.
 std::vector<Panel> panels_of(const RunGroup& group) {
   std::vector<Panel> panels, along_the_entry;
   for (const MeasuredRun& run : group.runs) {
@@ -64,8 +63,8 @@ std::vector<Panel> panels_of(const RunGroup& group) {
       const MeasuredRun* run = group.find(algorithm.name, phase);
       const RunPicture* after = run ? picture_named(*run->recording, kPictureAfter) : nullptr;
       if (after == nullptr) continue;
-      // If the picture before belongs to an earlier part of the session, what this part removed is not all
-      // that went between the two.
+      // If the picture before belongs to an earlier part of the session, this part's removed volume does not
+      // account for the whole difference between the two.
       const bool whole = picture_named(*run->recording, kPictureBefore) != nullptr;
       panels.push_back(
           {whole ? fmt::format("After {} ({:.1f} mm³ removed)", algorithm.label, run->metrics.removed_mm3)
@@ -141,7 +140,7 @@ std::vector<Cell> cells(const MeasuredRun& run, const Label& label, const LabelC
           fmt::format("{:.2f}", entry.force_max_N)};
 }
 
-// A row for each label that this run cut or touched, no-go labels first.
+// Adds a row for each label that this run cut or touched, no-go labels first.
 void add_rows(const MeasuredRun& run, Table& table) {
   const LabelCount count = count_of(*run.recording);
   for (const bool no_go : {true, false}) {
@@ -153,7 +152,7 @@ void add_rows(const MeasuredRun& run, Table& table) {
   }
 }
 
-// Returns the points of the curve of a label's removed volume over time: both ends, and one for each further
+// Returns the curve of a label's removed volume over time: both ends, and a point for each further
 // two-hundredth.
 std::string curve_of(const Recording& recording, LabelMap::LabelIndex label, double all_mm3) {
   const double first_s = recording.records.front().time_s;
@@ -171,7 +170,7 @@ std::string curve_of(const Recording& recording, LabelMap::LabelIndex label, dou
   return data;
 }
 
-// gnuplot commands for one run's panel; empty if the run removed nothing that has a label.
+// Returns gnuplot commands for one run's panel; empty if the run removed no labelled bone.
 std::string panel(const MeasuredRun& run, FigureScript& figure) {
   const LabelCount count = count_of(*run.recording);
   double all_mm3 = 0;
@@ -243,7 +242,7 @@ std::string text_of(const Value& value) {
     return fmt::format("{}, {}, {}", value[0], value[1], value[2]);
 }
 
-// Returns the value in words if it is a choice of a session's or a switch.
+// Returns the value as text; by name if it is a choice or a switch of the session.
 std::string text_of(const RunSetting& setting) {
   const double* number = std::get_if<double>(&setting.value);
   const Field<SessionSettings>* field = find_field(fields_of<SessionSettings>(), setting.key);
@@ -253,11 +252,11 @@ std::string text_of(const RunSetting& setting) {
   return std::visit([](const auto& value) { return text_of(value); }, setting.value);
 }
 
-// The description's own fields and the further settings, alike.
+// Returns both the description's own fields and its further settings.
 std::vector<RunSetting> all_settings(const RunDescription& d) {
   std::vector<RunSetting> settings;
   visit_attributes(d, [&](const RunAttribute& of, const auto& value) {
-    // A hash of 0 is that of no label map.
+    // A hash of 0 means no label map.
     const bool is_none = of.name == std::string_view("label_map_hash") && text_of(value) == "0";
     if (of.is_setting && !is_none) settings.push_back({of.name, text_of(value), ""});
   });
@@ -271,7 +270,7 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
   return settings;
 }
 
-// Returns a unit with a small raised digit: units in recordings are ASCII ("mm^3").
+// Returns a unit with superscript digits: units in recordings are ASCII ("mm^3").
 std::string raised(std::string unit) {
   for (const auto& [power, digit] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
     if (const auto at = unit.find(power); at != std::string::npos) unit.replace(at, 2, digit);
@@ -279,7 +278,7 @@ std::string raised(std::string unit) {
   return unit;
 }
 
-// Returns a number with fewer digits than a recording needs of it, or any other text as it is.
+// Rounds a number to six significant digits; returns other text unchanged.
 std::string rounded_number(const std::string& text) {
   const auto number = parsed_number<double>(text);
   if (!number || (*number != 0 && text.find('.') == std::string::npos))
@@ -287,7 +286,7 @@ std::string rounded_number(const std::string& text) {
   return *number == 0 ? "0" : fmt::format("{:.6g}", *number);
 }
 
-// Does the same for numbers between commas.
+// Rounds each of several comma-separated numbers.
 std::string rounded(const std::string& text) {
   std::vector<std::string> numbers;
   for (const std::string_view number : csv_fields(text)) {
@@ -300,7 +299,7 @@ std::string rounded(const std::string& text) {
 struct SettingLine {
   std::string key;
   std::string unit;
-  // One for each recording; nothing if it does not have the setting.
+  // One value per recording; nothing if the recording lacks the setting.
   std::vector<std::optional<std::string>> values;
 };
 
@@ -321,7 +320,7 @@ std::vector<SettingLine> collect(const std::vector<const Recording*>& recordings
   return lines;
 }
 
-// Values that a cell spells out.
+// Maximum number of values that a cell lists.
 constexpr std::size_t kFew = 4;
 
 std::string value_of(const SettingLine& line, const std::vector<const Recording*>& recordings) {
@@ -364,7 +363,7 @@ Table settings_table(const std::vector<const Recording*>& recordings) {
 
 namespace {
 
-// Returns true for a setting of one algorithm, which has no meaning for another.
+// Returns true for a setting of one algorithm, which is meaningless for another.
 bool is_of_the_algorithm(const std::string& key) {
   return key == kSamplePointsKey || key.starts_with("algorithm.") || key.starts_with("probe.");
 }

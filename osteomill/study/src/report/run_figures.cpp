@@ -14,23 +14,23 @@ namespace osteomill {
 
 namespace {
 
-// Describes a quantity that panels show over time.
+// A quantity drawn over time.
 struct Shown {
   // Label of the y axis, with its unit.
   std::string label;
   std::function<double(const TickRecord&)> value;
-  // gnuplot commands for its panels alone (scale, range, lines); without any, the range of all runs.
+  // gnuplot commands for its panels (scale, range, lines); if empty, the value range of all runs.
   std::string setup;
 };
 
 struct Curve {
   AlgorithmId algorithm;
   std::string file;
-  // The sum of all changes from sample to sample: how much of the panel the curve covers.
+  // Sum of absolute changes between samples: measures how much of the panel the curve covers.
   double restlessness = 0;
 };
 
-// Returns the time since the tables begin to count, s; negative before.
+// Returns the time since the first counted tick, s; negative before it.
 double time_s(const MeasuredRun& run, const TickRecord& record) {
   return record.time_s - run.recording->records.front().time_s - run.metrics.counted_from_s;
 }
@@ -63,8 +63,8 @@ std::string time_range(const std::vector<const MeasuredRun*>& runs) {
       first, last, first);
 }
 
-// Returns the range of the values that the tables count, shared by the panels of a row; it begins at 0 if the
-// least is not far above.
+// Returns the range of the counted values, shared by the panels of a row; it begins at 0 unless the minimum
+// is far above 0.
 std::string value_range(const std::vector<const MeasuredRun*>& runs, const Shown& shown) {
   double min = std::numeric_limits<double>::infinity(), max = 0;
   for (const MeasuredRun* run : runs) {
@@ -74,7 +74,7 @@ std::string value_range(const std::vector<const MeasuredRun*>& runs, const Shown
       max = std::max(max, shown.value(record));
     }
   }
-  // Smallest share of the maximum that six digits show: gnuplot refuses an empty range.
+  // Smallest fraction of the maximum that six digits resolve: gnuplot rejects an empty range.
   constexpr double kLeastShare = 1e-4;
   if (min > max) return "set yrange [0:1]";
   const double above = 0.06 * (max - (min < max / 2 ? 0 : min));
@@ -87,8 +87,8 @@ std::string capitalised(std::string phase) {
   return phase;
 }
 
-// Drawn by hand at the figure's top: gnuplot's own is fitted to one panel, and is broken into rows if that
-// is narrow.
+// Draws the legend by hand at the top of the figure: gnuplot's own fits one panel and wraps if that is
+// narrow.
 std::string legend(const RunGroup& group, double height_px) {
   constexpr double kEntry_px = 220, kLine_px = 40, kTop_px = 26;
   const auto algorithms = group.algorithms();
@@ -108,13 +108,13 @@ std::string legend(const RunGroup& group, double height_px) {
   return script;
 }
 
-// Draws a line across the panel; its label stands above, clear of the curves.
+// Draws a line across the panel. Its label is above the panel, clear of the curves.
 std::string dashed_line(double y) {
   return fmt::format(
       "set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dt 2 lw 1.5 lc rgb '#555555' front", y);
 }
 
-// The restless curves are drawn first so that they hide no other.
+// Draws the most restless curves first so that they do not hide the others.
 std::string curve_panel(const std::vector<const MeasuredRun*>& runs, const Shown& shown, std::size_t bins,
                         FigureScript& figure) {
   std::vector<Curve> curves;
@@ -126,14 +126,14 @@ std::string curve_panel(const std::vector<const MeasuredRun*>& runs, const Shown
     plot += fmt::format("{}{} with lines lw 1.2 lc rgb '{}' notitle", plot.empty() ? "plot " : ", ",
                         curve.file, curve.algorithm.colour);
   }
-  // Panels drawn later would print the legend again, on top of itself.
+  // Otherwise, later panels would print the legend again on top of itself.
   return plot + "\nunset label\nunset arrow\nunset object\n";
 }
 
-// Curves are thinned out to the least and greatest of each pixel's worth.
+// Bins per curve, about one per pixel; each keeps its smallest and largest sample.
 constexpr std::size_t kCurveBins = 1000;
 
-// Draws all algorithms in one panel, the columns side by side, a row for each phase.
+// Draws all algorithms in one panel per column, with a row for each phase.
 Figure draw_together(const RunGroup& group, const std::string& name, const std::vector<Shown>& columns,
                      const std::filesystem::path& folder) {
   const std::vector<std::string> phases = group.phases();
@@ -150,8 +150,8 @@ Figure draw_together(const RunGroup& group, const std::string& name, const std::
   return draw_panels(name, grid, begin_panels("") + legend(group, grid.height_px), panel, folder);
 }
 
-// A panel for each algorithm, side by side at one scale, a row for each phase: curves that lie on each
-// other would show nothing.
+// Draws a panel for each algorithm, side by side at the same scale, with a row for each phase, because
+// overlapping curves would be unreadable.
 Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& shown,
                   const std::string& dashed, const std::filesystem::path& folder) {
   const std::vector<std::string> phases = group.phases();
@@ -185,11 +185,11 @@ Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& s
   return draw_panels(name, grid, common, panel, folder);
 }
 
-// Points a panel; an SVG takes about 90 bytes for each.
+// Points per panel; each takes about 90 bytes of an SVG.
 constexpr std::size_t kCloudBins = 700;
 
 struct Cloud {
-  // Directions in the counted ticks in which the tool touched, or in all if it hardly did.
+  // Directions in the counted ticks with contact, or in all counted ticks if contact is too rare.
   std::vector<Vec3> directions;
   std::vector<double> times_s;
   Vec3 mean = Vec3::Zero();
@@ -210,7 +210,7 @@ Cloud cloud_of(const MeasuredRun& run) {
   return cloud;
 }
 
-// Across the mean shaft: along the two axes of W to which it is nearest to a right angle.
+// Axes across the mean shaft: the two axes of W most nearly perpendicular to it.
 struct Across {
   Vec3 right, up;
   char right_name, up_name;
@@ -229,7 +229,7 @@ Across across(const Vec3& mean) {
   return {right, up, "xyz"[least], "xyz"[other]};
 }
 
-// Returns the cloud's data in degrees from its mean, for gnuplot, and how far it reaches.
+// Returns the cloud's data for gnuplot, in degrees from its mean, and its largest extent.
 std::pair<std::string, double> cloud_data(const Cloud& cloud, const Across& axes) {
   std::string data;
   double reach_deg = 0.001;
@@ -249,7 +249,7 @@ std::string degrees_text(double degrees) {
   return fmt::format("{:.{}f}", degrees, degrees < 1 ? 2 : 1);
 }
 
-// Why it was not measured takes two lines of a panel, and the tables say it in the same words.
+// Texts must fit into two lines of a panel; the tables use the same words.
 std::string words(const MeasuredRun& run) {
   const DirectionMetrics& shaft = run.metrics.shaft;
   if (!std::isnan(shaft.spread_deg))
@@ -298,7 +298,7 @@ Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& fo
 }
 
 Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  // If nothing was removed the curve says nothing.
+  // Omits runs that removed nothing, unless none did: their curves show nothing.
   RunGroup milled = group;
   std::erase_if(milled.runs, [](const MeasuredRun& run) { return run.metrics.removed_mm3 == 0; });
   if (milled.runs.empty()) milled = group;
@@ -326,7 +326,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
   for (const MeasuredRun& run : group.runs) {
     last_s = std::max(last_s, time_s(run, run.recording->records.back()));
   }
-  // Square panels, and the colours' scale on their right.
+  // Panels are square; the colour bar is on the right.
   constexpr double kLeft_px = 84, kRight_px = 12, kAbove_px = 76, kBelow_px = 64, kBar_px = 128;
   const double wide_px = std::min(380.0, (PanelGrid::kWidth_px - kBar_px) / static_cast<double>(columns));
   const PanelGrid grid{.height_px = static_cast<double>(phases.size()) *

@@ -64,8 +64,7 @@ std::vector<AlgorithmId> RunGroup::algorithms() const {
 
 namespace {
 
-// Segments by when the first of their recordings began, so that they stand in the order in which they were
-// run.
+// Returns the start time of each phase's first recording, to order phases as they were run.
 std::map<std::string, double> beginnings(const std::vector<Recording>& recordings) {
   std::map<std::string, double> began_s;
   for (const Recording& recording : recordings) {

@@ -12,8 +12,8 @@ namespace osteomill {
 
 namespace {
 
-// Two passes of |H|^2 = w^4 / (1 + w^4) halve the power at w^4 = 1 + sqrt(2): each pass has its cutoff lower
-// by that.
+// Two passes of |H|^2 = w^4 / (1 + w^4) halve the power at w^4 = 1 + sqrt(2), so the cutoff of each pass is
+// lower by this factor.
 const double kBothPasses = std::pow(1.0 + std::numbers::sqrt2, 0.25);
 
 struct Biquad {
@@ -28,7 +28,7 @@ Biquad butterworth_high_pass(double rate_hz, double cutoff_hz) {
 }
 
 void filter_in_place(const Biquad& f, std::vector<Vec3>& samples) {
-  // The state after an endless run of the first sample, whose output is zero.
+  // Steady state for a constant input equal to the first sample, whose output is zero.
   Vec3 z1 = -f.b0 * samples.front();
   Vec3 z2 = f.b2 * samples.front();
   for (Vec3& sample : samples) {
@@ -66,7 +66,7 @@ std::vector<Vec3> high_pass(std::span<const Vec3> samples, double rate_hz, doubl
 
 namespace {
 
-// Number of the leader's samples: evenly spread from `reach` before to `reach` after.
+// Number of the leader's samples per fit, evenly spread from `reach` before to `reach` after.
 constexpr std::size_t kLags = 5;
 constexpr std::size_t kSamplesEach = 20;
 using Leading = Eigen::Matrix<double, 3 * kLags, 1>;
@@ -99,7 +99,7 @@ double multiple_correlation(std::span<const Vec3> follower, std::span<const Vec3
   if (count < kSamplesEach * 3 * kLags || !(scale > 0) || !(follower_squares > 0)) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  // Signals that lie in a plane or are slow against the lags leave the system singular.
+  // Planar signals, or ones slow compared with the lags, make the system singular.
   squares.diagonal().array() += 1e-9 * scale;
   const double explained = squares.ldlt().solve(products).cwiseProduct(products).sum();
   return std::sqrt(std::clamp(explained / follower_squares, 0.0, 1.0));

@@ -44,7 +44,7 @@ Section notices(const std::vector<const Recording*>& recordings) {
   return section;
 }
 
-// Returns a section on the differences of recordings that do not belong together.
+// Returns a section on differences between recordings that do not belong together.
 std::vector<Section> differences(const std::vector<const Recording*>& recordings) {
   Table table = differences_table(recordings);
   if (table.rows.empty()) return {};
@@ -60,8 +60,8 @@ double seconds_of(const Recording& recording) {
   return recording.records.back().time_s - recording.records.front().time_s;
 }
 
-// The times of each phase, and that which was asked for if the recordings name it: "The milling took 12.9 to
-// 18.1 s (20 s asked for)".
+// Returns the duration of each phase, and the planned one if the recordings have it: "The milling took 12.9
+// to 18.1 s (20 s asked for)".
 std::string how_long(const RunGroup& group) {
   std::string text;
   for (const std::string& phase : group.phases()) {
@@ -111,7 +111,7 @@ struct RunFigure {
   const char* caption;
 };
 
-// A topic of the report: its figures and the metrics beside them, by their columns.
+// A topic of the report: its figures and the metrics shown with them, by column name.
 struct Topic {
   const char* title;
   std::vector<RunFigure> figures;
@@ -148,7 +148,7 @@ const Topic kTimes{
       "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line."}},
     {"steps", "tick_us_median", "tick_us_p99", "tick_us_max", "rate_hz"}};
 
-// Returns a sentence on the parts of the curves that the tables leave out.
+// Returns a sentence on the parts of the curves that the tables exclude.
 std::string not_counted(const RunGroup& group) {
   const auto longest = std::ranges::max_element(
       group.runs, {}, [](const MeasuredRun& run) { return run.metrics.counted_from_s; });
@@ -176,7 +176,7 @@ std::vector<MetricLine> lines_of(const Topic& topic) {
     lines.push_back({label_of(figure), [&figure](const MeasuredRun& run) -> Cell {
                        const double value = figure.get(run.metrics);
                        if (!std::isnan(value)) return shown(value);
-                       // Bone that was not cut is no matter of contact.
+                       // Missing contact does not explain why no bone was cut.
                        return figure.name == "removal_mm3_per_s"
                                   ? shown(value)
                                   : Cell(contact_words(run.metrics.contact), Look::words);
@@ -191,12 +191,12 @@ Table metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines)
     table.header.push_back(run.phase.empty() ? run.algorithm.label : run.phase + "\n" + run.algorithm.label);
     table.rows.front().emplace_back(run.not_reached, Look::words);
   }
-  // The goals that were not reached stand before everything that is compared.
+  // Goals that were not reached come before all compared figures.
   if (std::ranges::all_of(group.runs, &std::string::empty, &MeasuredRun::not_reached)) table.rows.clear();
   for (const MetricLine& line : lines) {
     std::vector<Cell> row{line.label};
     for (const MeasuredRun& run : group.runs) row.push_back(line.cell(run));
-    // The paper says nothing of some algorithms.
+    // The paper does not cover all algorithms.
     if (std::ranges::any_of(std::span(row).subspan(1), [](const Cell& cell) { return !cell.text().empty(); }))
       table.rows.push_back(std::move(row));
   }
@@ -234,11 +234,10 @@ std::vector<Section> pictures_section(const RunGroup& group, const fs::path& fol
   return {section};
 }
 
-// Returns the section of a scan with labels.
 Section labels_section(const RunGroup& group, const fs::path& folder) {
   std::optional<Section> labels = label_section(group);
   if (!labels) return {};
-  // Below the table.
+  // The figure follows the table.
   if (const auto figure = draw_label_figure(group, folder)) {
     labels->parts = {
         {.figures = {{figure->svg, "What was removed of each label over time, in the labels' colours."}}}};

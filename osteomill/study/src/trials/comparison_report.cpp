@@ -32,11 +32,12 @@ constexpr const char* kStudyCsv = "study.csv";
 constexpr const char* kOneHoleCsv = "one-hole.csv";
 constexpr const char* kStabilityCsv = "stability.csv";
 constexpr const char* kTitle = "6-DOF haptic algorithms compared while milling bone";
-// Titles of one algorithm and of a mix, in which nothing is compared.
+// Titles for a single algorithm and for a mix, in which nothing is compared.
 constexpr const char* kTitleOfOne = "A 6-DOF haptic algorithm while milling bone";
 constexpr const char* kTitleOfAMix = "Recordings of 6-DOF haptic algorithms while milling bone";
 
-// The paper's mean haptic rate in Hz, figure 6; empty for an algorithm or a phase that is not in the paper.
+// Returns the paper's mean haptic rate in Hz, figure 6; empty if the paper does not have the algorithm or
+// phase.
 std::string paper_rate(const MeasuredRun& run) {
   constexpr int kRates_hz[kPapersAlgorithms.size()][kPhases.size()] = {{976, 988}, {955, 963}, {973, 989}};
   const auto* const algorithm = std::ranges::find(kPapersAlgorithms, run.algorithm.name);
@@ -93,7 +94,7 @@ constexpr const char* kWhatWasProbed =
     "wall, for the stiffness felt at 0.5 N, and the shaft pressed across a sharp edge, where the torque must "
     "be lever times force.";
 
-// Empty if the study has no such algorithm.
+// Returns an empty text if the study does not have line-proxy.
 std::string about_line_proxy(const Study& study, const MillingTool& tool) {
   for (const AlgorithmId& algorithm : study.algorithms()) {
     if (algorithm == kPapersAlgorithms.front()) {
@@ -106,7 +107,7 @@ std::string about_line_proxy(const Study& study, const MillingTool& tool) {
   return "";
 }
 
-// Returns a setting of three numbers; not numbers if the recording does not have it.
+// Returns a setting of three numbers; NaN if the recording does not have it.
 Vec3 vector_in(const RunDescription& run, std::string_view key) {
   Vec3 vector = Vec3::Constant(kNotMeasured);
   const std::string* text = find_setting<std::string>(run, key);
@@ -117,8 +118,8 @@ Vec3 vector_in(const RunDescription& run, std::string_view key) {
   return vector;
 }
 
-// Returns how far below the entry the burr's tip pressed on bone at most, mm; not a number if it did not, or
-// the recording does not name its entry.
+// Returns the largest depth below the entry at which the burr's tip pressed on bone, mm; NaN if it never did,
+// or the recording has no entry.
 double depth_mm(const Recording& recording) {
   const Vec3 entry_W_mm = vector_in(recording.description, kScriptEntryKey);
   const Vec3 direction_W = vector_in(recording.description, kScriptDirectionKey);
@@ -129,7 +130,7 @@ double depth_mm(const Recording& recording) {
   return deepest_mm + recording.description.tool.burr_radius_mm;
 }
 
-// Returns the depth of each algorithm's milling, by its label.
+// Returns the depth of each algorithm's milling.
 std::map<AlgorithmId, double> depths_mm(const RunGroup& group) {
   std::map<AlgorithmId, double> depths;
   for (const MeasuredRun* run : group.runs_of(std::string(kMilling)))
@@ -137,7 +138,7 @@ std::map<AlgorithmId, double> depths_mm(const RunGroup& group) {
   return depths;
 }
 
-// "3.4 mm with 1 line-proxy and 7.6 mm with 4 barrier-shell"
+// Lists values by algorithm: "3.4 mm with 1 line-proxy and 7.6 mm with 4 barrier-shell".
 std::string by_algorithm(const std::map<AlgorithmId, double>& values, const char* unit) {
   std::vector<std::string> all;
   for (const auto& [algorithm, value] : values)
@@ -145,7 +146,7 @@ std::string by_algorithm(const std::map<AlgorithmId, double>& values, const char
   return in_words(all);
 }
 
-// Says how hard the hand pushed, what was felt at most, and how deep the burr really went.
+// Describes how hard the hand pushed, the largest force felt, and the actual depth of the burr.
 std::string push_and_depth(const RunGroup& group) {
   const RunDescription& run = group.runs.front().recording->description;
   const double* push_N = find_setting<double>(run, "hand.push");
@@ -168,8 +169,8 @@ std::string push_and_depth(const RunGroup& group) {
   return text;
 }
 
-// A warning if a burr went on far beyond the hole that was planned, as one does that breaks through; empty if
-// none did.
+// Returns a warning if a burr went far deeper than the planned hole, for example by breaking through; empty
+// if none did.
 std::string too_deep(const RunGroup& group) {
   std::map<AlgorithmId, double> depths = depths_mm(group);
   const double planned_mm = ScriptSettings::depth_mm,
@@ -182,7 +183,7 @@ std::string too_deep(const RunGroup& group) {
       planned_mm, by_algorithm(depths, "mm"));
 }
 
-// Says what was compared, whether that can show anything, and what it shows.
+// Returns what was compared, whether it can show anything, and what it shows.
 Section opening(const Study& study, const RunGroup& group, const std::vector<Recording>& recordings) {
   const std::map<std::string, Probe> probes = probes_in(recordings);
   Section section{.tables = conclusions(study, probes)};
@@ -214,14 +215,13 @@ bool have_the_same_phases(const RunGroup& group) {
   return group.runs.size() == group.phases().size() * group.algorithms().size();
 }
 
-// Tables beside recordings, of which study.csv has other figures of them.
+// Notice for tables next to the recordings whose study.csv does not have the same figures.
 constexpr const char* kOtherTables =
     "The study.csv beside the recordings does not have their figures: it is of another comparison, or of "
     "another version of this program. Its other hands, grips and tremors are left out here, and so are "
     "one-hole.csv and stability.csv.";
 
-// Returns what the tables beside the recordings have, if they are of the same comparison: a folder holds
-// one.
+// Reads the tables next to the recordings if they belong to the same comparison: a folder holds only one.
 ReportExtras extras_beside(const RunGroup& group) {
   const fs::path folder = group.runs.front().recording->path.parent_path();
   ReportExtras extras{.others = read_study_csv(folder / kStudyCsv, group.runs)};
@@ -260,7 +260,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   std::vector<MeasuredRun> rows = group.runs;
   rows.insert(rows.end(), extras.others.begin(), extras.others.end());
   const Study study(std::move(rows));
-  // Measured beside the recordings and kept nowhere else: they stay if no figure can be drawn.
+  // These are not stored elsewhere, so keep them even if no figure can be drawn.
   if (!extras.others.empty() || !extras.passivity.empty() || !extras.in_one_hole.empty())
     create_folder(out_dir);
   if (!extras.others.empty()) write_study_csv(out_dir / kStudyCsv, study);

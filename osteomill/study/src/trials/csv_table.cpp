@@ -11,7 +11,7 @@ namespace osteomill {
 
 namespace {
 
-// A line that is too long ends the table: the program writes none.
+// A line that is too long ends the table: this program does not write any.
 bool next_line(std::istream& in, std::string& line) {
   constexpr std::size_t kMaxLine = 16384;
   try {

@@ -14,7 +14,7 @@ namespace osteomill {
 
 namespace {
 
-// The thresholds of the rules, which say themselves what each is for.
+// Thresholds of the rules; their texts explain each.
 constexpr double kCalmerBy = 2;
 constexpr double kGripRatio = 1.25;
 constexpr double kFollows = 0.5;
@@ -25,13 +25,13 @@ double share_hp(const VectorMetrics& v) {
   return v.hp_rms / v.mean;
 }
 
-// Figures that the rules use.
+// Figures used by the rules.
 using M = RunMetrics;
 constexpr auto force_hp = [](const M& m) { return m.force_N.hp_rms; };
 constexpr auto torque_hp = [](const M& m) { return m.torque_Nmm.hp_rms; };
 constexpr auto torque_step = [](const M& m) { return m.torque_Nmm.step_max; };
 constexpr auto torque_share = [](const M& m) { return share_hp(m.torque_Nmm); };
-// How much less calm the torque is than the force, each against its mean.
+// Ratio of the relative unrest of torque and force.
 constexpr auto torque_unrest = [](const M& m) { return share_hp(m.torque_Nmm) / share_hp(m.force_N); };
 constexpr auto torque_follows = [](const M& m) { return m.torque_follows_force; };
 constexpr auto shaft_spread = [](const M& m) { return m.shaft.spread_deg; };
@@ -39,15 +39,14 @@ constexpr auto shaft_turn = [](const M& m) { return m.turns.max_deg; };
 constexpr auto shaft_turn_at_torque_step = [](const M& m) { return m.turns.at_torque_step_deg; };
 constexpr auto contacts = [](const M& m) { return m.contacts_mean; };
 
-// Names a figure of one algorithm in one phase that a rule needs.
+// A figure of one algorithm in one phase that a rule needs.
 struct Needed {
   std::size_t algorithm;
   std::string_view phase;
   double (*value)(const RunMetrics&);
 };
 
-// A finding on what algorithms did in phases: its rule is applied to the values that it needs, in their
-// order; `words` has a {} for each.
+// Tests a finding on the figures that it needs, in their order; `words` has a {} for each.
 struct Rule {
   std::string paper_says;
   std::string rule;
@@ -129,7 +128,7 @@ Finding grip_finding(const GripForces& grips) {
   return finding;
 }
 
-// In the order of the paper's text; with those on the rate and the grip they are all.
+// All findings in the order of the paper's text, except for those on the rate and the grip.
 const std::array<Rule, kFindings - 2> kRules{
     {{"force: 1 and 3 “more stable than Algorithm #2 independent of case scenario”",
       fmt::format("in both parts 2's force above {:.0f} Hz (rms) is at least {:g} times that of 1 and of 3",

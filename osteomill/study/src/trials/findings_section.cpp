@@ -13,7 +13,7 @@ namespace osteomill {
 
 namespace {
 
-// One hand settles nothing: its cell says whether the rule holds in it.
+// A single hand settles nothing, so its cell only states whether the rule holds in it.
 Cell verdict_cell(const StudyFinding& finding, bool one_hand) {
   const Verdict verdict = one_hand ? finding.of_medians.verdict : finding.verdict;
   if (one_hand && verdict == Verdict::agrees) return {"holds in this hand", Look::faint};
@@ -23,7 +23,7 @@ Cell verdict_cell(const StudyFinding& finding, bool one_hand) {
                                                                               : Look::faint};
 }
 
-// Returns the findings of which there is what they need.
+// Returns the findings whose runs are present.
 std::vector<StudyFinding> recorded_findings(const Study& study) {
   std::vector<StudyFinding> findings = check_study_findings(study);
   std::erase_if(findings, [](const StudyFinding& finding) {
@@ -32,7 +32,7 @@ std::vector<StudyFinding> recorded_findings(const Study& study) {
   return findings;
 }
 
-// "6 of 8", the hands in which the rule holds and those in which it could be tested.
+// Returns the number of hands in which the rule holds and in which it was tested: "6 of 8".
 std::string hands_of(const StudyFinding& finding) {
   if (finding.tested == 0) return "not tested";
   return fmt::format("{} of {}", finding.agreeing, finding.tested);

@@ -20,15 +20,15 @@ std::string interval_text(const MedianInterval& interval) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", interval.median, interval.low, interval.high);
 }
 
-// "54 % more than", "3.2 times", "0.08 more than" zero.
+// Returns the size of a difference: "54 % more than", "3.2 times", "0.08 more than" for zero.
 std::string size_text(const PairedComparison& pair) {
   if (std::isinf(pair.share)) return in_two_digits(pair.difference) + " more than";
   return pair.share < 1 ? in_two_digits(100 * pair.share) + " % more than"
                         : in_two_digits(1 + pair.share) + " times";
 }
 
-// A sentence for each pair: "2 is 3.2 times 1, p = 0.012" with the order strong if a hand notices it, "2 is 2
-// % more than 1 in 7 hands: same for a hand, p = 0.02", and "1 and 2: not settled, p = 0.3".
+// Returns a sentence for each pair: "2 is 3.2 times 1, p = 0.012" with the order strong if a hand notices it,
+// "2 is 2 % more than 1 in 7 hands: same for a hand, p = 0.02", and "1 and 2: not settled, p = 0.3".
 Cell differences(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
   std::vector<Cell::Piece> pieces;
   for (const PairedComparison& pair : compare_algorithms(study, phase, metric)) {
@@ -52,8 +52,8 @@ Cell differences(const Study& study, std::string_view phase, const Field<RunMetr
   return pieces;
 }
 
-// "0.02 [0.01, 0.03]", of one hand without the interval, and with the hands if it could not be measured in
-// all; else why not in any.
+// Returns median and interval, "0.02 [0.01, 0.03]", without interval for one hand, with the number of hands
+// if not measured in all, or why it was not measured in any.
 Cell values_cell(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
                  const Field<RunMetrics>& metric) {
   const std::vector<double> values = study.values(algorithm, phase, metric.get);
@@ -83,7 +83,7 @@ void add_figure(Table& table, const Study& study, std::string_view phase, const 
   if (are_compared(study)) row.push_back(differences(study, phase, metric));
 }
 
-// Adds a row with what each algorithm did not reach; none if all did all.
+// Adds a row with what each algorithm did not reach, unless all completed the test.
 void add_not_reached(Table& table, const Study& study, std::string_view phase) {
   std::vector<Cell> row{"not reached"};
   bool any = false;
@@ -102,7 +102,7 @@ Table algorithms_table(const Study& study, std::string_view phase) {
   return table;
 }
 
-// Returns paragraphs on the meaning of the numbers and how far they can be trusted.
+// Returns paragraphs on what the numbers mean and how reliable they are.
 std::vector<std::string> how_to_read(const Study& study) {
   const std::size_t n = study.seeds().size();
   std::vector<double> stiffness, damping;

@@ -7,11 +7,11 @@
 
 namespace osteomill {
 
-/// Returns the report's section on a study over several hands: medians with their intervals, and which
-/// differences between algorithms are significant.
+/// Returns the report's section on a study over several hands: medians with their intervals, and the
+/// significant differences between algorithms.
 Section hands_section(const Study& study, const std::vector<CaptionedFigure>& figures);
 
-/// Returns the report's section on holdings of all algorithms in one hole, which `study` has alone.
+/// Returns the report's section on holds of all algorithms in the same hole; `study` contains only those.
 Section one_hole_section(const Study& study);
 
 }  // namespace osteomill

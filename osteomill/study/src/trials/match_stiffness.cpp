@@ -22,14 +22,14 @@ constexpr int kMaxPresses = 40;
 constexpr double kSoftest_N_per_mm = 0.05;
 constexpr double kStiffest_N_per_mm = 200;
 
-// One end of what is left to look at.
+// One end of the remaining interval.
 struct Pressed {
   double stiffness_N_per_mm;
   /// Nothing if it has not been pressed.
   std::optional<double> felt_N_per_mm = std::nullopt;
 };
 
-// Returns why the wanted stiffness is not between these two.
+// Returns why the interval does not contain the wanted stiffness.
 std::string reason(const Pressed& low, const Pressed& high) {
   if (low.felt_N_per_mm == 0.0 && high.felt_N_per_mm) {
     return fmt::format("the softest that carries the press, {:.4g}, is felt as {:.4g}",
@@ -74,7 +74,7 @@ HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, 
     const double felt = felt_stiffness_N_per_mm(setup, wall);
     if (std::abs(felt - felt_N_per_mm) <= kWithin * felt_N_per_mm) return named.back();
     (felt < felt_N_per_mm ? low : high) = {stiffness, felt};
-    // Most are felt in proportion to the setting; if that leads out of what is left, its middle.
+    // Felt stiffness is usually proportional to the setting; bisects if that leads outside the interval.
     const double proportional = felt > 0 ? stiffness * felt_N_per_mm / felt : 0;
     const bool is_within = proportional > low.stiffness_N_per_mm && proportional < high.stiffness_N_per_mm;
     stiffness =

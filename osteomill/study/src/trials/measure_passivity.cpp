@@ -19,7 +19,7 @@ constexpr double kWithin = 1.03;
 StiffnessLimit seek_stiffness_limit(const std::function<WallPressResult(double)>& press,
                                     double start_N_per_mm) {
   StiffnessLimit limit;
-  // True if the limit lies above: what gives way is too soft.
+  // Returns true if the limit is higher; a wall that gives way is too soft.
   const auto is_below_limit = [&](double stiffness) {
     const WallPressResult result = press(stiffness);
     if (result.motion == WallMotion::dies_out && stiffness > limit.stiffness_N_per_mm) {

@@ -15,7 +15,7 @@ namespace osteomill {
 
 namespace {
 
-// A resolution of the paper's tables, or of our own algorithm, for which the paper has no rate (0).
+// A resolution of the paper's tables, or of barrier-shell, for which the paper has no rate (0).
 struct Resolution {
   std::string_view algorithm;
   double value;
@@ -32,7 +32,7 @@ const Resolution kResolutions[] = {
     {"barrier-shell", 0.10, 0, " mm"},
 };
 
-// "50 vertices", "scale 2", "spacing 0.13 mm"
+// Returns the resolution as text: "50 vertices", "scale 2", "spacing 0.13 mm".
 std::string text_of(const AlgorithmDescription& algorithm, const Resolution& resolution) {
   const std::string number = fmt::format("{:g}{}", resolution.value, resolution.unit);
   const std::string& name = algorithm.resolution_name;
@@ -60,7 +60,7 @@ Times times_of(MillingTrial& trial) {
   return touching.step_us.empty() ? all : touching;
 }
 
-// Measures the rate with absolute deadlines, as live milling keeps them, but without real-time scheduling.
+// Measures the rate with absolute deadlines, as live milling does, but without real-time scheduling.
 double paced_rate_hz(MillingTrial& trial, int ticks_before, double tick_s) {
   constexpr double kFor_s = 2;
   for (int n = 0; n < ticks_before; ++n) trial.tick();
@@ -111,7 +111,7 @@ std::vector<RateRow> measure_rates(const TrialPlan& plan, const std::vector<Algo
     settings.haptics.named.push_back({algorithm->id.name, algorithm->resolution_setting, resolution.value});
     MillingTrial trial(plan.bone, plan.densities, plan.entry, settings);
     const Times times = times_of(trial);
-    // Known only once points were needed.
+    // The number of points is known only after the first contact.
     const auto same_points = [&](const RateRow& row) {
       return row.algorithm == algorithm->id && row.points == trial.algorithm().sample_point_count();
     };

@@ -10,7 +10,7 @@ namespace osteomill {
 
 namespace {
 
-// A published threshold: the least difference that is noticed, as a share of the value or as it is.
+// A published threshold: the smallest noticeable difference, relative or absolute.
 struct Threshold {
   bool (*is_of)(const FieldDescription& figure);
   double share;
@@ -23,7 +23,7 @@ bool begins_with(const FieldDescription& figure, std::string_view word) {
   return figure.name.starts_with(word);
 }
 
-// The first that fits a figure counts.
+// The first match applies.
 constexpr Threshold kThresholds[] = {
     {[](const auto& figure) { return figure.name.find("_hp_") != std::string::npos; }, 0.20, 0,
      "what trembles above 20 Hz", "Forta, Griffin and Morioka 2012"},

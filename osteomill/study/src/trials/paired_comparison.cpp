@@ -52,7 +52,7 @@ std::vector<PairedComparison> compare_algorithms(const Study& study, std::string
       pair.difference = std::abs(distribution_of(differences).median);
       pair.share = pair.difference / lesser;
       pair.is_noticeable = pair.difference >= least_noticeable(figure, lesser);
-      // False if nothing is known of other tremors.
+      // False if no other tremors were tried.
       pair.is_less_than_tremor =
           pair.difference < std::fmax(given_by_tremor(study, algorithms[a], phase, figure),
                                       given_by_tremor(study, algorithms[b], phase, figure));

@@ -42,7 +42,7 @@ void run_in_parallel(std::size_t count, std::size_t threads, const std::function
   try {
     for (std::size_t n = 1; n < std::min(threads, count); ++n) others.emplace_back(work_beside);
   } catch (const std::system_error&) {
-    // Fewer do as well.
+    // Continues with fewer threads.
   }
   work();
   others.clear();

@@ -45,7 +45,7 @@ std::vector<AlgorithmId> algorithms_of(std::span<const PassivityRow> rows) {
   return sorted_unique(std::move(present));
 }
 
-// A line a device, in the order of the first algorithm's rows.
+// Returns a table with a row per device, in the order of the first algorithm's rows.
 Table devices_table(std::span<const PassivityRow> rows) {
   const auto algorithms = algorithms_of(rows);
   Table table{{"Device: damping, delay", "2 b / (T + 2 τ)"}, {}, true};
@@ -148,8 +148,8 @@ Axes axes_of(std::span<const PassivityRow> rows) {
   return axes;
 }
 
-// Damping, felt stiffness or '?' if none was passive, the same if even the stiffest was, damping, rule.
-// Each algorithm a little aside, since several follow the rule.
+// Columns: damping; felt stiffness, '?' if none was passive; the same if even the stiffest was passive, else
+// '?'; damping; rule. `aside` shifts each algorithm a little, since several follow the rule.
 std::string curve_data(std::span<const PassivityRow> rows, const AlgorithmId& algorithm, double aside,
                        double delay_s) {
   std::string data;
@@ -172,7 +172,7 @@ std::string panel(std::span<const PassivityRow> rows, std::size_t column, const 
     const double aside =
         std::pow(1.05, static_cast<double>(n) - 0.5 * static_cast<double>(axes.algorithms.size() - 1));
     const std::string file = figure.data(curve_data(rows, algorithm, aside, axes.delays_s[column]));
-    // The rule is equal for every algorithm.
+    // The rule is the same for every algorithm.
     rule = fmt::format(", {} using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
     curves += fmt::format(
         "{2}{0} using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, {0} using 1:3 with "

@@ -12,12 +12,12 @@ namespace osteomill {
 
 namespace {
 
-// The shaft is lowered until it is felt with as much as a hand that leans gives, or its centreline is as deep
-// as half its radius.
+// Lowers the shaft in steps until its force reaches that of a leaning hand, or its centreline is half its
+// radius deep.
 constexpr double kPress_N = 0.5;
 constexpr double kStep_mm = 0.005;
 
-// A third of the shaft from the burr: bone touches neither the burr nor the shaft's end.
+// Contact at a third of the shaft, away from both the burr and the shaft's end.
 double lever_mm(const MillingTool& tool) {
   return std::max(tool.shaft_length_mm / 3, 2 * tool.burr_radius_mm);
 }

@@ -31,14 +31,14 @@ Volume flat_wall(const MillingTool& tool) {
   constexpr double kMargin_mm = 0.5, kAbove_mm = 1;
   constexpr double kVoxelsToTheRadius = 12, kMinVoxel_mm = 0.05, kMaxVoxel_mm = 0.5;
   const double spacing_mm = std::clamp(tool.burr_radius_mm / kVoxelsToTheRadius, kMinVoxel_mm, kMaxVoxel_mm);
-  // Deeper than the handle is ever pressed, be it the burr's centre that is felt.
+  // Deeper than any press, even for an algorithm that feels only the burr's centre.
   const double thick_mm = tool.burr_radius_mm + 4;
   const double half_mm = tool.burr_radius_mm + kMargin_mm;
   GridGeometry geometry;
   geometry.dims[0] = geometry.dims[1] = 1 + 2 * static_cast<int>(std::ceil(half_mm / spacing_mm));
   geometry.dims[2] = 1 + static_cast<int>(std::ceil((thick_mm + kAbove_mm) / spacing_mm));
   geometry.spacing_mm = Vec3::Constant(spacing_mm);
-  // The surface lies between two layers, nearer to one of them: no voxel is on it.
+  // Places the surface between two layers, off centre, so that no voxel is exactly on it.
   geometry.origin_mm = {-0.5 * (geometry.dims[0] - 1) * spacing_mm,
                         -0.5 * (geometry.dims[1] - 1) * spacing_mm,
                         -(std::floor(thick_mm / spacing_mm) + 0.3) * spacing_mm};
@@ -51,7 +51,7 @@ Volume sharp_edge(const MillingTool& tool) {
   GridGeometry geometry;
   geometry.dims.fill(1 + 2 * static_cast<int>(kVoxelsToTheRadius * kHalfInRadii));
   geometry.spacing_mm = Vec3::Constant(spacing_mm);
-  // The edge lies on no voxel.
+  // No voxel is exactly on the edge.
   geometry.origin_mm = Vec3::Constant(-(kVoxelsToTheRadius * kHalfInRadii + 0.3) * spacing_mm);
   return bone_below(geometry, [](const Vec3& p) { return (p.z() + std::abs(p.x())) / std::numbers::sqrt2; });
 }

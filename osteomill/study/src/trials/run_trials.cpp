@@ -28,8 +28,8 @@ namespace {
 
 constexpr int kTicksBetweenProgress = 500;
 
-// The seed of a hand's other tremor lies this far from its own, so that it is that of no other hand of a
-// study.
+// Multiple of this stride is added to a hand's seed for another tremor, so that it is not the seed of any
+// other hand of the study.
 constexpr int kOtherTremors = 2;
 constexpr std::uint64_t kTremorStride = 0x9e3779b97f4a7c15;
 
@@ -37,9 +37,9 @@ std::string recording_name(const TrialPlan& plan, std::string_view phase) {
   return fmt::format("{}-{}.h5", plan.settings.algorithm.id.name, phase);
 }
 
-// A trial run to its end.
+// A trial that was run to its end.
 struct MilledTrial {
-  // In memory, and called as the trial is.
+  // Kept in memory; their paths hold the trial's name.
   std::array<Recording, kPhases.size()> phases;
   std::optional<std::string> faults;
 };
@@ -66,8 +66,8 @@ MilledTrial mill(const TrialPlan& plan, MillingTrial& trial, const RunEvents& ev
     faults.add(tick.record);
     if (const auto touched = labels.add(tick.record)) events.no_go(fmt::format("{}: {}", name, *touched));
     if (n % kTicksBetweenProgress == 0) {
-      // A trial that takes longer than asked for, since the hand does not yet feel what it should, stays at
-      // its end.
+      // A trial may exceed its planned time if the hand does not yet feel what it should; progress then stays
+      // at 100 %.
       const double asked_s = script.milling_s + script.holding_s;
       events.progress(name, std::min(1.0, tick.record.time_s / asked_s));
     }
@@ -113,7 +113,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
         first ? Recorder::FirstSession::begins_at_once : Recorder::FirstSession::begins_when_announced,
         Recorder::UnfinishedFile::remove);
     if (const std::string kept = recorder.leftover_note(); !kept.empty()) events.warn(kept);
-    // The session goes on from phase to phase.
+    // The session continues from phase to phase.
     if (!first) recorder.begin_session(0, {.continues_from = paths.front().filename().string()});
     for (const TickRecord& record : phase.records) recorder.push_waiting(record);
     if (first) {
@@ -166,7 +166,7 @@ std::vector<MeasuredRun> hold_in_one_hole(const TrialPlan& milled, const std::ve
     while (!trial.finished()) {
       const TickRecord record = trial.tick().record;
       if (std::isnan(exchanged_s)) exchanged_s = record.time_s;
-      // The leap from one algorithm to the other is no part of the holding.
+      // Excludes the transient when the algorithms are exchanged.
       if (record.time_s >= exchanged_s + left_out_s) holding.records.push_back(record);
     }
     note_shortfall(trial, script, holding);
@@ -214,7 +214,7 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
 
 namespace {
 
-// A line for each algorithm, with its first trial in which ticks were not as they should be.
+// Warns once per algorithm, with its first trial that had faulty ticks.
 void warn_of_faults(const std::vector<TriedTrial>& tried, const RunEvents& events) {
   struct Faults {
     std::string first;

@@ -13,7 +13,7 @@ namespace osteomill {
 
 namespace {
 
-// Twice the ranks of the sizes, so that means of ranks are whole numbers too.
+// Returns twice the ranks of the magnitudes, so that mean ranks are integers.
 std::vector<std::size_t> doubled_ranks(const std::vector<double>& sizes) {
   std::vector<std::size_t> order(sizes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -28,7 +28,7 @@ std::vector<std::size_t> doubled_ranks(const std::vector<double>& sizes) {
   return ranks;
 }
 
-// The chance that the sum of those ranks whose coin falls heads is at most `sum`.
+// Returns the probability that the sum of a random subset of the ranks is at most `sum`.
 double chance_of_at_most(const std::vector<std::size_t>& ranks, std::size_t sum) {
   std::vector<double> chance(sum + 1, 0.0);
   chance[0] = 1;

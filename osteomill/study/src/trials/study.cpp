@@ -28,12 +28,12 @@ std::string columns() {
 
 using M = RunMetrics;
 
-// Phase before algorithm, as in summary.csv.
+// Sorts phase before algorithm, as in summary.csv.
 auto place(const MeasuredRun& run) {
   return std::tuple(phase_number(run.phase), run.algorithm);
 }
 
-// Returns the run of a row; nothing unless it has an algorithm and phase of these rows and their number of
+// Parses a row; returns nothing unless `rows` has its algorithm and phase and it has the right number of
 // columns.
 std::optional<MeasuredRun> read_row(const std::vector<std::string>& cells,
                                     const std::vector<MeasuredRun>& rows) {
@@ -56,7 +56,7 @@ std::optional<MeasuredRun> read_row(const std::vector<std::string>& cells,
   return row;
 }
 
-// Times are not compared: they are the machine's.
+// Ignores times, which depend on the machine.
 bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
   return std::ranges::all_of(fields_of<M>(), [&](const Field<M>& figure) {
     const double first = figure.get(a.metrics), second = figure.get(b.metrics);
@@ -187,7 +187,7 @@ std::string Study::why_not_measured(const AlgorithmId& algorithm, std::string_vi
 }
 
 std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view phase) const {
-  // Between the parts of MeasuredRun::not_reached.
+  // Separator of the parts of MeasuredRun::not_reached.
   constexpr std::string_view kBetween = "; ";
   std::map<std::string, std::size_t> hands;
   for (const MeasuredRun& row : rows_) {
@@ -208,7 +208,7 @@ std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view ph
 
 std::vector<std::string> unreached_lines(const Study& study) {
   std::vector<std::string> lines;
-  // It names all that the milling did not reach, too.
+  // The last phase also names everything that milling did not reach.
   const std::string_view last = study.phases().back();
   const auto count = [&](const std::vector<MeasuredRun>& rows, const AlgorithmId& algorithm, bool unreached) {
     return std::ranges::count_if(rows, [&](const MeasuredRun& row) {

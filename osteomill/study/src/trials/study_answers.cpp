@@ -22,12 +22,12 @@ std::string labels_in_words(const std::vector<AlgorithmId>& algorithms) {
 
 namespace {
 
-// A reason to choose an algorithm: a figure of a phase, of which less is better.
+// A criterion for choosing an algorithm: a figure of a phase; less is better.
 struct Question {
   const char* name;
   std::string_view phase;
   const char* column;
-  // The verdict on the algorithm that has least, and the word for having less.
+  // Verdict on the best algorithm, and the comparative for less.
   const char* is_best;
   const char* less;
 };
@@ -48,7 +48,7 @@ std::vector<Question> questions_of(const Study& study) {
   return all;
 }
 
-// In how many hands the algorithm did all of the test, milling and holding.
+// Returns the number of hands in which the algorithm completed the test, milling and holding.
 std::size_t hands_that_did_all(const Study& study, const AlgorithmId& algorithm) {
   std::size_t done = 0;
   for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
@@ -64,8 +64,7 @@ std::string did_all_text(const Study& study, const AlgorithmId& algorithm) {
   return fmt::format("{} of {}", hands_that_did_all(study, algorithm), study.seeds().size());
 }
 
-// Those that did all of the test in most hands are ranked among themselves; the others are not, however calm
-// they are.
+// Only algorithms that completed the test in most hands are ranked, however calm the others are.
 struct Considered {
   std::vector<AlgorithmId> in, out;
 };
@@ -77,19 +76,18 @@ Considered considered(const Study& study) {
   return all;
 }
 
-// An algorithm's place in a question.
+// Place of an algorithm by one criterion.
 struct Rank {
   AlgorithmId algorithm;
   std::size_t place = 1;
-  // False if the figure is missing in half of the hands or more: it has no place, and takes none.
+  // False if the figure is missing in half of the hands or more: it has no place and takes none.
   bool is_measured = true;
-  // Those against which the hands do not settle it, and those that are the same for a hand.
+  // Algorithms from which the hands do not separate it, and those that feel the same to a hand.
   std::vector<AlgorithmId> open = {}, alike = {};
 
   bool is_first() const { return is_measured && open.empty() && place == 1; }
 };
 
-// Ranks these algorithms among themselves.
 std::vector<Rank> ranks_of(const Study& study, const Question& question,
                            const std::vector<AlgorithmId>& algorithms) {
   std::vector<Rank> ranks;
@@ -133,7 +131,7 @@ std::string share_text(double share) {
   return std::isnan(share) ? "–" : fmt::format("{:.2g} %", 100 * share);
 }
 
-// The questions' names as the heads of columns, with what stands in their cells.
+// Returns a column heading: the criterion's name, with what its cells contain.
 std::string head_of(const Question& question) {
   std::string head = question.name;
   head[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(head[0])));
@@ -143,7 +141,7 @@ std::string head_of(const Question& question) {
                      question.less);
 }
 
-// Returns the rank among those that are considered; nothing if there is only one.
+// Returns the rank among the algorithms considered; empty if there is only one.
 std::vector<Cell::Piece> rank_pieces(const Study& study, const AlgorithmId& algorithm,
                                      const std::vector<Rank>& ranks) {
   if (!are_compared(study)) return {};
@@ -153,7 +151,7 @@ std::vector<Cell::Piece> rank_pieces(const Study& study, const AlgorithmId& algo
   return {{"\n" + rank_text(*rank), rank->is_first() ? Look::strong : Look::faint}};
 }
 
-// Returns the value of one hand and those with other tremors, or of several the median and the rank.
+// Returns the value of a single hand and of its other tremors, or the median and rank of several hands.
 Cell answer_cell(const Study& study, const Question& question, const AlgorithmId& algorithm,
                  const std::vector<Rank>& ranks) {
   const Field<RunMetrics>& figure = metric(question.column);
@@ -260,7 +258,7 @@ std::vector<Table> conclusions(const Study& study, const std::map<std::string, P
 
 namespace {
 
-// A question with what the hands answer to it.
+// A criterion with its results over the hands.
 struct Answers {
   const Study& study;
   const Question& question;
@@ -270,7 +268,7 @@ struct Answers {
   double median(const AlgorithmId& algorithm) const {
     return distribution_of(study.values(algorithm, question.phase, figure.get)).median;
   }
-  // "6.9 %"
+  // Returns the median as text: "6.9 %".
   std::string value(const AlgorithmId& algorithm) const {
     return figure.unit.empty() ? share_text(median(algorithm))
                                : in_two_digits(median(algorithm)) + " " + figure.unit;
@@ -281,12 +279,12 @@ struct Answers {
     });
     return found == pairs.end() ? nullptr : &*found;
   }
-  // ", p = 0.023, 8 hands"
+  // Returns the test result: ", p = 0.023, 8 hands".
   std::string test(const AlgorithmId& a, const AlgorithmId& b) const {
     const PairedComparison* tested = pair(a, b);
     return tested == nullptr ? "" : fmt::format(", {}, {} hands", p_text(tested->p), tested->hands);
   }
-  // Those of these that most hands could measure, the least first.
+  // Returns those of the algorithms that were measured in most hands, in ascending order.
   std::vector<AlgorithmId> by_median(std::vector<AlgorithmId> algorithms) const {
     std::erase_if(algorithms, [&](const AlgorithmId& one) {
       return !study.are_most(study.values(one, question.phase, figure.get).size());
@@ -304,7 +302,7 @@ std::string best_words(const Answers& answers, const AlgorithmId& best,
                      next->label, answers.value(*next), answers.test(best, *next));
 }
 
-// A sentence on each of those that are not considered and had less than the best.
+// Returns a sentence on each algorithm that is not considered but had less than the best.
 std::vector<std::string> words_on_less(const Answers& answers, const AlgorithmId& best,
                                        const std::vector<AlgorithmId>& not_considered) {
   std::vector<std::string> sentences;
@@ -326,8 +324,8 @@ std::vector<std::string> words_on_less(const Answers& answers, const AlgorithmId
   return sentences;
 }
 
-// "calm force while holding (3 point-shell 3.1 %, 4 barrier-shell 3.5 %, p = 0.38, 8 hands)", with those of
-// the least that are not told apart.
+// Names the best algorithms that are not separated: "calm force while holding (3 point-shell 3.1 %, 4
+// barrier-shell 3.5 %, p = 0.38, 8 hands)".
 std::string open_words(const Answers& answers, const std::vector<Rank>& ranks,
                        const std::vector<AlgorithmId>& by_median) {
   const AlgorithmId& least = by_median.front();

@@ -24,7 +24,7 @@ std::vector<std::uint32_t> shuffled(std::size_t count, SeededRandom& random) {
   return order;
 }
 
-// Draws the same number however the trials are asked for.
+// The result does not depend on the order in which trials are requested.
 double place_in_part(std::uint64_t seed, std::size_t axis, std::size_t trial) {
   return SeededRandom(seed * 0x9e3779b97f4a7c15 + axis * 0xbf58476d1ce4e5b9 + trial).uniform(0, 1);
 }
@@ -45,7 +45,7 @@ double StudyRange::at(double share) const {
 
 namespace {
 
-// Rounds off the error of the last bits in a number that people read: 4, not 3.9999999999999996.
+// Rounds off errors in the last bits of a number for people: 4, not 3.9999999999999996.
 double without_last_digits(double value) {
   if (value == std::floor(value)) return value;
   return parsed_number<double>(fmt::format("{:.12g}", value)).value_or(value);

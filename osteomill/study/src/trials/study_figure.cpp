@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kColumns = 4;
 constexpr std::size_t kMaxPanels = 12;
-// In units of the distance between two algorithms.
+// In units of the spacing between two algorithms.
 constexpr double kScatter = 0.2;
 constexpr double kBarHalf = 0.15;
 
@@ -30,7 +30,8 @@ std::vector<double> all_values(const Study& study, std::string_view phase, const
   return all;
 }
 
-// Whole decades if the values spread, so that at least two tics have a number.
+// Uses a logarithmic scale of whole decades for widely spread values, so that at least two tics have a
+// number.
 std::string range_for(const std::vector<double>& values) {
   if (values.empty()) return "unset logscale y\nset yrange [0:1]\n";
   const auto [min, max] = std::minmax_element(values.begin(), values.end());
@@ -42,7 +43,7 @@ std::string range_for(const std::vector<double>& values) {
   return fmt::format("unset logscale y\nset yrange [0:{:.6g}]\n", *max > 0 ? 1.15 * *max : 1.0);
 }
 
-// Two blocks: the dots, and the bars at the medians.
+// Returns two data blocks: the dots, and the bars at the medians.
 std::string dots_and_bars(const std::vector<double>& values, double x) {
   std::string dots, bars;
   const double last = std::max<double>(1, static_cast<double>(values.size()) - 1);
@@ -82,8 +83,7 @@ std::string panel(const Study& study, std::string_view phase, const Field<RunMet
   return range_for(all_values(study, phase, metric)) + plot + "\n";
 }
 
-// Breaks a text that is wider than a panel at the blank nearest to its middle, but not between a number and
-// its unit.
+// Breaks a text wider than a panel at the space nearest to its middle, but not between a number and its unit.
 std::string in_two_lines(std::string text) {
   constexpr std::size_t kMostInALine = 26;
   if (text.size() <= kMostInALine) return text;
@@ -99,7 +99,7 @@ std::string in_two_lines(std::string text) {
   return text;
 }
 
-// The title stands over the whole panel: some are wider than its axes.
+// Centres the title on the whole panel: some titles are wider than its axes.
 std::string title(const Field<RunMetrics>& metric, const PanelGrid& grid, const PanelCell& cell) {
   constexpr double kTitle_px = 28;
   return fmt::format("set label 2 \"{}\" at screen {:.4f},screen {:.4f} center\n",

@@ -8,8 +8,8 @@
 
 namespace osteomill {
 
-/// Draws a figure for each phase, in which every seed is a dot, by algorithm, with a bar at their median: a
-/// panel for each key metric that is not zero throughout, at most twelve.
+/// Draws a figure for each phase: a panel for each key metric that is not zero throughout, at most twelve,
+/// with a dot for each seed, by algorithm, and a bar at their median.
 std::vector<CaptionedFigure> draw_hands(const Study& study, const std::filesystem::path& folder);
 
 }  // namespace osteomill

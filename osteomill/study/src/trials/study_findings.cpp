@@ -11,7 +11,7 @@ namespace osteomill {
 
 namespace {
 
-// Returns the chance of at least k heads in n tosses of a coin.
+// Returns the probability of at least k heads in n coin tosses.
 double chance_of_at_least(std::size_t k, std::size_t n) {
   return std::max(0.0, 1 - chance_of_fewer_heads(k, n));
 }
@@ -26,7 +26,7 @@ Verdict verdict_of(const StudyFinding& finding, const Study& study) {
   return shows(finding.tested - finding.agreeing) ? Verdict::does_not_agree : Verdict::not_settled;
 }
 
-// Returns the medians over the seeds; NaN if no more than half of them could be measured.
+// Returns the medians over the seeds; NaN if at most half of them could be measured.
 RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
   RunMetrics medians;
   for (const Field<RunMetrics>& figure : fields_of<RunMetrics>()) {
@@ -36,7 +36,7 @@ RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
   return medians;
 }
 
-// Algorithm 2's force above 20 Hz while it is held, in a grip: of one seed, or of all.
+// Returns algorithm 2's force above 20 Hz while holding in a grip, for one seed or for all.
 std::vector<double> grip_forces(const Study& study, double grip, std::optional<std::uint64_t> seed) {
   std::vector<double> forces;
   for (const auto* rows : {&study.rows(), &study.rows_beside()}) {
@@ -50,7 +50,7 @@ std::vector<double> grip_forces(const Study& study, double grip, std::optional<s
   return forces;
 }
 
-// Returns for each grip the median over the measured hands; none if a grip was not tried.
+// Returns the median over the measured hands for each grip; empty if a grip was not tried.
 GripForces medians_of_grips(const Study& study, std::optional<std::uint64_t> seed) {
   GripForces medians;
   for (const double grip : kGrips) {

@@ -21,17 +21,17 @@ namespace osteomill {
 namespace {
 
 constexpr std::size_t kMaxCells = 40, kParts = 24, kMaxTics = 8;
-// Values that span this factor stand on a logarithmic axis.
+// Axes are logarithmic if their values span at least this factor.
 constexpr double kWide = 10;
-// Smallest relative difference of values that have separate places on an axis.
+// Values closer than this relative difference share a position on an axis.
 constexpr double kApart = 1e-5;
 
-// Values that a scale cannot tell apart are one.
+// Returns whether a scale cannot distinguish two values.
 bool is_alike(double a, double b) {
   return std::abs(b - a) <= kApart * std::max(std::abs(a), std::abs(b));
 }
 
-// A unit that both have is none of their ratio.
+// Labels a ratio; a unit that both have cancels.
 std::string ratio_label(std::string above, std::string below) {
   const auto unit_of = [](const std::string& label) {
     return label.ends_with(')') ? label.substr(label.rfind(" (")) : std::string();
@@ -43,7 +43,7 @@ std::string ratio_label(std::string above, std::string below) {
   return above + " / " + (below.find('/') == std::string::npos ? below : "(" + below + ")");
 }
 
-// Returns the index of a text among the known ones; appends it if it is new.
+// Returns the index of a text in `known`; appends it if it is new.
 std::size_t place_in(std::vector<std::string>& known, const std::string& text) {
   const auto at = std::ranges::find(known, text);
   const auto place = static_cast<std::size_t>(at - known.begin());
@@ -51,7 +51,7 @@ std::size_t place_in(std::vector<std::string>& known, const std::string& text) {
   return place;
 }
 
-// A quantity along an axis or as a colour: an option, a column of the rows, or the ratio of two of them.
+// Quantity along an axis or as a colour: an option, a column of the rows, or the ratio of two of them.
 class Shown {
  public:
   Shown(const StudyDesign& design, const std::string& shown) {
@@ -72,7 +72,7 @@ class Shown {
   }
 
   std::string label;
-  // The values of an option that has words for values, each shown as its place among them.
+  // Words among an option's values; each is plotted as its index here.
   std::vector<std::string> words;
 
  private:
@@ -92,14 +92,14 @@ class Shown {
   std::vector<Part> parts_;
 };
 
-// The cells of an axis: values, or parts of their range, by their edges.
+// Cells of an axis, given by their edges: one per value, or equal parts of the range.
 struct Cells {
   std::vector<double> edges;
   std::vector<double> tics;
   bool logarithmic = false;
 
   std::size_t count() const { return edges.size() - 1; }
-  // Returns the place of a value as a share of the axis's length.
+  // Returns the position of a value as a fraction of the axis.
   double share_at(double value) const {
     const double from = edges.front(), to = edges.back();
     return logarithmic ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
@@ -115,7 +115,7 @@ double between(double a, double b, bool logarithmic) {
   return logarithmic ? std::sqrt(a * b) : 0.5 * (a + b);
 }
 
-// Beyond the last by as much as the edge before lies ahead of it.
+// Mirrors an edge at the first or last value, to get the edge on its other side.
 double mirrored(double value, double edge, bool logarithmic) {
   return logarithmic ? value * value / edge : 2 * value - edge;
 }
@@ -142,7 +142,7 @@ Cells cells_of(const std::set<double>& values, bool words) {
   return cells;
 }
 
-// Returns the width that the tics and the label of the upright axis take, px.
+// Returns the width of the tics and label of the y axis, px.
 double room_left_px(const Shown& shown) {
   constexpr double kNumbers_px = 84, kLetter_px = 9, kLabel_px = 64;
   std::size_t longest = 0;
@@ -161,7 +161,7 @@ std::string axis_script(char axis, const Cells& cells, const Shown& shown) {
   for (std::size_t n = 0; n < cells.tics.size(); ++n) {
     const bool is_word = !shown.words.empty();
     const double share = cells.share_at(cells.tics[n]);
-    // Numbers beside each other need room.
+    // Skips numbers that would overlap.
     if (axis == 'x' && !is_word && n > 0 && share - last < 0.15) continue;
     last = share;
     tics += fmt::format("{}{} {:.9g}", n == 0 ? "" : ", ",
@@ -200,7 +200,7 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
 struct Point {
   std::size_t panel;
   double x, y, colour;
-  // Its trial did not do all of this part of its test.
+  // True if the trial did not complete this part of its test.
   bool is_unreached;
 };
 
@@ -219,7 +219,6 @@ Cells cells_along(double Point::*axis, const std::vector<Point>& points, const S
   return cells_of(values, !shown.words.empty());
 }
 
-// Holds the content of the map's panels.
 struct Gathered {
   Shown x, y, colour;
   std::vector<std::string> panels = {};
@@ -260,7 +259,7 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
     if (is_measured(point)) cell.values.push_back(point.colour);
     cell.has_unreached |= point.is_unreached;
   }
-  // The hatching is white over a colour, and grey over none.
+  // Hatching is white over a colour, and grey over none.
   struct Boxes {
     std::string coloured, hatched, hatched_grey;
   };

@@ -45,8 +45,8 @@ MeasuredRun run_of_hand(const StudySettings& settings, const TrialRow& row) {
   return run;
 }
 
-// Returns what compared hands have in common: the bone, the tool, and everything else that varies except the
-// hand itself and the algorithm.
+// Returns what the compared hands share: the bone, the tool, and everything else that varies except for hand
+// and algorithm.
 std::string group_of(const StudyDesign& design, const StudySettings& settings) {
   std::string group;
   for (const std::string& key : design.varied()) {
@@ -57,7 +57,7 @@ std::string group_of(const StudyDesign& design, const StudySettings& settings) {
   return group;
 }
 
-// While a study is not done some hands have not yet tried all.
+// Drops hands that have not tried everything yet, in an unfinished study.
 std::vector<MeasuredRun> of_whole_hands(std::vector<MeasuredRun> rows) {
   std::map<std::uint64_t, std::size_t> tried;
   std::size_t most = 0;
@@ -66,7 +66,6 @@ std::vector<MeasuredRun> of_whole_hands(std::vector<MeasuredRun> rows) {
   return rows;
 }
 
-// Returns a section for each group of hands.
 std::vector<Section> findings_sections(const StudyDesign& design, const std::vector<TrialRow>& all,
                                        const fs::path& figures) {
   std::map<std::string, std::vector<MeasuredRun>> groups;
@@ -94,7 +93,7 @@ std::vector<Section> findings_sections(const StudyDesign& design, const std::vec
 
 Table options_table(const StudyDesign& design, const std::vector<TrialRow>& rows) {
   constexpr std::size_t kFewValues = 12;
-  // Up to one value more than is shown, so that the table can say that there are others.
+  // Keeps one value more than is shown, to tell whether there are others.
   std::map<std::string, std::vector<std::string>> tried;
   for (const TrialRow& row : rows) {
     for (const auto& [key, value] : design.trial(row.trial)) {
@@ -133,7 +132,7 @@ std::set<std::size_t> unreached_trials(const std::vector<TrialRow>& rows) {
   return trials;
 }
 
-// Empty if all trials did all of their test.
+// Returns an empty text if all trials completed their test.
 std::string unreached_words(std::size_t short_of, std::size_t done, Unreached unreached) {
   if (short_of == 0) return "";
   return fmt::format(" {} of the {} trials did not do all of their test; {}.", short_of, done,

@@ -22,7 +22,7 @@ namespace osteomill {
 
 namespace fs = std::filesystem;
 
-// A slice's file as it is.
+// Raw content of a slice's file.
 struct SliceContent {
   std::vector<std::uint64_t> trials;
   std::vector<double> values;
@@ -30,7 +30,7 @@ struct SliceContent {
   double cpu_s = 0;
 };
 
-// Members that the reading process passes on.
+// Members to copy from the process that reads the file.
 static auto members_of(StudyRecord& record) {
   return std::tie(record.study_hash, record.program_hash, record.scans_from, record.trials,
                   record.trials_a_slice, record.bones);
@@ -50,7 +50,7 @@ void add_text(WordHash& hash, std::string_view text) {
   hash.add(text.size());
 }
 
-// Throws if writing, or putting it on the disk, fails.
+// Throws if writing or flushing to disk fails.
 void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& write) {
   write_file_atomically(path, [&](const fs::path& beside) {
     const Hdf5Lock lock;
@@ -62,7 +62,7 @@ void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& write) {
   });
 }
 
-// Writes rows of `width` values with a checksum, so that damaged data are not taken for a result.
+// Writes rows of `width` values with a checksum, so that damage is detected.
 template <typename Value>
 void write_dataset(const fs::path& path, hid_t file, const char* name, const std::vector<Value>& values,
                    hsize_t width = 1) {
@@ -79,7 +79,7 @@ void write_dataset(const fs::path& path, hid_t file, const char* name, const std
     throw InputError(path.string(), with_reason(fmt::format("'{}' cannot be written", name)));
 }
 
-// Reads a dataset of `rows` rows. Throws if it has another number of rows.
+// Reads a dataset of `rows` rows. Throws if the number of rows differs.
 template <typename Value>
 std::vector<Value> read_rows(const Hdf5File& file, const char* name, std::size_t rows, hsize_t width = 1) {
   const Hdf5Column column = open_column(file, name, width);
@@ -127,7 +127,7 @@ std::uint64_t StudyRecord::hash() const {
 }
 
 std::uint64_t hash_of_file(const fs::path& path) {
-  // A pipe would be waited for.
+  // Reading a pipe would block.
   if (std::error_code error; fs::exists(path, error) && !fs::is_regular_file(path, error))
     throw InputError(path.string(), "is no regular file");
   std::ifstream in(path, std::ios::binary);
@@ -227,7 +227,7 @@ void write_slice(const StudyFolder& study, const Slice& slice) {
 
 namespace {
 
-// Throws if the file is not of this slice.
+// Throws if the file belongs to another slice.
 SliceContent content_of(const Hdf5File& file, const StudyFolder& study, std::size_t number) {
   const std::size_t count = study.record.size_of(number) * parts_of(study.test).size();
   require_version(file, kSliceVersion);
@@ -242,7 +242,7 @@ SliceContent content_of(const Hdf5File& file, const StudyFolder& study, std::siz
           read.get<double>("cpu_s")};
 }
 
-// Returns the slice of a file's content; nothing if its trials are not the slice's.
+// Converts a file's content to a slice; returns nothing if its trials are not the slice's.
 std::optional<Slice> slice_of(const SliceContent& content, const StudyFolder& study, std::size_t number) {
   const std::vector<Field<TrialRow>>& columns = columns_of(study.test);
   const auto parts = parts_of(study.test);

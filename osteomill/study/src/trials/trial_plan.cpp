@@ -70,7 +70,7 @@ RunMetrics phase_metrics(const Recording& recording) {
     first = ticks - static_cast<std::size_t>(std::min(held, static_cast<double>(ticks)));
   }
   RunMetrics metrics = run_metrics(recording, first);
-  // The spindle is off while holding: what does not touch at all was lost before.
+  // The spindle is off while holding: if there is no contact at all, it was lost before.
   metrics.contact.lost_while_milling |= recording.description.phase == kHolding && metrics.contact.any == 0;
   if (metrics.contact.is_lost()) {
     metrics.force_N = metrics.torque_Nmm = kNotFelt;

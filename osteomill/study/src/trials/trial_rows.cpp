@@ -23,7 +23,7 @@ Columns milling_columns() {
       joined<TrialRow>({fields_within<TrialRow>(run, fields_of<MeasuredRun>()),
                         fields_within<TrialRow>(
                             [](auto& row) -> auto& { return row.run.metrics; }, fields_of<RunMetrics>())});
-  // An option of the trial, and what no study varies.
+  // Grip is an option of the trial; no study varies the tremor.
   std::erase_if(columns, [](const Field<TrialRow>& column) {
     return column.name == "hand_grip" || column.name == "other_tremor";
   });

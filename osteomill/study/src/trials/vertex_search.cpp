@@ -16,8 +16,8 @@ namespace {
 constexpr int kSides = 1000;
 constexpr int kPresses = 100;
 constexpr double kDeepest = 0.5;
-// Burr and shaft of radius 1 mm, so that depths are shares of it; the one circle of the shaft lies as far
-// from the burr's centre.
+// Burr and shaft have a radius of 1 mm, so that depths are fractions of it; the shaft has one circle, at this
+// distance from the burr's centre.
 const MillingTool kTool{1, 1, 2};
 
 Volume linear_wall() {
@@ -44,7 +44,7 @@ std::vector<Quat> sides(bool circle) {
   return turns;
 }
 
-// The circle is felt as a torque alone, (21): its force stands across the lever.
+// A circle is felt only as a torque, (21); its force is perpendicular to the lever arm.
 Vec3 force_N(HapticAlgorithm& algorithm, bool circle, const Pose& X_WD) {
   const Wrench wrench = algorithm.step(X_WD, 1e-3).wrench;
   return circle ? Vec3(wrench.torque_Nmm.cross(shaft_direction(X_WD))) : wrench.force_N;

@@ -10,12 +10,13 @@ namespace osteomill {
 namespace {
 
 constexpr double kMmPerM = 1000;
-// With which the handle is pressed.
+// Force that presses the handle.
 constexpr double kBias_N = 0.5;
-// Pressing slowly: 5 mm/s at 1000 Hz. From where it first resists, no wall is that soft.
+// Slow press, 5 mm/s at 1000 Hz, up to 3 mm beyond the first resistance: a wall that needs more counts as too
+// soft.
 constexpr double kDepthStep_mm = 0.005;
 constexpr double kDeepest_mm = 3;
-// From free space: what an algorithm does for a tool that begins in touch is no part of the wall.
+// Starts in free space: the start-up behaviour of an algorithm in contact is not part of the wall.
 constexpr double kBeginsAbove_mm = 0.5;
 constexpr int kSettleTicks = 50;
 constexpr double kMinSwing_mm = 0.02;
@@ -27,7 +28,7 @@ constexpr double kDecay = 0.99;
 constexpr std::size_t kSwings = 36;
 constexpr double kMax_s = 2;
 
-// The wall as the handle finds it: depth in, force out.
+// The wall as a function: depth in, force out.
 class Wall {
  public:
   Wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press)
@@ -40,7 +41,7 @@ class Wall {
   }
   double burr_radius_mm() const { return burr_radius_mm_; }
   double depth_of(const Pose& X_WD) const { return burr_radius_mm_ - X_WD.position_mm.z(); }
-  // Returns the sent force along the wall's normal; not finite if the algorithm's is not.
+  // Returns the force along the wall's normal; not finite if the algorithm's is not.
   double force_N(const Pose& X_WD) { return algorithm_->step(X_WD, press_->tick_s).wrench.force_N.z(); }
 
  private:
@@ -49,11 +50,10 @@ class Wall {
   const WallPress* press_;
 };
 
-// Describes the place at which the wall carries the pressing force, and the slope of its force there.
+// State in which the wall carries the pressing force, with the slope of its force there.
 struct Rest {
   double depth_mm;
-  /// The part of the depth beyond the wall's first resistance: an algorithm may feel the burr's centre and
-  /// not its surface.
+  /// Depth beyond the wall's first resistance: an algorithm may feel the burr's centre and not its surface.
   double pressed_mm;
   double felt_N_per_mm;
 };
@@ -72,7 +72,8 @@ std::optional<Rest> press_slowly(Wall& wall) {
     }
     return force_N >= wanted_N;
   };
-  // From the last depth short of three quarters of the force, so that a force that jumps is steep, not flat.
+  // Measures from the last depth below three quarters of the force, so that a jump in force gives a steep
+  // slope, not a flat one.
   if (!press_to(0.75 * kBias_N)) return std::nullopt;
   const double shallow_mm = depth_mm - kDepthStep_mm;
   const double shallow_N = last_force_N;
@@ -86,7 +87,7 @@ std::optional<Rest> press_slowly(Wall& wall) {
   return rest;
 }
 
-// The distances between turning points of the handle's true motion.
+// Distances between turning points of the handle's actual motion.
 class Swings {
  public:
   explicit Swings(double depth_mm) : turned_at_mm_(depth_mm), last_mm_(depth_mm) {}
@@ -114,7 +115,7 @@ class Swings {
   std::vector<double> sizes_mm_;
 };
 
-// Returns whether the motion dies out, once the swings show it. The first swing is half of one.
+// Returns whether the motion dies out, once this can be decided. The first swing is only half a swing.
 std::optional<bool> dies_out(const Swings& swings) {
   const auto& sizes = swings.sizes_mm();
   if (sizes.size() < 3) return std::nullopt;
@@ -126,13 +127,13 @@ std::optional<bool> dies_out(const Swings& swings) {
 bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
   SimulatedHandle handle(press.handle, wall.pose_at(rest.depth_mm));
   const double amplitude_mm = std::clamp(0.5 * rest.pressed_mm, kMinSwing_mm, kMaxSwing_mm);
-  // By the force over the whole depth; the slope may be that of a jump.
+  // Uses the mean stiffness over the whole depth; the slope may include a jump.
   const double stiffness_N_per_mm = kBias_N / rest.pressed_mm;
   const double speed_mm_s = amplitude_mm * std::sqrt(kMmPerM * stiffness_N_per_mm / press.handle.mass_kg);
   const double substep_s = press.handle.substep_s;
   const int substeps = static_cast<int>(std::lround(press.tick_s / substep_s));
   Swings swings(rest.depth_mm);
-  // A kick: this force for one substep gives that speed.
+  // Applied for one substep, this force gives that speed.
   Wrench other;
   other.force_N.z() = -press.handle.mass_kg * speed_mm_s / (kMmPerM * substep_s);
   for (double time_s = 0; time_s < kMax_s && swings.sizes_mm().size() < kSwings; time_s += press.tick_s) {

@@ -30,7 +30,7 @@ std::vector<RateRow> rows_of(std::span<const RateRow> rows, const AlgorithmId& a
   return of;
 }
 
-// Whole decades about all rates, so that all panels share one scale.
+// Returns whole decades that contain all rates, so that all panels share one scale.
 std::string rate_range(std::span<const RateRow> rows) {
   double min = 1000, max = 1000;
   for (const RateRow& row : rows) {
@@ -75,8 +75,8 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, FigureSc
                               algorithm.colour);
 }
 
-// Rate against resolution, a panel for each algorithm, measured and from the paper, with the 1000 Hz that a
-// haptic loop needs.
+// Draws the rate against the resolution, measured and from the paper, with a panel for each algorithm and a
+// line at the 1000 Hz that a haptic loop needs.
 Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::path& folder) {
   std::vector<std::vector<RateRow>> panels;
   std::vector<AlgorithmId> algorithms;
@@ -117,7 +117,7 @@ void require_usable(const std::vector<RateRow>& rows) {
   }
 }
 
-// `named` gives what stands before the numbers of a row.
+// `named` returns the columns before the numbers of a row.
 template <typename Row, typename Named>
 void write_rows(const fs::path& path, const char* head, const std::vector<Row>& rows, const Named& named) {
   write_text_atomically(path, [&](std::ostream& out) {
@@ -130,8 +130,7 @@ std::string ratio_text(double ratio) {
   return fmt::format("{:.{}f}", ratio, ratio < 9.95 ? 1 : 0);
 }
 
-// The machines are told apart by the steps a second; the paper's are of a loop that waits for its
-// millisecond.
+// Compares machines by steps per second; the paper's rates are of a loop that waits for each millisecond.
 std::string plain_words(const std::vector<RateRow>& rows) {
   std::vector<double> ratios;
   std::size_t fast_enough = 0, achieved = 0;
@@ -211,7 +210,7 @@ fs::path write_rates_report(const MeasuredRates& measured, const fs::path& out_d
   const std::vector<RateRow>& rows = measured.rows;
   require_usable(rows);
   create_folder(out_dir);
-  // The measurements, which stay if no figure can be drawn.
+  // Write the measurements first: they remain if no figure can be drawn.
   write_rows(out_dir / "rates.csv", "algorithm,resolution", rows,
              [](const RateRow& row) { return name_of(row.algorithm) + "," + csv_field(row.resolution); });
   if (!measured.vertices.empty())
