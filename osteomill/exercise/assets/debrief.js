@@ -1,4 +1,4 @@
-// Shows what a debriefing's page holds as data: the bone in 3D, the course on one axis of time, and small curves.
+// Shows a debriefing page's data: the bone in 3D, the course on a common time axis, and small curves.
 (function () {
   "use strict";
   const { data: D, floats, el, showBone } = window.Osteomill;
@@ -19,7 +19,7 @@
     for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; ++n) all.push(Number((n * step).toPrecision(12)));
     return all;
   }
-  // The least and the greatest value of each pixel, so that no spike is lost.
+  // Draws the minimum and maximum of each pixel, so that every spike is kept.
   function outline(times, values, x, y, wide) {
     let path = "", pixel = -1, low = 0, high = 0, open = false;
     const flush = () => {
@@ -62,11 +62,11 @@
 
   if (!D.samples) return;
   const unpacked = columns => columns ? Object.fromEntries(Object.entries(columns).map(([key, value]) => [key, floats(value)])) : null;
-  // The samples, the views, and the samples of the first way from where this one leaves it.
+  // Samples, views, and the original attempt's samples from the branch point on.
   const S = unpacked(D.samples), V = unpacked(D.views), F = D.first ? unpacked(D.first.samples) : null;
   const count = S.time.length, begin = S.time[0], end = S.time[count - 1];
 
-  // State: the time that is shown, the mark that is chosen, and who wants to know.
+  // State: displayed time, selected mark, and listeners.
   let time = begin, moved = false, chosen = -1;
   const listeners = [];
   function sampleAt(t) {
@@ -186,7 +186,7 @@
     drawCourse();
   });
 
-  // Marks: what each says, and the list of all.
+  // Marks: a card for the selected one, and the list of all.
 
   const boneHere = document.getElementById("bone");
   const card = el("div", { id: "card", class: "card", hidden: true, "aria-live": "polite" });
@@ -332,7 +332,7 @@
   };
   listeners.push(draw);
 
-  // A press without a drag picks the nearest mark.
+  // A press without a drag selects the nearest mark.
   function pixelOf(mark) {
     const p = new THREE.Vector3(...mark.place).project(camera);
     return [(p.x + 1) / 2 * view.frame.clientWidth, (1 - p.y) / 2 * view.frame.clientHeight, p.z];

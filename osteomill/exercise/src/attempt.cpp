@@ -16,7 +16,7 @@ namespace osteomill {
 
 namespace {
 
-// Follows the burr's path through the ticks in which it cuts.
+// Splits the burr's path while cutting into strokes.
 class StrokeFinder {
  public:
   void add(const AttemptTick& tick) {
@@ -26,13 +26,13 @@ class StrokeFinder {
       return;
     }
     if (!begun_) begin_at(tick.burr_W);
-    // A short time without cutting belongs to the stroke.
+    // A short pause in cutting belongs to the stroke.
     current_.duration_s += std::exchange(pause_s_, 0) + tick.dt_s;
     const Vec3 step = tick.burr_W - corner_;
     beyond_mm_ = std::max(beyond_mm_, step.dot(direction_));
     if (step.norm() < kStep_mm) return;
     if (step.dot(direction_) < 0) {
-      // The path turned between its last corner and here, where it had come farthest.
+      // The path turned between its last corner and here, at its farthest point.
       const Vec3 turn_W = corner_ + beyond_mm_ * direction_;
       end();
       begin_at(turn_W);
@@ -72,15 +72,15 @@ class StrokeFinder {
   std::vector<Stroke> strokes_;
   Stroke current_;
   Vec3 corner_ = Vec3::Zero();
-  // The direction of the last step, zero in a stroke's first, and how far the path went on along it since.
+  // Direction of the last step, zero in the first of a stroke, and the largest distance along it since.
   Vec3 direction_ = Vec3::Zero();
   double beyond_mm_ = 0;
   double pause_s_ = 0;
   bool begun_ = false;
 };
 
-// Returns the bone left over a structure, given the space that was open from outside before, and what milling
-// opened. Looks only about that.
+// Returns the bone left over a structure, given the space that was open before and the space that milling
+// opened. Searches only near the opened space.
 std::vector<ThicknessLeft> thickness_over(const PlacedExercise& exercise, const VoxelSet& structure,
                                           const VoxelSet& open_before, const VoxelSet& opened) {
   const Vec3& spacing_mm = exercise.scan.spacing_mm;
@@ -90,14 +90,14 @@ std::vector<ThicknessLeft> thickness_over(const PlacedExercise& exercise, const 
   const VoxelBox near = structure.box().intersected(opened.box().grown(reach));
   std::vector<ThicknessLeft> left;
   if (opened.box().empty() || near.empty()) return left;
-  // Space that is open when the exercise begins is no work of the trainee's.
+  // Space that was already open at the beginning was not opened by the trainee.
   const VoxelBox box = near.grown(reach).intersected(exercise.scan.all_voxels());
   const NearestVoxels before(open_before, box, spacing_mm), after(opened, box, spacing_mm);
   for_each(near, [&](const VoxelIndex& v) {
     if (!structure.contains(v)) return;
     const double now_mm = after.distance_mm(v);
     if (!(now_mm <= kReach_mm) || now_mm > before.distance_mm(v) - voxel_mm) return;
-    // A voxel within the structure lies behind its surface.
+    // Skips voxels inside the structure: only its surface counts.
     const VoxelIndex open = after.nearest_to(v);
     const Vec3 way(open.i - v.i, open.j - v.j, open.k - v.k);
     const Vec3 next = (Vec3(v.i, v.j, v.k) + way / way.cwiseAbs().maxCoeff()).array().round();
@@ -108,14 +108,14 @@ std::vector<ThicknessLeft> thickness_over(const PlacedExercise& exercise, const 
   return left;
 }
 
-// Notes for every voxel the tick in which it ceased to be bone.
+// Records when each voxel ceased to be bone.
 class RemovalTimes {
  public:
   explicit RemovalTimes(const Volume& scan) : scan_(scan), seen_(scan.geometry().voxel_count()) {}
 
   void add(const Volume& bone, const VoxelBox& changed, double time_s) {
     const std::array<int, 3>& dims = bone.geometry().dims;
-    // A session may begin with bone that was put back.
+    // Bone may have been restored at the start of a session.
     if (changed == bone.geometry().all_voxels())
       std::erase_if(times_s_,
                     [&](const auto& one) { return !(seen_[one.first] = !is_bone(bone, one.first)); });
@@ -137,11 +137,11 @@ class RemovalTimes {
 
   const Volume& scan_;
   std::unordered_map<std::size_t, float> times_s_;
-  // Voxels that were found to be no bone: most of those that change are.
+  // Voxels already found not to be bone; most changed voxels are in this set.
   std::vector<bool> seen_;
 };
 
-// Tells the ticks that cut whether their contact was seen. Each view is looked at once.
+// Sets for each cutting tick whether its contact was hidden. Evaluates each view once.
 class SeenContacts {
  public:
   explicit SeenContacts(const std::vector<ViewSample>& views) : views_(views) {}
@@ -280,13 +280,13 @@ bool is_hidden(const ViewSample& view, const Volume& bone, const Vec3& contact_W
   const double up = std::tan(0.5 * view.field_of_view_rad);
   const Vec3 seen = contact_C / -contact_C.z();
   if (!(contact_C.z() < 0) || std::abs(seen.y()) > up || std::abs(seen.x()) > up * view.aspect) return true;
-  // The contact itself lies on bone.
+  // Ends the line of sight before the contact, which is on bone itself.
   const Vec3& eye_W = view.X_WC.position_mm;
   const double voxel_mm = bone.geometry().spacing_mm.maxCoeff();
   const Vec3 sight_W = (contact_W - eye_W).normalized();
   Vec3 from_W = eye_W;
   const Vec3 to_W = contact_W - 1.5 * voxel_mm * sight_W;
-  // The cuts leave a convex part: along the line of sight it begins behind the last of them.
+  // The cuts leave a convex part: the line of sight enters it at the last cut.
   for (const ViewCut& cut : view.cuts) {
     if (cut.normal_W.isZero()) continue;
     const double before_mm = cut.offset_mm - cut.normal_W.dot(from_W);

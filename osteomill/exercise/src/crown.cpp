@@ -10,10 +10,10 @@ namespace osteomill {
 
 namespace {
 
-// How deep the preparation is looked for, and how far up the bone that lies over an undercut.
+// Search depth below the original surface, and search height for bone above an undercut.
 constexpr double kReach_mm = 6;
 
-// Looks into the crown along the normal at a place of its surface before it was prepared.
+// Measures the crown along the normal at a point of its original surface.
 void look_in(const Attempt& attempt, const Vec3& axis_W, const Vec3& place_W, Crown& crown) {
   constexpr double kReduced_mm = 0.3, kAxial_deg = 30;
   const auto outward_W = outward_normal(*attempt.scan, place_W);

@@ -35,7 +35,7 @@ using nlohmann::json;
 
 constexpr const char* kUnnamed = "without a name";
 
-// The vertices of all bodies of a page together take 2.6 MB.
+// Maximum for all bodies of a page together; they take 2.6 MB.
 constexpr std::size_t kPageVertices = 110000;
 constexpr const char *kThisWay = "this way", *kFirstWay = "the first way";
 
@@ -65,7 +65,7 @@ std::string value_text(const MeasuredValue& row) {
   return row.value ? fmt::format("{}{}{}", shown(*row.value), row.unit.empty() ? "" : " ", row.unit) : "–";
 }
 
-// A value with its mark below.
+// Returns a value with its mark below.
 Cell marked_cell(const MeasuredValue& row) {
   Cell cell{{{value_text(row), Look::strong}}};
   if (is_item(row)) cell.pieces.push_back({"\n"});
@@ -73,13 +73,13 @@ Cell marked_cell(const MeasuredValue& row) {
   return cell;
 }
 
-// Returns the row of the same place; they are of one exercise.
+// Returns the corresponding row; both attempts are of the same exercise.
 const MeasuredValue& row_of(const DebriefedAttempt& attempt, const DebriefedAttempt& own,
                             const MeasuredValue& row) {
   return attempt.rows[static_cast<std::size_t>(&row - own.rows.data())];
 }
 
-// Returns the values of a measure in attempts, of those that have one.
+// Returns the values of a measure in those attempts that have one.
 std::vector<double> values_of(const std::vector<DebriefedAttempt>& attempts, const std::string& measure) {
   std::vector<double> values;
   for (const DebriefedAttempt& attempt : attempts) {
@@ -123,7 +123,7 @@ Section items_section(const DebriefedAttempt& own, const DebriefPeers& peers) {
   return section;
 }
 
-// Against the attempts before, once there are enough for their spread.
+// Compares with the earlier attempts, once there are enough to estimate their spread.
 std::vector<Section> spread_sections(const DebriefedAttempt& own, const DebriefPeers& peers) {
   if (peers.before.empty()) return {};
   Section section{.title = fmt::format(
@@ -220,7 +220,7 @@ Section about_section(const Exercise& exercise, const DebriefedAttempt& own, con
   return section;
 }
 
-// Draws the bone at the end for browsers without WebGL; nothing if there is no OpenGL here either.
+// Draws the bone at the end for browsers without WebGL; returns nothing if OpenGL is not available here.
 std::vector<CaptionedFigure> still_of(const Attempt& attempt, const std::shared_ptr<const LabelMap>& colours,
                                       const TemporaryFolder& work) {
   const PlacedExercise& exercise = *attempt.exercise;
@@ -240,7 +240,7 @@ std::vector<CaptionedFigure> still_of(const Attempt& attempt, const std::shared_
            "The bone at the end: target green, bone to be kept blue, structures red to violet."}};
 }
 
-// `work` outlives the page's use.
+// `work` must outlive the page.
 Page attempt_page(const Attempt& attempt, const Recording& recording, const DebriefedAttempt& own,
                   const DebriefPeers& peers, const TemporaryFolder& work) {
   const PlacedExercise& exercise = *attempt.exercise;
@@ -283,7 +283,7 @@ std::string name_of(const DebriefedAttempt& attempt) {
   return attempt.trainee.empty() ? kUnnamed : attempt.trainee;
 }
 
-// Returns the attempts of each person, by name and time.
+// Returns the attempts of each person, sorted by name and time.
 std::map<std::string, std::vector<DebriefedAttempt>> by_person(
     const std::vector<DebriefedAttempt>& attempts) {
   std::map<std::string, std::vector<DebriefedAttempt>> people;
@@ -334,7 +334,7 @@ std::vector<DebriefedAttempt> expert_attempts(const PlacedExercise& placed, cons
   return experts;
 }
 
-// Returns null if the recording goes on from none.
+// Returns null if the recording does not branch off from another one.
 std::shared_ptr<FirstWay> first_way_of(const Attempt& attempt, const Recording& recording) {
   const auto from = branch_point(recording.description);
   if (!from) return nullptr;
@@ -371,7 +371,8 @@ Spread spread_of(const std::vector<double>& before) {
   if (before.size() < kFewest) return spread;
   double squares = 0;
   for (const double value : before) squares += (value - spread.mean) * (value - spread.mean);
-  // Student's t for 95 %, expanded about the normal distribution's 1.96 (Abramowitz and Stegun 26.7.5).
+  // Quantile of Student's t for 95 %, expanded around the normal quantile 1.96 (Abramowitz and Stegun
+  // 26.7.5).
   const double free = count - 1, z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
   const double t = z + (z3 + z) / (4 * free) + (5 * z5 + 16 * z3 + 3 * z) / (96 * free * free) +
                    (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * free * free * free);

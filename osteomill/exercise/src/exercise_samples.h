@@ -19,7 +19,7 @@
 
 namespace osteomill::testing_support {
 
-/// Bone below z = 0, in a cube of about 16 mm about the origin.
+/// Returns bone below z = 0, in a cube of about 16 mm about the origin.
 inline Volume bone_below_zero(double spacing_mm, double side_mm = 16) {
   const auto voxels = static_cast<int>(side_mm / spacing_mm);
   return shape_volume(centred_cube(voxels, spacing_mm), plane(Vec3::Zero(), Vec3::UnitZ()));
@@ -29,7 +29,7 @@ inline Region region_of(std::vector<Shape> shapes) {
   return {std::move(shapes), 7};
 }
 
-/// An exercise without structures, items or steps.
+/// Returns an exercise without structures, items or steps.
 inline Exercise exercise_with_target(Region target) {
   Exercise exercise;
   exercise.file = "task.toml";
@@ -39,7 +39,7 @@ inline Exercise exercise_with_target(Region target) {
   return exercise;
 }
 
-/// Mills a bone along poses, 1 ms each, and returns the recording of it.
+/// Mills a bone along poses, 1 ms each, and returns the recording.
 inline Recording record_poses(const Volume& bone, const std::vector<Vec3>& burr_W, double burr_radius_mm) {
   SessionSettings settings;
   settings.setup.tool.burr_radius_mm = burr_radius_mm;
@@ -59,7 +59,7 @@ inline Recording record_poses(const Volume& bone, const std::vector<Vec3>& burr_
   return recording;
 }
 
-/// Returns places on the way from one to another, `step_mm` apart.
+/// Returns points on the line between two points, `step_mm` apart.
 inline std::vector<Vec3> way(const Vec3& from, const Vec3& to, double step_mm) {
   const auto steps = static_cast<int>(std::ceil((to - from).norm() / step_mm));
   std::vector<Vec3> places;

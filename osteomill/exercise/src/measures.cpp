@@ -32,7 +32,7 @@ double share(std::vector<double> values, double part) {
   return values.empty() ? kNone : percentile(std::move(values), part);
 }
 
-// The bone that is gone.
+// Removed bone.
 
 std::size_t removed_of(const Attempt& attempt, const VoxelSet& voxels) {
   std::size_t count = 0;
@@ -75,11 +75,11 @@ double keep_removed_mm3(const Attempt& attempt) {
   return exercise.keep.empty() ? kNone : exercise.volume_mm3(removed_of(attempt, exercise.keep));
 }
 
-// Structures that must not be touched. Each is measured alone, or the worst of all.
+// No-go structures. Measured separately, and over all of them.
 
 using OfStructure = std::function<double(const Attempt&, std::size_t)>;
 
-// Returns the measure of all structures: the least or greatest of those that have a value.
+// Returns the minimum or maximum over those structures that have a value.
 std::function<double(const Attempt&)> worst_of(OfStructure one, bool is_least) {
   return [one = std::move(one), is_least](const Attempt& attempt) {
     double worst = kNone;
@@ -89,7 +89,7 @@ std::function<double(const Attempt&)> worst_of(OfStructure one, bool is_least) {
   };
 }
 
-// The contacts with one structure, or with the nearest of all.
+// Contacts with one structure, or with the nearest one.
 struct Contacts {
   double count = 0;
   double time_s = 0;
@@ -129,8 +129,8 @@ double no_go_removed_of_all_mm3(const Attempt& attempt) {
   return exercise.structures.empty() ? kNone : exercise.volume_mm3(count);
 }
 
-// Makes the measure of the nearest structure in each tick and of each structure from one part of the
-// contacts.
+// Creates a measure from a member of Contacts: for the nearest structure in each tick, and for each
+// structure.
 Measure of_contact(std::string name, std::string unit, std::string formula, std::string source,
                    double Contacts::*part) {
   Measure measure{std::move(name), std::move(unit), std::move(formula), std::move(source), {}};
@@ -145,7 +145,7 @@ Measure of_contact(std::string name, std::string unit, std::string formula, std:
   return measure;
 }
 
-// Makes the measure of each structure, and of all the least or greatest that has a value.
+// Creates a measure for each structure, and for all the minimum or maximum of those that have a value.
 Measure of_structure(std::string name, std::string unit, std::string formula, std::string source,
                      OfStructure one, bool is_least) {
   Measure measure{std::move(name), std::move(unit), std::move(formula), std::move(source),
@@ -197,7 +197,7 @@ double of_strokes(const Attempt& attempt, double Stroke::*quantity) {
   return share(std::move(values), 0.5);
 }
 
-/// A range of distances from the nearest structure, mm.
+/// Range of distances from the nearest structure, mm.
 struct Zone {
   double from_mm = -std::numeric_limits<double>::infinity();
   double to_mm = std::numeric_limits<double>::infinity();
@@ -235,9 +235,9 @@ double removal_rate_mm3_s(const Attempt& attempt, const Zone* zone) {
   return ratio(removed, time_s);
 }
 
-// Time that the steps took, and how the work went on.
+// Time for each step, and progress over time.
 
-// From when all steps before it were done, or from the beginning.
+// Returns the time from completion of all earlier steps, or from the beginning, until this one was completed.
 double step_s(const Attempt& attempt, std::size_t step) {
   if (attempt.ticks.empty()) return kNone;
   double from_s = attempt.ticks.front().time_s;
@@ -251,7 +251,8 @@ double steps_s(const Attempt& attempt) {
   return sum_s;
 }
 
-// The greatest Dice coefficient on the way, which is lower again at the end if bone went that should not.
+// Returns the progress at the largest Dice coefficient, which falls again if bone is removed outside the
+// target.
 AttemptProgress peak_of(const Attempt& attempt) {
   const std::vector<AttemptProgress> way = progress_of(attempt);
   const auto peak = std::ranges::max_element(way, {}, &AttemptProgress::dice_percent);
@@ -413,7 +414,7 @@ bool is_met(const ExerciseItem& item, double value) {
   return (!item.at_least || value >= *item.at_least) && (!item.at_most || value <= *item.at_most);
 }
 
-// A row for each item that limits the measure, or one without a limit.
+// Adds a row for each item that limits the measure, or one without a limit.
 void add_rows(std::vector<MeasuredValue>& rows, const Measure& measure, const std::string& part, double value,
               const Exercise& exercise) {
   MeasuredValue row{

@@ -21,7 +21,7 @@ bool is_over(const Moment& moment, const Attempt& attempt, std::size_t tick) {
   return attempt.ticks[tick].time_s - attempt.ticks[moment.last_tick].time_s >= kApart_s;
 }
 
-// Returns the volume that each tick took outside the target.
+// Returns the volume removed outside the target in each tick.
 std::map<std::size_t, double> outside_by_tick(const Attempt& attempt) {
   const double voxel_mm3 = attempt.exercise->scan.voxel_volume_mm3();
   std::map<std::size_t, double> taken_mm3;

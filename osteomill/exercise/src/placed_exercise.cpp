@@ -32,7 +32,7 @@ VoxelSet within_margin(const VoxelSet& target, const GridGeometry& scan, double 
   return allowed;
 }
 
-// Walls of fissures tilt the sum, so an axis is taken: the vertical one for what is worked from above.
+// Returns an axis, because walls of fissures tilt the mean normal: z for targets reached from above.
 Vec3 outward_of(const VoxelSet& target, const Volume& scan) {
   Vec3 sum_W = Vec3::Zero();
   target.for_each([&](const VoxelIndex& v) {
@@ -51,7 +51,7 @@ Vec3 outward_of(const VoxelSet& target, const Volume& scan) {
   return std::copysign(1.0, sum_W[axis]) * Vec3::Unit(axis);
 }
 
-// One solid is measured exactly; all else, by its voxels.
+// Measures a single solid exactly, everything else by its voxels.
 StructureDistance distance_of(const Region& region, const VoxelSet& voxels, const GridGeometry& scan) {
   if (region.shapes.size() == 1) {
     const Shape& shape = region.shapes.front();

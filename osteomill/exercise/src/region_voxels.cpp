@@ -22,10 +22,10 @@ namespace osteomill {
 
 namespace {
 
-// Beyond any scan, and within the range of whole numbers.
+// Larger than any scan, and still within the range of int.
 constexpr double kMaxNumber = 1e8;
 
-/// A shape as voxels see it: the box that holds it, and which voxels of that box lie in it.
+/// A shape in voxels: its bounding box, and a membership test within it.
 struct ShapeVoxels {
   VoxelBox box;
   std::function<bool(const VoxelIndex&)> contains;
@@ -66,7 +66,7 @@ class Finder {
       box = box.intersected(shapes.back().box);
     }
     if (box.empty()) return {};
-    // Shells last: they are searched only within the other shapes.
+    // Shells come last: they are evaluated only within the other shapes.
     for (const Shape& shape : region_.shapes)
       if (const auto* shell = std::get_if<ShellShape>(&shape)) shapes.push_back(layer(*shell, box));
     VoxelSet found(box);
@@ -172,7 +172,7 @@ class Finder {
     return {box, [near = std::move(near)](const VoxelIndex& v) { return near.contains(v); }};
   }
 
-  // Returns how far the centre of a voxel lies out of the bone beside it, by the slope of the density there.
+  // Returns the distance of a voxel's centre from the bone surface next to it, mm, from the density gradient.
   double above_surface_mm(const VoxelIndex& open) const {
     const double half_mm = 0.5 * grid().spacing_mm.minCoeff();
     const double slope = density_gradient(scan_.grid(), grid().world_from_voxel(open)).norm();
@@ -206,7 +206,7 @@ VoxelSet removed_voxels(const Volume& before, const Volume& after) {
 
 namespace {
 
-// Adds to `found` the space that is connected to a voxel by faces, and calls `use` with each of its voxels.
+// Flood-fills the face-connected space from a voxel into `found`, and calls `use` for each added voxel.
 template <typename IsSpace, typename Use>
 void flood(VoxelSet& found, const VoxelIndex& start, const IsSpace& is_space, const Use& use) {
   std::vector<VoxelIndex> pending;
@@ -279,7 +279,7 @@ bool is_cut_through(const VoxelSet& structure, const Volume& before, const Volum
   });
   if (!is_cut) return false;
   const VoxelBox box = held.grown(1).intersected(before.geometry().all_voxels());
-  // Bone that was removed beside the structure opens no way through it.
+  // Bone removed next to the structure does not open a passage through it.
   const auto is_space = [&](const Volume& within) {
     return [&](const VoxelIndex& v) { return !(structure.contains(v) ? within : after).is_bone(v); };
   };

@@ -4,7 +4,7 @@
 
 namespace osteomill {
 
-/// The script and the style of a debriefing's page, as they were when the program was built.
+/// Script and style sheet of a debriefing's page, embedded at build time.
 std::string_view debrief_js();
 std::string_view debrief_css();
 

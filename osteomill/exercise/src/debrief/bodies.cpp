@@ -16,8 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// Moves every vertex half of the way to the middle of its neighbours, so that a surface of voxels has no
-// steps.
+// Moves every vertex halfway to the mean of its neighbours, to smooth the steps of a voxel surface.
 void smooth(BrickMesh& mesh) {
   constexpr int kPasses = 4;
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -35,7 +34,7 @@ void smooth(BrickMesh& mesh) {
   }
 }
 
-// Returns the surface of a set's voxels that are wanted; empty if none is.
+// Returns the surface of those voxels of a set that `is_wanted` accepts; empty if there are none.
 template <typename Wanted>
 BrickMesh surface_of(const VoxelSet& voxels, const GridGeometry& scan, const Wanted& is_wanted) {
   VoxelBox box;
@@ -57,7 +56,8 @@ BrickMesh surface_of(const VoxelSet& voxels, const GridGeometry& scan, const Wan
   return mesh;
 }
 
-// Returns for each vertex of a structure the bone left over it in 1/31 mm, 255 if none was taken there.
+// Returns for each vertex of a structure the thickness of the bone left over it in 1/31 mm; 255 if milling
+// did not thin it.
 std::vector<std::uint8_t> thickness_at(const BrickMesh& mesh, const std::vector<ThicknessLeft>& left,
                                        const GridGeometry& scan) {
   std::unordered_map<std::size_t, double> left_mm;

@@ -12,12 +12,12 @@
 
 namespace osteomill {
 
-/// Returns a ball about the target.
+/// Returns a ball that contains the target.
 Sphere target_ball(const PlacedExercise& exercise);
 
-/// Adds the bodies that a debriefing's page shows: the bone at the end, the target and what was left of it,
-/// what was taken outside it, the bone to be kept, and each structure with the bone that was left over it.
-/// Each is simplified until all have at most `max_vertices`. `colours` are those of `colours_of`. Long work.
+/// Adds the bodies of a debriefing's page: the bone at the end, the target and its remainder, the bone
+/// removed outside it, the bone to be kept, and each structure with the thickness of the bone left over it.
+/// Simplifies each so that together they have at most `max_vertices`. `colours` is from `colours_of`. Slow.
 void add_bodies(nlohmann::json& data, const Attempt& attempt, const LabelMap& colours,
                 std::size_t max_vertices, const std::string& choice = {});
 

@@ -24,7 +24,7 @@ using nlohmann::json;
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-// Columns of samples, each by its name.
+// Named columns of samples.
 class Columns {
  public:
   void add(const char* name, std::initializer_list<double> numbers) {
@@ -41,7 +41,7 @@ class Columns {
   std::map<std::string, std::vector<float>> columns_;
 };
 
-// Returns for each sample its last tick, from one on: 30 a second, fewer in long sessions.
+// Returns the last tick of each sample, starting at a tick: 30 samples a second, fewer in long sessions.
 std::vector<std::size_t> sampled_ticks(const std::vector<AttemptTick>& ticks, std::size_t from = 0) {
   constexpr double kMost = 6000, kEvery_s = 1.0 / 30;
   std::vector<std::size_t> sampled;
@@ -54,7 +54,7 @@ std::vector<std::size_t> sampled_ticks(const std::vector<AttemptTick>& ticks, st
   return sampled;
 }
 
-// The greatest force, the least distance and the bone removed in each sample's ticks.
+// Returns the maximum force, minimum distance and removed bone over each sample's ticks.
 Columns felt_samples(const Attempt& attempt, const std::vector<std::size_t>& sampled) {
   Columns samples;
   std::size_t n = sampled.empty() ? 0 : sampled.front();
@@ -73,7 +73,7 @@ Columns felt_samples(const Attempt& attempt, const std::vector<std::size_t>& sam
   return samples;
 }
 
-// These, and the tool at each sample's end.
+// Returns the same, with the tool at the end of each sample.
 json samples_of(const Attempt& attempt, const Recording& recording, const std::vector<std::size_t>& sampled) {
   Columns samples = felt_samples(attempt, sampled);
   for (const std::size_t n : sampled) {
@@ -87,7 +87,7 @@ json samples_of(const Attempt& attempt, const Recording& recording, const std::v
   return samples.packed_columns();
 }
 
-// The view that the trainee had at each sample, not numbers before the first.
+// Returns the trainee's view at each sample; NaN before the first view.
 json views_of(const Attempt& attempt, const std::vector<std::size_t>& sampled) {
   Columns columns;
   auto next = attempt.views.begin();
@@ -106,7 +106,7 @@ json views_of(const Attempt& attempt, const std::vector<std::size_t>& sampled) {
   return columns.packed_columns();
 }
 
-// The burrs in turn: the tick from which on each was used, and its name.
+// Returns the burrs in order: the first tick with each, and its name.
 std::vector<std::pair<std::size_t, std::string>> burrs_of(const Recording& recording) {
   std::vector<std::pair<std::size_t, std::string>> burrs;
   for (const RecordedSession& session : recording.sessions) {
@@ -123,7 +123,7 @@ std::string command_at(const std::string& recording_name, double time_s) {
   return fmt::format("osteomill simulate --from {} --at {:.6f}", quoted(recording_name), time_s);
 }
 
-// Returns the moments that a page has room for: contacts before all, and of the removals the largest.
+// Returns the moments that fit into a page: contacts first, then the largest removals.
 std::vector<Moment> shown_of(std::vector<Moment> moments) {
   constexpr std::size_t kMost = 500;
   if (moments.size() <= kMost) return moments;
@@ -135,7 +135,7 @@ std::vector<Moment> shown_of(std::vector<Moment> moments) {
   return moments;
 }
 
-// Says what is not among the marks; empty if all is.
+// Describes what is missing from the marks; empty if nothing is.
 std::string unlisted_text(const std::vector<Moment>& all, const std::vector<Moment>& shown) {
   const auto left_out = [&](Moment::Kind kind) {
     return std::ranges::count(all, kind, &Moment::kind) - std::ranges::count(shown, kind, &Moment::kind);

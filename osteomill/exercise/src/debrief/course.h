@@ -8,16 +8,16 @@
 
 namespace osteomill {
 
-/// Returns the product over time of an attempt, for curves.
+/// Returns the progress of an attempt over time, as curves.
 nlohmann::json curve_of(const std::vector<AttemptProgress>& progress);
 
-/// Puts what happened over time into a page's data: samples of the burr and of the view, product, moments,
-/// steps and changes of the burr. `recording_name` is what the commands call the recording.
+/// Adds the course over time to a page's data: samples of the burr and the view, progress, moments, steps and
+/// changes of the burr. `recording_name` is the recording's name for commands.
 void put_course(nlohmann::json& data, const Attempt& attempt, const Recording& recording,
                 const std::string& recording_name);
 
-/// Adds the first way: how it went on from where the other one leaves it, and a mark there. `recording_name`
-/// is that of the first way.
+/// Adds the first attempt from where the other one branches off, with a mark there. `recording_name` is the
+/// first attempt's.
 void put_first_way(nlohmann::json& data, const FirstWay& first, const std::string& recording_name);
 
 }  // namespace osteomill

@@ -12,23 +12,23 @@
 
 namespace osteomill {
 
-/// The outermost layer of the bone. Hollows that the bone encloses have none.
+/// Outermost layer of the bone. Enclosed cavities do not count as outside.
 struct ShellShape {
   double thickness_mm = 0;
 };
-/// Everything outside of a cone's frustum with flat ends.
+/// Everything outside a conical frustum with flat ends.
 struct OutsideConeShape {
   Vec3 from_W = Vec3::Zero();
   Vec3 to_W = Vec3::UnitZ();
   double radius_mm = 0;
-  /// The radius at the end `to_W`.
+  /// Radius at the end `to_W`.
   double radius_to_mm = 0;
 };
 /// A structure of the label map, by name (case does not matter) or value.
 struct LabelShape {
   std::string label;
 };
-/// The bone that at least `at_least` of these recordings removed.
+/// Bone that at least `at_least` of these recordings removed.
 struct RecordedShape {
   std::vector<std::filesystem::path> recordings;
   int at_least = 1;
@@ -37,10 +37,10 @@ struct RecordedShape {
 using Shape = std::variant<BoxShape, SphereShape, CylinderShape, OutsideConeShape, ShellShape, LabelShape,
                            RecordedShape>;
 
-/// A part of the scan: everything that lies in all of its shapes.
+/// A part of the scan: the intersection of its shapes.
 struct Region {
   std::vector<Shape> shapes;
-  /// The line of the file that errors name.
+  /// Line of the file, for error messages.
   int line = 0;
 };
 
@@ -48,68 +48,67 @@ struct Region {
 struct NoGoStructure {
   std::string name;
   Region region;
-  /// The distance of the burr's surface below which the trainee is warned. None of the facial nerves was
-  /// damaged at 3 mm, while 1 and 2 mm failed (Voormolen et al.).
+  /// Distance of the burr's surface below which the trainee is warned. No facial nerve was damaged at 3 mm,
+  /// unlike at 1 and 2 mm (Voormolen et al.).
   double warn_mm = 3;
-  /// The distance at which the burr's surface is held off; nothing if it is not.
+  /// Distance at which the burr's surface is held off; nothing if it is not.
   std::optional<double> guard_mm = {};
 };
 
 struct ExerciseStep {
   std::string text;
   Region region;
-  /// The share of the region's bone that must be gone, percent.
+  /// Share of the region's bone that must be removed, percent.
   double done_percent = 95;
 };
 
-/// A measure with its limits; at least one of them is there.
+/// A measure with at least one limit.
 struct ExerciseItem {
   std::string measure;
-  /// The structure, or the number of the step, that it is measured of; empty for all, or if there is nothing
-  /// to choose.
+  /// Structure or step number to measure; empty means all, or that the measure has no parts.
   std::string part;
   std::optional<double> at_least;
   std::optional<double> at_most;
   std::string source;
-  /// The weight that the source gives the item, if it has one.
+  /// Weight of the item in the source, if it has one.
   std::optional<double> weight;
   int line = 0;
 };
 
-/// A burr that may be used: one by its name, or any of this radius.
+/// A permitted burr: a named one, or any of this radius.
 struct AllowedBurr {
   const NamedBurr* named = nullptr;
   double radius_mm = 0;
 
-  /// Returns whether the setup has it.
+  /// Returns whether the setup uses this burr.
   bool is_in(const MillingSetup& setup) const;
-  /// Puts it into the setup: one by name as it is, or else its radius with a shaft that is thinner than it.
+  /// Sets the setup's burr: a named one as it is, otherwise the radius, with a thinner shaft.
   void put_into(MillingSetup& setup) const;
-  /// Returns what people call it: "diamond 2 mm", "round 1.5 mm".
+  /// Returns its name for people: "diamond 2 mm", "round 1.5 mm".
   std::string label() const;
 };
 
-/// A task on a scan, and what counts as doing it well.
+/// A task on a scan, and its criteria.
 struct Exercise {
-  /// The file; errors name it, and its paths are relative to its folder.
+  /// Its file; errors name it, and paths in it are relative to its folder.
   std::filesystem::path file;
   std::string title;
   std::string task;
-  /// A path, or "builtin:NAME".
+  /// Path, or "builtin:NAME".
   std::string scan;
   std::optional<double> isovalue;
   std::filesystem::path labels;
   std::filesystem::path label_table;
   Region target;
-  /// Removed bone counts as outside only if it lies farther than this from the target.
+  /// Removed bone counts as outside only if it is farther than this from the target.
   double margin_mm = 0;
-  /// Bone that must stay, wherever it lies.
+  /// Bone that must stay, regardless of its distance from the target.
   std::optional<Region> keep;
   std::vector<NoGoStructure> no_go;
-  /// The unit vector along which a prepared crown is taken off; nothing if none is prepared.
+  /// Unit vector along which a prepared crown is removed; nothing if the exercise has no crown.
   std::optional<Vec3> crown_axis_W;
   std::optional<Vec3> entry_W_mm;
-  /// The burrs that may be used; empty for any.
+  /// Permitted burrs; empty for any.
   std::vector<AllowedBurr> burrs;
   std::optional<double> time_s;
   std::vector<ExerciseStep> steps;

@@ -11,29 +11,29 @@
 
 namespace osteomill {
 
-/// One thing that is measured of an attempt.
+/// A quantity measured on an attempt.
 struct Measure {
-  /// The name in files: "target_removed_percent".
+  /// Name in files: "target_removed_percent".
   std::string name;
   std::string unit;
-  /// The definition in words, and the publication that it comes from or was asked for by; empty if it is
-  /// plain geometry or time.
+  /// Definition, and the publication that it comes from or that asks for it; empty if it is plain geometry or
+  /// time.
   std::string formula;
   std::string source;
-  /// Returns the value; not a number if it could not be measured.
+  /// Returns the value; NaN if it could not be measured.
   std::function<double(const Attempt&)> value;
-  /// Whether each no-go structure, or each step, has a value of its own, too.
+  /// Whether each no-go structure, or each step, also has its own value.
   enum class Each : unsigned char { none, structure, step };
   Each each = Each::none;
-  /// Returns the value of one of them, by its place among the exercise's.
+  /// Returns the value for one of them, by its index in the exercise.
   std::function<double(const Attempt&, std::size_t part)> value_at = {};
 };
 
-/// Returns the names of the parts of an exercise that have a value of this measure each: of structures, or
-/// the numbers of steps from 1.
+/// Returns the names of an exercise's parts that have their own value of this measure: structures, or step
+/// numbers from 1.
 std::vector<std::string> parts_of(const Measure& measure, const Exercise& exercise);
 
-/// Returns every measure, in the order in which people should read them.
+/// Returns every measure, in reading order.
 const std::vector<Measure>& all_measures();
 
 /// Returns the measure of this name; null if there is none.
@@ -41,12 +41,12 @@ const Measure* find_measure(std::string_view name);
 /// Returns the names of all measures, in the same order.
 std::vector<std::string> measure_names();
 
-/// Returns all measures as a Markdown table, which docs/exercises.md has.
+/// Returns all measures as the Markdown table of docs/exercises.md.
 std::string measures_table();
 
 /// A row of a debriefing.
 struct MeasuredValue {
-  /// The measure, and behind a dot the structure or step if it is of one: "no_go_contact_s.facial nerve".
+  /// Measure, followed by a dot and the structure or step if it has one: "no_go_contact_s.facial nerve".
   std::string measure;
   /// Nothing if it could not be measured.
   std::optional<double> value;
@@ -58,18 +58,18 @@ struct MeasuredValue {
   std::string source;
 };
 
-/// Measures an attempt: a row for each measure, for each of its structures or steps, and for each further
-/// item that limits it.
+/// Measures an attempt. Returns a row for each measure, for each of its structures or steps, and for each
+/// further item that limits it.
 std::vector<MeasuredValue> measure_attempt(const Attempt& attempt);
 
-/// Returns a row's values as CSV, in the order of `write_measured`.
+/// Returns a row's values as CSV, in the column order of `write_measured`.
 std::string csv_row(const MeasuredValue& row);
 
-/// Writes the rows as CSV with the columns measure,value,unit,limit,met,source. Throws InputError, naming the
+/// Writes rows as CSV with the columns measure,value,unit,limit,met,source. Throws InputError, naming the
 /// file, if it cannot be written.
 void write_measured(const std::filesystem::path& path, const std::vector<MeasuredValue>& rows);
 
-/// Writes how target, bone outside and Dice coefficient went on over the session, as CSV. Throws as
+/// Writes the target removed, the bone removed outside and the Dice coefficient over time as CSV. Throws as
 /// `write_measured`.
 void write_progress(const std::filesystem::path& path, const Attempt& attempt);
 

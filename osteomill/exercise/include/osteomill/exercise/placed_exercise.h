@@ -18,41 +18,41 @@ struct PlacedStructure {
   double warn_mm = 3;
   std::optional<double> guard_mm = {};
   VoxelSet voxels;
-  /// The shortest distance of the target from the structure, mm.
+  /// Shortest distance between the target and the structure, mm.
   double from_target_mm = 0;
 };
 
-/// An exercise on its scan.
+/// An exercise with its regions as voxels of its scan.
 struct PlacedExercise {
   Exercise exercise;
   GridGeometry scan;
   /// The bone to be removed.
   VoxelSet target;
-  /// The axis of W, or its opposite, into which the target's surface faces.
+  /// Direction out of the bone at the target: plus or minus an axis of W.
   Vec3 outward_W = Vec3::UnitZ();
-  /// Every voxel that may be removed: the target, and all within the margin around it.
+  /// Voxels that may be removed: the target and the margin around it.
   VoxelSet allowed;
-  /// Bone that must stay, of the region that the exercise names.
+  /// Bone that must stay, from the exercise's `keep` region.
   VoxelSet keep;
   std::vector<PlacedStructure> structures;
-  /// Their distances, one for each, which the bone carries to the haptic tick (Volume::no_go).
+  /// Distance function of each structure; the bone passes them to the haptic tick (Volume::no_go).
   std::shared_ptr<const NoGoDistances> distances = std::make_shared<NoGoDistances>();
-  /// The bone of each step.
+  /// Bone of each step.
   std::vector<VoxelSet> steps;
 
-  /// Returns whether removing a voxel's bone counts as outside.
+  /// Returns whether removing a voxel's bone counts as outside the target.
   bool is_outside(const VoxelIndex& v) const { return !allowed.contains(v) || keep.contains(v); }
   double volume_mm3(std::size_t voxels) const {
     return static_cast<double>(voxels) * scan.voxel_volume_mm3();
   }
 };
 
-/// Places an exercise on its scan. Throws InputError, naming the file and the line, as `region_voxels` does
-/// and if the target holds no bone, overlaps a structure that must not be touched, or a step or a structure
-/// is empty. Long work.
+/// Converts an exercise's regions to voxels of its scan. Throws InputError, naming the file and the line, as
+/// `region_voxels` and if the target holds no bone or overlaps a structure or the bone to be kept, or if a
+/// step, a structure or `keep` is empty. Slow.
 PlacedExercise place_exercise(const Exercise& exercise, const Volume& scan);
 
-/// Returns a label map of the scan that colours the target, the structures and the bone to be kept.
+/// Returns a label map of the scan with the target, the bone to be kept and the structures.
 std::shared_ptr<const LabelMap> colours_of(const PlacedExercise& placed);
 
 /// Returns lines for people: the target and its volume, structures and distances, steps and items.
