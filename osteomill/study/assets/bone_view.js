@@ -1,4 +1,4 @@
-// The data that a page holds, and the view that shows its bodies in 3D, turned and zoomed by mouse and touch.
+// Reads a page's data, and shows its bodies in 3D, with rotation and zoom by mouse and touch.
 window.Osteomill = (function () {
   "use strict";
   const D = JSON.parse(document.getElementById("page-data").textContent);
@@ -37,12 +37,12 @@ window.Osteomill = (function () {
     geometry.setIndex(new THREE.BufferAttribute(new Uint16Array(bytes(body.triangles)), 1));
     geometry.computeVertexNormals();
     if (body.kind === "left") {
-      // A little towards the viewer, or the surface of the bone hides it in patches.
+      // Offset along the normals; otherwise the bone's surface hides it in patches.
       const normals = geometry.getAttribute("normal").array;
       for (let n = 0; n < corners.length; ++n) corners[n] += 0.02 * D.radius * normals[n];
     }
     const clear = body.opacity < 1;
-    // Nearly at the same places: what was left and what was taken show before the target.
+    // These surfaces nearly coincide: draw the remaining and the removed bone in front of the target.
     const offset = { left: -2, outside: -2, target: 6 }[body.kind] || 0;
     const material = new THREE.MeshLambertMaterial({ color: body.colour, transparent: clear, opacity: body.opacity, depthWrite: !clear, side: THREE.DoubleSide,
       polygonOffset: body.kind !== "bone", polygonOffsetFactor: offset, polygonOffsetUnits: offset });
@@ -54,7 +54,7 @@ window.Osteomill = (function () {
     const mesh = new THREE.Mesh(geometry, material);
     mesh.renderOrder = { structure: 0, left: 1, outside: 2, target: 3, keep: 3, bone: 4 }[body.kind];
     if (body.kind === "bone") {
-      // Only the bone's foremost surface shows, not the hollows behind it.
+      // Shows only the bone's front surface, not the cavities behind it.
       const front = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ colorWrite: false, side: THREE.DoubleSide, transparent: true }));
       front.renderOrder = 3.5;
       mesh.add(front);
@@ -62,7 +62,7 @@ window.Osteomill = (function () {
     return mesh;
   }
 
-  // Puts the controls of the bodies into the bar: what is shown, which choice of it, and how it looks.
+  // Adds controls to the bar: visibility of the bodies, choice, opacity and colours.
   function addControls(bar, layers, draw) {
     const choices = [...new Set(D.bodies.map(body => body.choice).filter(choice => choice))];
     const pick = el("select", { id: "choice", "aria-label": "Which bone", onchange: () => refresh() },
@@ -113,8 +113,8 @@ window.Osteomill = (function () {
     set(true);
   }
 
-  // Shows the bodies in an element, before one of its children or at its end. Returns the view: its parts, and
-  // `place`, a function that may place the camera before each picture and then returns true. Null without WebGL.
+  // Shows the bodies in an element, before one of its children or at its end. Returns the view's parts, and
+  // `place`, a function called before each frame that may place the camera and then returns true. Null without WebGL.
   function showBone(here, before) {
     let renderer;
     try {
@@ -169,7 +169,7 @@ window.Osteomill = (function () {
     addControls(bar, layers, draw);
     controls.addEventListener("change", draw);
     addEventListener("resize", draw);
-    // For tests: where things are drawn.
+    // For tests: projection to the screen.
     window.osteomillPage = { camera };
     return view;
   }
