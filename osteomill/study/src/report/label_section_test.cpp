@@ -21,7 +21,7 @@ TEST(LabelSection, SaysWhatWasCutOfEachLabel) {
   EXPECT_FALSE(label_section(group_runs(runs)));
   runs[0].description.labels = {
       {1, "bone", {255, 0, 0}}, {2, "<nerve>", {0, 0, 255}, true}, {3, "other", {}}};
-  EXPECT_TRUE(contains(html(*label_section(group_runs(runs))), "cut nothing that has a label"));
+  EXPECT_TRUE(contains(html(*label_section(group_runs(runs))), "cut no labelled bone"));
   for (std::size_t n = 2000; n < 3000; ++n) {
     runs[0].records[n].dt_s = 1e-3;
     runs[0].records[n].label_cuts = {LabelCut{1, 0.001}, LabelCut{2, 0.0005}};

@@ -76,8 +76,8 @@ std::vector<Field<M>> all_figures() {
       "turn_at_torque_step_deg", "degrees", [](auto& m) -> auto& { return m.turns.at_torque_step_deg; },
       "turn of the shaft within 50 ms about the greatest torque step");
   add("torque_follows_force", "", &M::torque_follows_force,
-      "share of the torque above 20 Hz that follows the force");
-  add("contacts_mean", "", &M::contacts_mean, "sample points that touch, mean");
+      "multiple correlation of torque and force above 20 Hz");
+  add("contacts_mean", "", &M::contacts_mean, "sample points in contact, mean");
   add(
       "lost_after_s", "s", [](auto& m) -> auto& { return m.contact.lost_after_s; }, "when contact was lost");
   add(
@@ -97,7 +97,7 @@ std::vector<Field<M>> all_figures() {
   add("shaft_from_handle_deg", "degrees", &M::shaft_from_handle_deg, "spread of the shaft against the handle",
       kLessIsBetter);
   add("removal_mm3_per_s", "mm³/s", &M::removal_mm3_per_s, "bone removed per second of cutting");
-  add("counted_from_s", "s", &M::counted_from_s, "from when on it is counted");
+  add("counted_from_s", "s", &M::counted_from_s, "start of the counted ticks");
   return all;
 }
 
@@ -116,7 +116,7 @@ const std::vector<Field<MeasuredRun>>& fields_of<MeasuredRun>() {
   static const std::vector<Field<R>> all{
       field<R>({"hand_stiffness_N_per_m", "N/m", kAny, "stiffness of the hand"}, &R::hand_stiffness_N_per_m),
       field<R>({"hand_damping_Ns_per_m", "N s/m", kAny, "damping of the hand"}, &R::hand_damping_Ns_per_m),
-      field<R>({"hand_grip", "", kAny, "how firmly the hand gripped"}, &R::grip),
+      field<R>({"hand_grip", "", kAny, "firmness of the hand's grip"}, &R::grip),
       field<R>({"other_tremor", "", kAny, "number of another tremor in the same hand"}, &R::other_tremor)};
   return all;
 }

@@ -92,7 +92,7 @@ void require_usable(const Recording& recording, std::span<const TickRecord> reco
   const std::string name = recording.path.string();
   if (records.size() < 2) throw InputError(name, "has fewer than two ticks, too few for a report");
   if (!(recording.description.tick_period_s * kBuzzAbove_hz < 0.4)) {
-    throw InputError(name, fmt::format("has a tick every {} s, too few to tell what lies above 20 Hz",
+    throw InputError(name, fmt::format("has a tick every {} s, too few to resolve 20 Hz",
                                        recording.description.tick_period_s));
   }
   for (std::size_t row = 0; row < records.size(); ++row) {

@@ -258,7 +258,7 @@ TEST(RunMetrics, WhatCannotBeMeasuredIsNamed) {
   expect_refused(broken, "tick 7 is not finite");
   Recording slow = simple_recording(10);
   slow.description.tick_period_s = 0.02;
-  expect_refused(slow, "above 20 Hz");
+  expect_refused(slow, "resolve 20 Hz");
 }
 
 TEST(RunMetrics, ADeviceThatGaveNoPoseIsMeasuredAllTheSame) {

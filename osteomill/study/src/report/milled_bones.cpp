@@ -93,12 +93,12 @@ MilledBones milled_bones(const RunGroup& group, const ScanOf& scan_of, std::size
   }
   if (runs.size() > kMostRuns) {
     bones.notices.push_back(
-        fmt::format("In 3D are the bones of the first {} of {} runs.", kMostRuns, runs.size()));
+        fmt::format("3D shows the bones of the first {} of {} runs.", kMostRuns, runs.size()));
     runs.resize(kMostRuns);
   }
   const std::size_t most = std::min(kMaxVertices, max_bytes / kVertexBytes / (runs.size() + 1));
   if (runs.empty() || most < kFewestVertices) {
-    bones.notices = {runs.empty() ? "No bone in 3D: the recordings go on from others."
+    bones.notices = {runs.empty() ? "No bone in 3D: the recordings continue others."
                                   : "No bone in 3D: the page would be over 5 MB."};
     return bones;
   }

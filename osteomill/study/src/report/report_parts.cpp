@@ -26,7 +26,7 @@ Image shrunk(const Recording& recording, const RunPicture& picture) {
   const std::optional<Image> image = decode_png(picture.png);
   if (!image) {
     throw InputError(recording.path.string(),
-                     fmt::format("the picture '{}' is not a whole PNG of sensible size", picture.name));
+                     fmt::format("the picture '{}' is not a complete PNG of reasonable size", picture.name));
   }
   const int factor = (image->width + kPanelWidth_px - 1) / kPanelWidth_px;
   // A picture with fewer rows than this factor would vanish.
@@ -191,7 +191,7 @@ std::string panel(const MeasuredRun& run, FigureScript& figure) {
 
 std::optional<Section> label_section(const RunGroup& group) {
   Table table{{"Run", "Label", "Removed (mm³)", "of the run's bone (%)", "First at (s)", "Last at (s)",
-               "In it for (s)", "Force of the burr, mean (N)", "… greatest (N)"},
+               "Time in it (s)", "Force of the burr, mean (N)", "… greatest (N)"},
               {},
               true};
   bool any = false;
@@ -200,10 +200,9 @@ std::optional<Section> label_section(const RunGroup& group) {
     add_rows(run, table);
   }
   if (!any) return std::nullopt;
-  if (table.rows.empty())
-    return Section{.title = "Labels", .paragraphs = {"The burr cut nothing that has a label."}};
+  if (table.rows.empty()) return Section{.title = "Labels", .paragraphs = {"The burr cut no labelled bone."}};
   return Section{.title = "Labels",
-                 .paragraphs = {"What was cut of each structure of the label map; a no-go label counts as "
+                 .paragraphs = {"Bone cut from each structure of the label map; a no-go label counts as "
                                 "soon as the turning burr touches it."},
                  .tables = {table}};
 }
@@ -265,7 +264,7 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
     settings.push_back(setting);
     settings.back().value = text_of(setting);
     if (setting.key == kSamplePointsKey && std::get<std::string>(settings.back().value) == "0")
-      settings.back().value = "made as the tool comes near";
+      settings.back().value = "created as the tool approaches";
   }
   return settings;
 }

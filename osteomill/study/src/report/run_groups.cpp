@@ -86,7 +86,7 @@ RunGroup group_runs(const std::vector<Recording>& recordings, MeasuredRun (*meas
     const RunDescription& d = recording.description;
     if (const MeasuredRun* twin = group.find(d.algorithm.name, d.phase)) {
       throw InputError(recording.path.string(),
-                       fmt::format("is {}, {} as {} is; a report has room for one of them",
+                       fmt::format("is {}, {}, as is {}; a report takes only one of them",
                                    name_of(d.algorithm), d.phase, twin->recording->path.string()));
     }
     group.runs.push_back(measure(recording));

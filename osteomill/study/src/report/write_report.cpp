@@ -37,8 +37,8 @@ Section notices(const std::vector<const Recording*>& recordings) {
       section.notices.push_back(name + " is unfinished: the program ended before it closed the recording.");
     }
     if (recording->dropped > 0) {
-      section.notices.push_back(fmt::format("{} lacks {} ticks for which there was no room while recording.",
-                                            name, recording->dropped));
+      section.notices.push_back(
+          fmt::format("{} lacks {} ticks: the buffer was full while recording.", name, recording->dropped));
     }
   }
   return section;
@@ -49,10 +49,10 @@ std::vector<Section> differences(const std::vector<const Recording*>& recordings
   Table table = differences_table(recordings);
   if (table.rows.empty()) return {};
   return {
-      {.title = "What differs between the recordings",
-       .notices = {fmt::format("These recordings differ in {}. What follows may come from that as well as "
-                               "from the algorithms.",
-                               fmt::join(table.header.begin() + 1, table.header.end(), ", "))},
+      {.title = "Differences between the recordings",
+       .notices = {fmt::format(
+           "These recordings differ in {}. The results may come from that as well as from the algorithms.",
+           fmt::join(table.header.begin() + 1, table.header.end(), ", "))},
        .tables = {std::move(table)}}};
 }
 
@@ -121,31 +121,30 @@ struct Topic {
 const Topic kFelt[] = {
     {"Force",
      {{"force", draw_force_figure,
-       "Magnitude of the force sent to the hand. The panels of a row have one scale, which need not begin at "
-       "0. Each "
-       "pixel's least and greatest are drawn, so no spike is lost."}},
+       "Magnitude of the force sent to the hand. The panels of a row share a scale, which need not begin at "
+       "0. Each pixel shows its minimum and maximum, so no spike is lost."}},
      {"force_mean_N", "force_max_N", "force_hp_rms_N", "force_hp_share", "force_step_max_N"}},
     {"Torque",
      {{"torque", draw_torque_figure,
-       "Magnitude of the torque sent to the hand, about the burr's centre, drawn as the force is."}},
+       "Magnitude of the torque sent to the hand, about the burr's centre, drawn like the force."}},
      {"torque_mean_Nmm", "torque_max_Nmm", "torque_hp_rms_Nmm", "torque_hp_share", "torque_step_max_Nmm"}},
     {"Shaft",
      {{"shaft", draw_shaft_figure,
        "Direction of the simulated tool's shaft while it touches, in degrees from its mean direction and "
-       "coloured by time. Each panel has a scale of its own."}},
+       "coloured by time. Each panel has its own scale."}},
      {"shaft_spread_deg", "shaft_excursion_deg", "shaft_from_handle_deg"}},
     {"Path and bone removed",
      {{"removed", draw_removed_figure,
        "Bone removed since the milling began, in mm³ of bone of the reference density."},
       {"path", draw_path_figure,
-       "Position of the burr's centre along the scan's axes. Each panel has a scale of its own."}},
+       "Position of the burr's centre along the scan's axes. Each panel has its own scale."}},
      {"removed_mm3", "removal_mm3_per_s", "path_mm", "burr_excursion_mm", "contact_share",
       "burr_contact_share", "shaft_contact_share"}}};
 const Topic kTimes{
     "How long the ticks took",
     {{"rate", draw_rate_figure,
-      "Compute time of each tick, the algorithm's and the milling's: CPU time if the trial ran in "
-      "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line."}},
+      "Compute time of each tick, for haptics and milling: CPU time if the trial ran in simulated time, "
+      "otherwise wall-clock time. A loop at 1000 Hz is late where the curve is above the dashed line."}},
     {"steps", "tick_us_median", "tick_us_p99", "tick_us_max", "rate_hz"}};
 
 // Returns a sentence on the parts of the curves that the tables exclude.
@@ -153,10 +152,11 @@ std::string not_counted(const RunGroup& group) {
   const auto longest = std::ranges::max_element(
       group.runs, {}, [](const MeasuredRun& run) { return run.metrics.counted_from_s; });
   const double before_s = longest->metrics.counted_from_s;
-  if (before_s == 0) return " What is felt without contact is not counted in the tables.";
+  if (before_s == 0)
+    return " Forces, torques and shaft directions without contact are not counted in the tables.";
   return fmt::format(
-      " The tables do not count what is felt without contact, nor what is shaded, before 0 s, as the hand "
-      "comes to its hold: at most {}, with {}.",
+      " The tables do not count forces, torques and shaft directions without contact, nor the shaded time "
+      "before 0 s in which the hand settles into its hold: at most {}, with {}.",
       shown_time(before_s), longest->algorithm.label);
 }
 
@@ -222,12 +222,12 @@ bool has_setting(const RunGroup& group, std::string_view key) {
 std::vector<Section> pictures_section(const RunGroup& group, const fs::path& folder, bool is_in_3d) {
   Section section{.title = "The bone before and after", .id = kBoneId};
   if (is_in_3d)
-    section.paragraphs = {"Drag to turn, scroll or pinch to zoom. The list picks whose bone is shown."};
+    section.paragraphs = {"Drag to rotate, scroll or pinch to zoom. The list selects whose bone is shown."};
   if (const auto bone = draw_picture_figure(group, folder)) {
     // Smaller as PNG; curves and clouds stay sharp as SVG.
     section.figures = {{bone->png, "The bone before, and after each algorithm's run."}};
   } else if (has_setting(group, kPicturesKey)) {
-    section.notices = {"No pictures of the bone: OpenGL could not be had when this was recorded."};
+    section.notices = {"No pictures of the bone: OpenGL was not available when this was recorded."};
   } else if (!is_in_3d) {
     return {};
   }
@@ -240,7 +240,7 @@ Section labels_section(const RunGroup& group, const fs::path& folder) {
   // The figure follows the table.
   if (const auto figure = draw_label_figure(group, folder)) {
     labels->parts = {
-        {.figures = {{figure->svg, "What was removed of each label over time, in the labels' colours."}}}};
+        {.figures = {{figure->svg, "Bone removed from each label over time, in the labels' colours."}}}};
   }
   return *labels;
 }
@@ -256,7 +256,7 @@ std::string session_in_words(const MeasuredRun& run) {
   const RunMetrics& m = run.metrics;
   const auto& records = run.recording->records;
   const std::string put_back =
-      m.put_back_mm3 > 0 ? fmt::format("; {:.1f} mm³ were put back", m.put_back_mm3) : "";
+      m.put_back_mm3 > 0 ? fmt::format("; {:.1f} mm³ were restored", m.put_back_mm3) : "";
   const std::string text = fmt::format(
       "{}{}: {:.1f} s, of which the spindle ran for {:.1f} s. The burr went {:.0f} mm, and {:.1f} mm³ of "
       "bone were removed{}. ",
@@ -297,13 +297,11 @@ Section how_to_repeat(const std::vector<const Recording*>& recordings) {
     if (command == nullptr || command->empty()) continue;
     if (std::find(commands.begin(), commands.end(), *command) == commands.end()) commands.push_back(*command);
   }
-  return {
-      .title = "How to repeat this",
-      .paragraphs = {commands.empty()
-                         ? "With the settings above; the recordings name no command."
-                         : "With the same seed, forces, poses and removed bone come out the same; compute "
-                           "times are those of the machine."},
-      .commands = commands};
+  return {.title = "How to repeat this",
+          .paragraphs = {commands.empty() ? "With the settings above; the recordings contain no command."
+                                          : "With the same seed, forces, poses and removed bone are the "
+                                            "same; compute times depend on the machine."},
+          .commands = commands};
 }
 
 // Puts the bones into a page, as far as there is room.

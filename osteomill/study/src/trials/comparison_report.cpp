@@ -59,12 +59,12 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
     const std::string* left_out = find_setting<std::string>(recordings.front().description, kNotMatchedKey);
     return fmt::format(
         "Stiffness is matched: each algorithm's was chosen so that a flat wall is felt as {:.3g} N/mm (the "
-        "slope of the force over the depth about 0.5 N, pressed with the burr). How it resists turning, and "
-        "what is felt of an edge or with the shaft, is not matched.{}",
+        "slope of the force over the depth about 0.5 N, pressed with the burr). Its rotational stiffness, "
+        "and the stiffness felt at an edge or with the shaft, is not matched.{}",
         *felt_N_per_mm, left_out == nullptr ? "" : " Left out of this comparison: " + *left_out + ".");
   }
   return "Stiffness is not matched: each algorithm has the stiffness of its own equations, so the hand feels "
-         "another one with each. Some of the differences in force come from this (compare "
+         "a different one with each. Some of the differences in force come from this (compare "
          "--match-stiffness).";
 }
 
@@ -90,9 +90,9 @@ std::map<std::string, Probe> probes_in(const std::vector<Recording>& recordings)
 }
 
 constexpr const char* kWhatWasProbed =
-    "Two of the columns were measured apart, where the right answer is known: the burr pressed on a flat "
-    "wall, for the stiffness felt at 0.5 N, and the shaft pressed across a sharp edge, where the torque must "
-    "be lever times force.";
+    "Two of the columns were measured separately, on bones for which the right answer is known: the burr "
+    "pressed on a flat wall, for the stiffness felt at 0.5 N, and the shaft pressed across a sharp edge, for "
+    "which the torque must be lever arm times force.";
 
 // Returns an empty text if the study does not have line-proxy.
 std::string about_line_proxy(const Study& study, const MillingTool& tool) {
@@ -217,8 +217,8 @@ bool have_the_same_phases(const RunGroup& group) {
 
 // Notice for tables next to the recordings whose study.csv does not have the same figures.
 constexpr const char* kOtherTables =
-    "The study.csv beside the recordings does not have their figures: it is of another comparison, or of "
-    "another version of this program. Its other hands, grips and tremors are left out here, and so are "
+    "The study.csv beside the recordings does not have their figures: it is from another comparison, or from "
+    "another version of this program. Its other hands, grips and tremors are omitted here, and so are "
     "one-hole.csv and stability.csv.";
 
 // Reads the tables next to the recordings if they belong to the same comparison: a folder holds only one.

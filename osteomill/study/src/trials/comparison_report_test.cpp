@@ -161,7 +161,7 @@ TEST_F(ReportTest, ACutThatWasTakenBackIsNoBoneRemovedBelowNothing) {
   ASSERT_GT(most_mm3, 1);
   const std::string html = bytes_of(write_report({run}, out_));
   EXPECT_NE(
-      html.find(fmt::format("and {0:.1f} mm³ of bone were removed; {0:.1f} mm³ were put back.", most_mm3)),
+      html.find(fmt::format("and {0:.1f} mm³ of bone were removed; {0:.1f} mm³ were restored.", most_mm3)),
       std::string::npos);
 }
 
@@ -226,7 +226,9 @@ TEST_F(ReportTest, ThePushAndTheDepthAreSaidAndABurrThatWentTooDeep) {
     EXPECT_EQ(html.find("the burr went deeper than the 3 mm that were planned: 6.5 mm with 1 line-proxy, ") !=
                   std::string::npos,
               is_deep);
-    EXPECT_NE(html.find("What is felt without contact is not counted in the tables."), std::string::npos);
+    EXPECT_NE(
+        html.find("Forces, torques and shaft directions without contact are not counted in the tables."),
+        std::string::npos);
   }
 }
 
@@ -258,7 +260,7 @@ TEST_F(ReportTest, NothingIsConcludedWhereAnAlgorithmLacksAPhase) {
 
 TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
   std::vector<Recording> runs{sample_run("line-proxy", kMilling, 100)};
-  const std::string_view told = "No pictures of the bone: OpenGL could not be had";
+  const std::string_view told = "No pictures of the bone: OpenGL was not available";
   EXPECT_EQ(bytes_of(write_comparison_report(runs, out_)).find(told), std::string::npos);
   runs[0].pictures.clear();
   runs[0].description.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
@@ -270,10 +272,10 @@ TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
 TEST_F(ReportTest, DamagedPicturesAreNamed) {
   std::vector<Recording> runs{sample_run("line-proxy", kMilling, 100)};
   runs[0].pictures[0].png = {1, 2, 3};
-  expect_refused(runs, "line-proxy-milling.h5: the picture 'after' is not a whole PNG");
+  expect_refused(runs, "line-proxy-milling.h5: the picture 'after' is not a complete PNG");
   runs[0].pictures[0].png = sample_png(true);
   runs[0].pictures[0].png.resize(200);
-  expect_refused(runs, "is not a whole PNG");
+  expect_refused(runs, "is not a complete PNG");
 }
 
 TEST_F(ReportTest, AFolderThatCannotBeMadeIsNamed) {
@@ -299,7 +301,7 @@ TEST_F(ReportTest, RatesStandBesideThePapers) {
                       "time, and 13 "),
             std::string::npos);
   EXPECT_NE(html.find("51 to 484 times as many steps"), std::string::npos);
-  EXPECT_NE(html.find("a tick that is done early waits for its millisecond"), std::string::npos);
+  EXPECT_NE(html.find("an early tick waits for its millisecond"), std::string::npos);
   EXPECT_EQ(testing_support::without_namespaces(html).find("http"), std::string::npos);
 }
 

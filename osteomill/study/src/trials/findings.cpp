@@ -107,10 +107,10 @@ std::string felt_in_grips(const GripForces& grips) {
 Finding grip_finding(const GripForces& grips) {
   Finding finding{
       "2's vibration: “the magnitude is based on how hard the user is holding and gripping the device”",
-      fmt::format("from grip to grip of the same hand ({:g} times its stiffness and damping) 2's force above "
-                  "{:.0f} Hz (rms), while holding, grows throughout or falls throughout, by a factor of "
-                  "{:g} or more in all",
-                  fmt::join(kGrips, ", "), kBuzzAbove_hz, kGripRatio),
+      fmt::format(
+          "from grip to grip of the same hand ({:g} times its stiffness and damping) 2's force above {:.0f} "
+          "Hz (rms) while holding increases or decreases monotonically, by a factor of {:g} or more overall",
+          fmt::join(kGrips, ", "), kBuzzAbove_hz, kGripRatio),
       "needs three grips", Verdict::not_recorded};
   if (grips.empty()) return finding;
   std::vector<double> forces_N;
@@ -145,8 +145,8 @@ const std::array<Rule, kFindings - 2> kRules{
       }},
      {"1 “kicks away the shaft at a moment”, with “a peak in the torque signal when milling”; the shaft's "
       "jump “occurs at the same time”",
-      "while milling the greatest step of the torque is 1's, and in the 50 ms about it 1's shaft turns "
-      "further than those of 2 and 3 ever do in such a time",
+      "while milling 1 has the greatest torque step, and in the 50 ms around it 1's shaft turns further than "
+      "the shafts of 2 and 3 in any 50 ms",
       {{1, kMilling, torque_step},
        {2, kMilling, torque_step},
        {3, kMilling, torque_step},
@@ -157,8 +157,8 @@ const std::array<Rule, kFindings - 2> kRules{
       [](const auto& v) { return v[0] > std::max(v[1], v[2]) && v[3] > std::max(v[4], v[5]); }},
      {"2's torque seems “to follow the same pattern as for the force feedback, but Algorithm #2 is more "
       "stable than Algorithm #1”",
-      fmt::format("in both parts the multiple correlation of 2's torque with its force of the 10 ms about "
-                  "it, both above {0:.0f} Hz, is {1:g} or more; and its torque above {0:.0f} Hz (rms) is "
+      fmt::format("in both parts the multiple correlation of 2's torque with its force within 10 ms of it, "
+                  "both above {0:.0f} Hz, is {1:g} or more; and its torque above {0:.0f} Hz (rms) is "
                   "less than that of 1 while milling",
                   kBuzzAbove_hz, kFollows),
       {{2, kMilling, torque_follows},
@@ -168,8 +168,8 @@ const std::array<Rule, kFindings - 2> kRules{
       "correlation milling {}, holding {}; torque milling 1: {}, 2: {} N mm",
       [](const auto& v) { return std::min(v[0], v[1]) >= kFollows && v[3] < v[2]; }},
      {"3's torque “is a bit more unstable than the force feedback, especially for the milling case”",
-      fmt::format("what its torque has above {:.0f} Hz (rms), against its mean, is more than the same of its "
-                  "force while milling, and in proportion more than while holding",
+      fmt::format("the torque above {:.0f} Hz (rms) as a share of its mean is greater than that of the force "
+                  "while milling, and the ratio of the two shares is greater than while holding",
                   kBuzzAbove_hz),
       {{3, kMilling, torque_unrest}, {3, kHolding, torque_unrest}},
       "torque's share / force's share: milling {}, holding {}",
@@ -186,7 +186,7 @@ const std::array<Rule, kFindings - 2> kRules{
       "1: {}, 2: {}, 3: {} degrees",
       [](const auto& v) { return v[0] > std::max(v[1], v[2]); }},
      {"“an average number of approximately [1]5 points … are really colliding in each haptic loop” with 3",
-      fmt::format("while milling {:g} to {:g} points touch, on the average of the ticks in contact",
+      fmt::format("while milling {:g} to {:g} points touch, on average over the ticks in contact",
                   kMinContacts, kMaxContacts),
       {{3, kMilling, contacts}},
       "{}",

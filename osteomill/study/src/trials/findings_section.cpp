@@ -83,8 +83,8 @@ Section findings_section(const Study& study) {
   const std::vector<StudyFinding> findings = recorded_findings(study);
   if (findings.empty()) return {};
   Section section{.title = "The paper's findings",
-                  .paragraphs = {"What section 8.2 of the paper says it found, each held against what was "
-                                 "measured by a rule of this project. The paper does not give its hand, push "
+                  .paragraphs = {"The findings of the paper's section 8.2, each tested on the measurements "
+                                 "by a rule of this project. The paper does not give its hand, push "
                                  "and bone, so a finding that does not hold here may hold there."}};
   if (const std::size_t missing = check_study_findings(study).size() - findings.size(); missing > 0) {
     section.paragraphs.push_back(
@@ -93,9 +93,9 @@ Section findings_section(const Study& study) {
   }
   if (study.seeds().size() > 1) {
     section.paragraphs.push_back(
-        "Hands agree with the paper, or do not, if more than half do, and tossing a coin would give as many "
-        "in one of twenty tries at most, which takes five hands; else it is not settled. p is the chance "
-        "that as many or more would agree by the toss.");
+        "The hands agree with the paper, or do not, if more than half do and the sign test is significant at "
+        "5 %, which takes five hands; otherwise it is not settled. p is the probability that as many or more "
+        "would agree by tossing a coin.");
   }
   section.tables = {findings_table(study, findings)};
   return section;

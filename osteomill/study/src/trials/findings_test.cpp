@@ -151,7 +151,7 @@ TEST(GroupRuns, TwoOfAKindAreRefusedAndNamed) {
     FAIL();
   } catch (const InputError& error) {
     const std::string what = error.what();
-    EXPECT_TRUE(what.starts_with("again.h5: is line-proxy, milling as line-proxy.h5 is")) << what;
+    EXPECT_TRUE(what.starts_with("again.h5: is line-proxy, milling, as is line-proxy.h5")) << what;
   }
   recordings[1].description.phase = kHolding;
   EXPECT_EQ(group_runs(recordings).runs.size(), 2u);

@@ -123,36 +123,34 @@ std::vector<std::string> how_to_read(const Study& study) {
                   n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front())};
   paragraphs.push_back(
       interval.is_range
-          ? fmt::format("In brackets stands the range of all values: {} hands are too few for a 95 % "
-                        "interval of the median, which takes 6 (the range covers it with {:.3g} %).",
-                        n, 100 * interval.coverage)
-          : fmt::format(
-                "In brackets stands a confidence interval of the median between two order "
-                "statistics, by the binomial distribution; it covers the median with {:.3g} %. Of fewer "
-                "hands, "
-                "which the cell then names, it covers it with 95 % or more, and below six of them it is "
-                "their range.",
-                100 * interval.coverage));
+          ? fmt::format(
+                "Brackets give the range of all values: {} hands are too few for a 95 % interval of the "
+                "median, which takes 6 (the range covers the median with a probability of {:.3g} %).",
+                n, 100 * interval.coverage)
+          : fmt::format("Brackets give a confidence interval of the median between two order statistics, by "
+                        "the binomial distribution; its coverage is {:.3g} %. If a cell names fewer hands, "
+                        "its coverage is 95 % or more; with fewer than six it is their range.",
+                        100 * interval.coverage));
   paragraphs.push_back(fmt::format(
-      "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, corrected "
-      "after Holm over what is compared in one row (not over the rows). The size of a difference is its "
+      "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, with "
+      "Holm's correction over the comparisons of one row (not over the rows). The size of a difference is "
+      "its "
       "median over the hands, in bold unless it is the same for a hand; one with p above {} is not settled. "
-      "The least p "
-      "that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
+      "The smallest p that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
       kSignificance, n, min_p(n), min_corrected,
       min_corrected > kSignificance ? ", so that no difference can be significant here and none is shown"
                                     : ""));
   paragraphs.push_back(about_noticeable());
   if (const std::size_t runs = tremors_tried(study); runs > 0) {
     paragraphs.push_back(fmt::format(
-        "Below a value stands what tremor alone gives: by how much two runs differ in which one and the same "
-        "hand, that of seed {}, has another tremor (the median over the pairs of {} such runs). A difference "
-        "below that shows over many hands, but not from one run to the next.",
+        "Below a value is the effect of tremor alone: the difference between two runs of the same hand, that "
+        "of seed {}, with different tremors (the median over the pairs of {} such runs). A smaller "
+        "difference shows over many hands, but not from one run to the next.",
         study.seeds().front(), runs));
   }
   paragraphs.emplace_back(
-      "Compute times are the machine's: those of the first seed were taken with nothing else of this program "
-      "running, the others with a trial beside on each further core. Everything else comes out the same on "
+      "Compute times depend on the machine: those of the first seed were measured with nothing else of this "
+      "program running, the others with a trial on every other core as well. Everything else is the same on "
       "any machine.");
   return paragraphs;
 }

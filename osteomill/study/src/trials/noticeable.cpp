@@ -26,7 +26,7 @@ bool begins_with(const FieldDescription& figure, std::string_view word) {
 // The first match applies.
 constexpr Threshold kThresholds[] = {
     {[](const auto& figure) { return figure.name.find("_hp_") != std::string::npos; }, 0.20, 0,
-     "what trembles above 20 Hz", "Forta, Griffin and Morioka 2012"},
+     "a vibration above 20 Hz", "Forta, Griffin and Morioka 2012"},
     {[](const auto& figure) { return begins_with(figure, "force_"); }, 0.07, 0, "a force",
      "Pang, Tan and Durlach 1991"},
     {[](const auto& figure) { return begins_with(figure, "torque_"); }, 0.13, 0, "a torque",
@@ -53,7 +53,7 @@ std::string about_noticeable() {
   }
   return fmt::format(
       "A difference counts as the same for a hand if it is less than a hand notices: {}. They were measured "
-      "with the attention on one thing; a hand that mills notices less.",
+      "with attention on a single quantity; a hand that mills notices less.",
       list);
 }
 

@@ -99,21 +99,21 @@ std::string in_words(std::span<const PassivityRow> rows) {
 }
 
 constexpr const char* kWhatWasDone =
-    "The device alone, without a hand, is pressed on a flat wall of bone by 0.5 N along a guide, and then "
-    "given a small speed. The greatest --stiffness is sought at which its swings die out: at which the wall, "
-    "the device's delay and the tick together do not put more energy into a swing than the device's own "
-    "damping takes. An ideal wall of stiffness K, sampled every T = 1 ms and felt with a delay τ, should "
-    "stay so up to K = 2 b / (T + 2 τ) on a device with damping b. What is felt of an algorithm's setting is "
-    "the slope of its force over the depth at 0.5 N; that is what the rule speaks of. Bisection finds one "
+    "The device alone, without a hand, is pressed on a flat wall of bone with 0.5 N along a guide, and then "
+    "given a small speed. The test seeks the greatest --stiffness at which its swings die out: the wall, the "
+    "device's delay and the tick together add no more energy to a swing than the device's own damping "
+    "dissipates. An ideal wall of stiffness K, sampled every T = 1 ms and felt with a delay τ, should stay "
+    "passive up to K = 2 b / (T + 2 τ) on a device with damping b. The stiffness felt is the slope of the "
+    "force over the depth at 0.5 N; the rule applies to this, not to the setting. Bisection finds one "
     "limit; an algorithm that buzzes by itself may have others.";
 
 constexpr const char* kColumns =
     "algorithm,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_per_mm,rule_N_per_mm";
 
 constexpr const char* kCaption =
-    "The stiffness felt when the wall is only just passive, against the device's damping. A triangle: "
-    "passive up to the stiffest setting tried, 200 N/mm, of which this is felt. A missing point: passive at "
-    "no setting. Several algorithms stand a little aside of each other.";
+    "The stiffness felt when the wall is only just passive, against the device's damping. Triangle: passive "
+    "up to the stiffest setting tried, 200 N/mm, which is felt as this. Missing point: passive at no "
+    "setting. Points of different algorithms are shifted a little.";
 
 double damping_Ns_per_m(const PassivityRow& row) {
   return 1e3 * row.damping_Ns_per_mm;

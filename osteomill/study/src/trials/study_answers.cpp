@@ -228,13 +228,13 @@ std::string what_was_compared(const Study& study, std::string_view bone) {
 
 std::string about_the_table(const Study& study) {
   std::string text =
-      "How calm a force or torque is stands in the table as its rms above 20 Hz, where a hand feels a buzz "
-      "and no longer follows, against its mean. The shaft is that of the simulated tool; its spread against "
-      "the handle is 0 if an algorithm shows the tool where the handle is.";
+      "The table rates how calm a force or torque is by its rms above 20 Hz, which a hand feels as a buzz "
+      "and cannot follow, relative to its mean. The shaft is that of the simulated tool; its spread against "
+      "the handle is 0 if an algorithm shows the tool at the handle.";
   if (study.seeds().size() == 1 && tremors_tried(study) > 1)
-    text += fmt::format(
-        " Below each value stands the range over {} runs of this hand that differ in its tremor alone.",
-        tremors_tried(study));
+    text +=
+        fmt::format(" Below each value is the range over {} runs of this hand that differ only in tremor.",
+                    tremors_tried(study));
   if (are_compared(study) && !considered(study).out.empty())
     text += " Ranks are those among the algorithms that did all of the test in most hands.";
   return text;

@@ -174,7 +174,7 @@ TEST(Conclusions, SayWhatTremorAloneGives) {
       // The median of the differences 0.01, 0.02 and 0.03.
       expect_says(force_row(rows), "|1.04 [1.01, 1.08]\ntremor 0.02|");
       expect_says(force_row(rows), "2 is 10 times 1, p = 0.023\n");
-      expect_says(html(hands_section(study, {})), "that of seed 1, has another tremor");
+      expect_says(html(hands_section(study, {})), "that of seed 1, with different tremors");
     }
   }
   EXPECT_EQ(force_row(sample_rows(8)).find("tremor"), std::string::npos);

@@ -146,7 +146,7 @@ std::vector<CaptionedFigure> draw_hands(const Study& study, const std::filesyste
   std::vector<CaptionedFigure> figures;
   for (const std::string_view phase : study.phases())
     figures.push_back({draw_phase(study, phase, folder).svg,
-                       "Every hand of the study, by algorithm. Each panel has a scale of its own, "
+                       "Every hand of the study, by algorithm. Each panel has its own scale, "
                        "logarithmic if values lie far apart."});
   return figures;
 }

@@ -315,13 +315,12 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
   const bool is_hatched = std::ranges::any_of(points, &Point::is_unreached);
   return CaptionedFigure{
       figure.svg,
-      fmt::format(
-          "Colour: {}, {} of the trials in a cell, by {} and {}. All panels share the colours. What is "
-          "white has no trial here that could be measured.{}",
-          colour.label, map.statistic, shown_x.label, shown_y.label,
-          is_hatched ? " In hatched cells a trial did not do all of this part of its test; "
-                       "grey ones have none that could be measured."
-                     : "")};
+      fmt::format("Colour: {}, {} of the trials in a cell, by {} and {}. All panels share the colour scale. "
+                  "White cells have no trial that could be measured.{}",
+                  colour.label, map.statistic, shown_x.label, shown_y.label,
+                  is_hatched ? " In hatched cells a trial did not do all of this part of its test; "
+                               "grey ones have none that could be measured."
+                             : "")};
 }
 
 }  // namespace osteomill

@@ -138,8 +138,8 @@ std::string unreached_words(std::size_t short_of, std::size_t done, Unreached un
   return fmt::format(" {} of the {} trials did not do all of their test; {}.", short_of, done,
                      unreached == Unreached::dropped
                          ? "they are left out of everything here"
-                         : "they count below (not_reached in trials.csv says which), and are hatched in "
-                           "every map of the part that they did not do");
+                         : "they are included below (not_reached in trials.csv names them), and hatched in "
+                           "every map of the part that they did not complete");
 }
 
 std::string share_text(std::size_t done, std::size_t all) {
@@ -185,7 +185,7 @@ fs::path write_study_report(const StudyDesign& design, const StudyFolder& study,
                                            unreached_words(short_of.size(), status.trials_done, unreached))},
                 .tables = {options_table(design, rows)}}}};
     if (status.trials_done < study.record.trials)
-      page.sections.front().notices = {"This is a part of the study, which is not done yet."};
+      page.sections.front().notices = {"This report covers a part of the study, which is not finished yet."};
     if (!design.maps.empty()) page.sections.push_back(maps_section(design, rows, figures));
     if (design.findings)
       std::ranges::move(findings_sections(design, rows, figures), std::back_inserter(page.sections));

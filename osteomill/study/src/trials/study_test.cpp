@@ -138,7 +138,7 @@ TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
   EXPECT_NE(three.find("100 to 300 N/m"), std::string::npos);
   EXPECT_EQ(three.find("\"strong\">2 is "), std::string::npos);
   const std::string ten = html(hands_section(Study(sample_rows(10)), {}));
-  EXPECT_NE(ten.find("covers the median with 97.9 %"), std::string::npos);
+  EXPECT_NE(ten.find("its coverage is 97.9 %"), std::string::npos);
   EXPECT_NE(ten.find("\"strong\">2 is 10 times 1<"), std::string::npos);
   // Zero throughout.
   EXPECT_EQ(ten.find("bone removed"), std::string::npos);

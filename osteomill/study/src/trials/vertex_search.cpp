@@ -93,8 +93,10 @@ const std::vector<Field<VertexSearchRow>>& fields_of<VertexSearchRow>() {
       field<V>({"vertices", "", kAny, "vertices"}, &V::vertices),
       field<V>({"direction_deg_median", "°", kAny, "force off the normal, median"}, &V::direction_deg_median),
       field<V>({"direction_deg_worst", "°", kAny, "force off the normal, worst"}, &V::direction_deg_worst),
-      field<V>({"size_off_worst", "", kAny, "size off its mean, share of it, worst"}, &V::size_off_worst),
-      field<V>({"unseen_worst", "", kAny, "deepest unseen, share of the radius"}, &V::unseen_worst),
+      field<V>({"size_off_worst", "", kAny, "deviation from mean size, share of it, worst"},
+               &V::size_off_worst),
+      field<V>({"unseen_worst", "", kAny, "greatest undetected depth, share of the radius"},
+               &V::unseen_worst),
       field<V>({"suffices", "", NumberRange::on_or_off(), "suffices"}, &V::suffices)};
   return all;
 }

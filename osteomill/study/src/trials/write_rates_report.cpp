@@ -150,27 +150,26 @@ std::string plain_words(const std::vector<RateRow>& rows) {
   return text +
          fmt::format(
              "At the paper's resolutions this machine makes {} to {} times as many steps a second as the "
-             "paper's Pentium 4 of 3.3 GHz, {} times in the geometric mean. The paper's rates are those of "
-             "a loop that waits for its next millisecond and does more than the step, so they end at 1000 "
-             "Hz; those compared with them here are of the step alone and have no such end. The ratio "
-             "therefore tells how far apart the machines are only if the paper's rate lies well below "
-             "1000 Hz, and is too large elsewhere.",
+             "paper's Pentium 4 of 3.3 GHz, {} times in the geometric mean. The paper's rates are those of a "
+             "loop that waits for its next millisecond and does more than the step, so they cannot exceed "
+             "1000 Hz; the rates compared with them here are of the step alone and have no such limit. The "
+             "ratio therefore compares the machines only if the paper's rate is well below 1000 Hz, and is "
+             "too large otherwise.",
              ratio_text(*min), ratio_text(*max),
              ratio_text(std::exp(log_sum / static_cast<double>(ratios.size()))));
 }
 
 constexpr std::string_view kWhatRatesMean =
-    "Three rates stand in the table. The rate achieved is what section 8.1 of the paper measures: ticks "
-    "done over the time they took by the wall clock, in a loop that was really held to 1000 Hz for up to 2 "
-    "s from the first contact on, without real-time scheduling. It depends on this machine and on what else "
-    "that did meanwhile; the simulated hand is part of the loop. The rate by CPU time is the one that such "
-    "a loop would hold by the ticks' CPU time, which nothing else on the machine lengthens: a tick that is "
-    "done early waits for its millisecond, one that is late puts the next off, and all of the tick's work "
-    "counts, not the step alone. So neither is above 1000 Hz, and 1000 Hz means that no tick was late. "
-    "Steps a second are 1,000,000 over the median step in microseconds: what the algorithm's step alone "
-    "would allow, with nothing else to do and nothing to wait for. The figure draws these, since the others "
-    "hardly tell fast algorithms apart. These and the rate by CPU time count steps in contact alone. "
-    "barrier-shell is not the paper's, so nothing of the paper stands beside it.";
+    "The table has three rates. The rate achieved is what section 8.1 of the paper measures: ticks per "
+    "second of wall-clock time, in a loop paced at 1000 Hz for up to 2 s from the first contact on, without "
+    "real-time scheduling. It depends on this machine and its other load; the simulated hand is part of the "
+    "loop. The rate by CPU time is the one that such a loop would hold by the ticks' CPU time, which other "
+    "load does not lengthen: an early tick waits for its millisecond, a late one delays the next, and the "
+    "whole tick counts, not the step alone. So neither exceeds 1000 Hz, and 1000 Hz means that no tick was "
+    "late. Steps a second are 1,000,000 divided by the median step in microseconds: what the algorithm's "
+    "step alone would allow, without other work or waiting. The figure shows these, because the other rates "
+    "hardly separate fast algorithms. These and the rate by CPU time count only steps in contact. The paper "
+    "does not have barrier-shell, so no rate of the paper is next to it.";
 
 std::string least_words(const std::vector<VertexSearchRow>& rows, const std::string& part, int papers) {
   const int least = least_vertices(rows, part);
@@ -190,15 +189,14 @@ Section vertices_section(const std::vector<VertexSearchRow>& rows) {
   return {
       .title = "The least number of vertices that suffices for surface-points",
       .paragraphs = {fmt::format(
-          "By this search: {}, {}. The paper says that its tests found its numbers to be needed for "
-          "correct collision detection and force, not by what measure; the measure here is our own. The "
-          "algorithm itself presses its sphere, or one circle of its shaft, on a "
-          "flat wall by half the radius with a thousand sides of it in turn, in bone whose density is "
-          "linear, so that nothing but the number of vertices counts. A number suffices if, with "
-          "every side, the force is at most {:g}° off the wall's normal, its size off the mean by at most "
-          "{:g} of it, and a vertex meets the bone before the part is {:g} of its radius deep; the "
-          "least is the one from which on all that were tried suffice. These tolerances are round "
-          "numbers; others give other answers, which the table lets you see.",
+          "By this search: {}, {}. The paper reports that its tests found its numbers to be needed for "
+          "correct collision detection and force, but not by what measure; the measure here is our own. The "
+          "algorithm itself presses a thousand sides of its sphere, or of one circle of its shaft, into a "
+          "flat wall by half the radius; the bone's density is linear, so that only the number of vertices "
+          "matters. A number suffices if, for every side, the force is at most {:g}° off the wall's normal, "
+          "its size differs from the mean by at most {:g} of it, and a vertex touches the bone before the "
+          "part is {:g} of its radius deep. The least is the number from which all larger ones tried "
+          "suffice. These tolerances are round numbers; the table shows what others would give.",
           least_words(rows, "sphere", kSphereVertices), least_words(rows, "circle", kSliceVertices),
           VertexSearchRow::kMaxDirection_deg, VertexSearchRow::kMaxSizeOff, VertexSearchRow::kMaxUnseen)},
       .tables = {table}};

@@ -24,7 +24,7 @@ struct MetricLine {
 
 /// Parts of a report that the caller of write_report() adds; any may be empty. A plain session adds none.
 struct PageText {
-  std::string title = "What was milled, and what the hand felt";
+  std::string title = "Bone removed and forces felt";
   /// Section at the top of the page with the main result. Without it the page lists there, for each run, how
   /// long it took, how far the burr moved, what was removed and what was felt.
   std::optional<Section> opening;
