@@ -53,7 +53,7 @@ assert [s[:3] for s in seen] == [("Ann <b>", "1", "class/1.h5"), ("Ann <b>", "2"
 assert seen[0][3] < seen[1][3] < seen[2][3] and [s[4] for s in seen] == ["yes" if s[3] >= 10 else "no" for s in seen], seen
 page = open("all/debrief.html").read()
 assert "Ann &lt;b&gt;" in page and "<b>" not in page and "alert(1)</script>" not in page and "<i>" not in page
-assert "Not among them: class/cut.h5" in page
+assert "Not included: class/cut.h5" in page
 data = json.loads(re.search(r'id="page-data">(.*?)</script>', page, re.S).group(1))
 assert [len(curves) for curves in data["curves"]] == [2, 1]
 CHECK
@@ -86,7 +86,7 @@ assert abs(floats(own["time"])[-1] - 0.65) < 2e-3, floats(own["time"])[-1]
 parting = [mark for mark in data["marks"] if mark["kind"] == "parting"]
 assert len(parting) == 1 and abs(parting[0]["time"] - 0.25) < 1e-9 and "first.h5 --at 0.25" in parting[0]["command"], parting
 assert parting[0]["facts"] == [["when", "0.250 s"], ["ticks in common", "251"]], parting
-assert {body["choice"] for body in data["bodies"]} == {"this way", "the first way"}
+assert {body["choice"] for body in data["bodies"]} == {"this attempt", "the original"}
 assert data["marks"] == sorted(data["marks"], key=lambda mark: mark["time"])
 def value(folder):
     return next(float(row["value"]) for row in csv.DictReader(open(folder + "/debrief.csv")) if row["measure"] == "target_removed_percent")

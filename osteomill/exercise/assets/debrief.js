@@ -43,7 +43,7 @@
     const wide = 220, high = 64, curves = D.curves[person].filter(c => c.time.length);
     if (!curves.length) return;
     const end = Math.max(1e-3, ...curves.map(c => c.time[c.time.length - 1] - c.time[0]));
-    const box = svg("svg", { class: "curve", width: wide, height: high, role: "img", "aria-label": "target removed over time, one curve an attempt" });
+    const box = svg("svg", { class: "curve", width: wide, height: high, role: "img", "aria-label": "target removed over time, one curve per attempt" });
     const y = v => high - 12 - (high - 18) * Math.min(v, 100) / 100;
     for (const v of [0, 100]) {
       box.append(svg("line", { x1: 30, x2: wide - 4, y1: y(v), y2: y(v), stroke: "#ddd" }));
@@ -91,7 +91,7 @@
     const wide = Math.max(300, courseHere.clientWidth), left = 48, right = 12, gap = 22;
     const last = F ? Math.max(end, F.time[F.time.length - 1]) : end, span = Math.max(last - begin, 1e-6);
     const x = t => left + (wide - left - right) * (t - begin) / span;
-    // The rate over a second.
+    // Removal rate over the last second.
     function rateOf(samples) {
       const rate = new Float32Array(samples.time.length);
       for (let n = 0, first = 0, sum = 0; n < rate.length; ++n) {
@@ -104,7 +104,7 @@
     const farthest = beyond => values => values.reduce((m, v) => isFinite(v) && beyond(v, m) ? v : m, 0);
     const most = farthest((v, m) => v > m), least = farthest((v, m) => v < m);
     const P = D.progress, G = D.first ? D.first.progress : null;
-    // This way's line, and below it the first way's.
+    // This attempt's line, on top of the original's.
     const lines = (own, first, colour, thick) => [
       ...(F ? [{ ...first, colour: "#9aa3ad", wide: 1.2 }] : []), { ...own, colour, wide: thick }];
     const sampled = (key, colour) => lines({ time: S.time, values: S[key] }, F && { time: F.time, values: F[key] }, colour, 1);
@@ -127,7 +127,7 @@
     let y0 = 18;
     for (const row of rows) {
       const y = v => y0 + row.high - row.high * (Math.min(Math.max(v, row.low), row.top) - row.low) / (row.top - row.low);
-      box.append(svg("text", { x: left, y: y0 - 5, fill: "#222" }, row.name + (row === rows[0] ? (F ? "; the first way in grey" : "") + (D.experts.length ? "; experts' in brown" : "") : "")));
+      box.append(svg("text", { x: left, y: y0 - 5, fill: "#222" }, row.name + (row === rows[0] ? (F ? "; the original in grey" : "") + (D.experts.length ? "; experts' in brown" : "") : "")));
       for (const v of ticks(row.low, row.top, row.high / 28)) {
         box.append(svg("line", { x1: left, x2: wide - right, y1: y(v), y2: y(v), stroke: "#e2e2e2" }));
         box.append(svg("text", { x: left - 5, y: y(v) + 4, "text-anchor": "end", fill: "#555" }, v));
@@ -156,7 +156,7 @@
     };
     D.steps.forEach((step, n) => { if (step.done_s !== null) upright(step.done_s, "step " + (n + 1) + " done", "6 3", n % 3); });
     D.burrs.slice(1).forEach((burr, n) => upright(burr.time, burr.text, "2 3", 3 + n % 3));
-    D.marks.forEach(mark => { if (mark.kind === "parting") upright(mark.time, "the ways part", "1 0", 0); });
+    D.marks.forEach(mark => { if (mark.kind === "parting") upright(mark.time, "branch point", "1 0", 0); });
     const inMinutes = span > 180;
     for (const t of ticks(begin / (inMinutes ? 60 : 1), last / (inMinutes ? 60 : 1), wide / 90)) {
       const at = x(t * (inMinutes ? 60 : 1));
@@ -302,7 +302,7 @@
   ring.renderOrder = 10;
   ring.visible = false;
   scene.add(ring);
-  view.bar.append(el("label", {}, el("input", { type: "checkbox", checked: true, onchange: event => { for (const s of signs) s.visible = event.target.checked; draw(); } }), "marks: ◆ contact, ▲ removed outside" + (F ? ", ● the ways part" : "")),
+  view.bar.append(el("label", {}, el("input", { type: "checkbox", checked: true, onchange: event => { for (const s of signs) s.visible = event.target.checked; draw(); } }), "marks: ◆ contact, ▲ removed outside" + (F ? ", ● branch point" : "")),
     el("label", {}, el("input", { type: "checkbox", id: "path", onchange: event => { done.visible = whole.visible = event.target.checked; draw(); } }), "the burr's path"));
 
   view.place = () => {

@@ -37,7 +37,7 @@ constexpr const char* kUnnamed = "without a name";
 
 // Maximum for all bodies of a page together; they take 2.6 MB.
 constexpr std::size_t kPageVertices = 110000;
-constexpr const char *kThisWay = "this way", *kFirstWay = "the first way";
+constexpr const char *kThisWay = "this attempt", *kFirstWay = "the original";
 
 Page page_with(std::string title, std::vector<Section> sections, const json& data) {
   Page page{.title = std::move(title), .sections = std::move(sections)};
@@ -127,10 +127,10 @@ Section items_section(const DebriefedAttempt& own, const DebriefPeers& peers) {
 std::vector<Section> spread_sections(const DebriefedAttempt& own, const DebriefPeers& peers) {
   if (peers.before.empty()) return {};
   Section section{.title = fmt::format(
-                      "Against the {} before",
+                      "Compared with the previous {}",
                       peers.before.size() == 1 ? "attempt" : fmt::format("{} attempts", peers.before.size())),
                   .id = "spread"};
-  Table table{{"measure", "now", "mean before", "spread before", "differs by more"}};
+  Table table{{"measure", "now", "previous mean", "previous spread", "outside the spread"}};
   for (const MeasuredValue& row : own.rows) {
     const std::vector<double> before = values_of(peers.before, row.measure);
     if (!row.value || before.empty() ||
@@ -146,9 +146,8 @@ std::vector<Section> spread_sections(const DebriefedAttempt& own, const DebriefP
     table.rows.push_back(std::move(cells));
   }
   section.paragraphs = {
-      "The spread is what attempts differ by without any change: the next one would lie within it in 19 of "
-      "20 cases. It "
-      "takes four attempts before this one."};
+      "The spread is how much attempts differ without any change: the next one would be within it in 19 of "
+      "20 cases. It takes four previous attempts."};
   section.tables = {std::move(table)};
   return {std::move(section)};
 }
@@ -210,11 +209,12 @@ Section about_section(const Exercise& exercise, const DebriefedAttempt& own, con
   if (!exercise.task.empty()) section.paragraphs.push_back(exercise.task);
   section.paragraphs.push_back(who_and_when(own));
   if (!peers.no_first.empty())
-    section.notices.push_back("The recording from which this one goes on is not shown: " + peers.no_first);
+    section.notices.push_back("The recording from which this one branches off is not shown: " +
+                              peers.no_first);
   if (peers.first)
     section.paragraphs.push_back(fmt::format(
-        "It goes on from {} at {:.3f} s: the first way is that one to its "
-        "end, this way what was done from there.",
+        "It branches off from {} at {:.3f} s. The original is that recording to its end, this attempt what "
+        "was done from there.",
         peers.first->measured.recording.empty() ? "another recording" : peers.first->measured.recording,
         peers.first->from.time_s));
   return section;
@@ -266,12 +266,12 @@ Page attempt_page(const Attempt& attempt, const Recording& recording, const Debr
   sections.push_back(
       {.title = "The bone",
        .id = "bone",
-       .paragraphs = {"Drag to turn, scroll or pinch to zoom. Press a mark to see what happened there."},
+       .paragraphs = {"Drag to rotate, scroll or pinch to zoom. Press a mark to see what happened there."},
        .figures = still_of(attempt, colours, work)});
   sections.push_back({.title = "The course",
                       .id = "course",
-                      .paragraphs = {"Press or drag on it to go to a time. Force is the greatest and "
-                                     "distance the least of each moment."}});
+                      .paragraphs = {"Press or drag to go to a time. Each point has the greatest force and "
+                                     "the least distance of its interval."}});
   for (Section& section : zone_sections(own, peers)) sections.push_back(std::move(section));
   sections.push_back(measures_section(own, peers));
   std::string title = exercise.exercise.title;
@@ -344,7 +344,7 @@ std::shared_ptr<FirstWay> first_way_of(const Attempt& attempt, const Recording& 
   const Recording first = read_recording_chain(path);
   const auto& records = first.records;
   if (from->ticks > records.size() || records[from->ticks - 1].time_s != from->time_s)
-    throw InputError(path.string(), "is not what came before " + recording.path.string());
+    throw InputError(path.string(), "does not match the beginning of " + recording.path.string());
   Attempt whole = make_attempt(*attempt.exercise, *attempt.scan, first);
   DebriefedAttempt measured = debriefed(whole, first);
   return std::make_shared<FirstWay>(FirstWay{std::move(whole), std::move(measured), *from});
@@ -416,7 +416,7 @@ void write_class_debriefing(const fs::path& folder, const Exercise& exercise,
   summary.tables = {std::move(names)};
   items.tables = {std::move(values)};
   Section about;
-  for (const std::string& line : unread) about.notices.push_back("Not among them: " + line);
+  for (const std::string& line : unread) about.notices.push_back("Not included: " + line);
   if (!exercise.task.empty()) about.paragraphs = {exercise.task};
   const Page page = page_with(exercise.title, {about, summary, items}, data);
   write_folder_atomically(folder, [&](const fs::path& beside) {

@@ -278,22 +278,22 @@ constexpr const char* kTeachers = "PMC3413455: no violation of the facial nerve"
 
 void add_bone(std::vector<Measure>& all) {
   all.push_back({"target_removed_percent", "%",
-                 "100 |R ∩ T| / |T|: R the voxels that were bone and are no more, T the target's bone", "",
+                 "100 |R ∩ T| / |T|: R the voxels of removed bone, T those of the target's bone", "",
                  target_removed_percent});
-  all.push_back(
-      {"removed_outside_mm3", "mm³",
-       "volume of the voxels of R that lie farther than keep.margin_mm from T, or in the bone to be kept", "",
-       removed_outside_mm3});
+  all.push_back({"removed_outside_mm3", "mm³",
+                 "volume of R that is farther than keep.margin_mm from T, or within the bone to be kept", "",
+                 removed_outside_mm3});
   all.push_back(
       {"removed_outside_percent", "%", "100 removed_outside_mm3 / volume of T", "", removed_outside_percent});
-  all.push_back({"removed_mm3", "mm³", "volume of R, by voxels; the window and every tick have it by density",
-                 "", removed_mm3});
+  all.push_back({"removed_mm3", "mm³",
+                 "volume of R in whole voxels; the window and the recorded ticks count by density", "",
+                 removed_mm3});
   all.push_back({"dice_percent", "%", "200 |R ∩ T| / (|R| + |T|)", "Dice 1945", dice_percent});
   all.push_back({"keep_removed_mm3", "mm³", "volume of R within the bone to be kept; empty without such bone",
                  "", keep_removed_mm3});
   const std::string over =
-      "bone between a structure and the space open from outside, {} over the structure's "
-      "surface as far as milling made it thinner by a voxel or more; empty beyond 8 mm";
+      "thickness of the bone between a structure and the space open from outside, {} over the structure's "
+      "surface where milling thinned it by a voxel or more; empty beyond 8 mm";
   all.push_back(of_structure("thickness_left_min_mm", "mm", fmt::format(fmt::runtime(over), "least"), "",
                              thickness_left_min_mm, true));
   all.push_back(of_structure("thickness_left_median_mm", "mm", fmt::format(fmt::runtime(over), "median"), "",
@@ -302,8 +302,7 @@ void add_bone(std::vector<Measure>& all) {
 
 void add_crown(std::vector<Measure>& all) {
   const std::string along =
-      "bone between the crown's surface before and after, along the surface's normal, {}; "
-      "empty without [crown]";
+      "distance between the crown's surface before and after, along its normal, {}; empty without [crown]";
   all.push_back({"reduction_median_mm", "mm",
                  fmt::format(fmt::runtime(along), "median over the target's surface"), kCrown,
                  [](const Attempt& a) { return share(crown_of(a).reductions_mm, 0.5); }});
@@ -314,42 +313,41 @@ void add_crown(std::vector<Measure>& all) {
                  "walls within 30° of it",
                  kCrown, [](const Attempt& a) { return 2 * share(crown_of(a).wall_angles_deg, 0.5); }});
   all.push_back({"undercut_mm3", "mm³",
-                 "volume of the target's removed bone that lies below bone which is left, along [crown] axis",
-                 kCrown, [](const Attempt& a) { return crown_of(a).undercut_mm3; }});
+                 "volume of removed target bone below remaining bone, along [crown] axis", kCrown,
+                 [](const Attempt& a) { return crown_of(a).undercut_mm3; }});
 }
 
 void add_contacts(std::vector<Measure>& all) {
+  all.push_back(of_contact(
+      "no_go_contacts", "",
+      "contacts of the turning burr's surface with a structure; half a second without contact separates two",
+      kTeachers, &Contacts::count));
   all.push_back(
-      of_contact("no_go_contacts", "",
-                 "times at which the turning burr's surface reached into a structure; half a second "
-                 "without parts one from the next",
-                 kTeachers, &Contacts::count));
-  all.push_back(
-      of_contact("no_go_contact_s", "s", "length of the ticks with contact", kTeachers, &Contacts::time_s));
-  all.push_back(of_contact("no_go_first_contact_s", "s", "time of the first tick with contact; empty without",
+      of_contact("no_go_contact_s", "s", "duration of all ticks with contact", kTeachers, &Contacts::time_s));
+  all.push_back(of_contact("no_go_first_contact_s", "s", "time of the first tick with contact; empty if none",
                            kTeachers, &Contacts::first_s));
-  all.push_back(of_contact("no_go_force_max_N", "N", "greatest force of the burr in contact; empty without",
+  all.push_back(of_contact("no_go_force_max_N", "N", "greatest force of the burr in contact; empty if none",
                            "PMC3413455: no excessive force near the facial nerve", &Contacts::force_max_N));
   all.push_back({"no_go_removed_mm3", "mm³", "volume of R within structures", kTeachers,
                  no_go_removed_of_all_mm3, Measure::Each::structure, no_go_removed_mm3});
   all.push_back(of_structure(
       "no_go_perforated", "",
-      "1 if removed bone opened a way through a structure, between spaces that nothing within it joined "
-      "before",
+      "1 if removed bone opened a passage through a structure, between spaces that were not connected within "
+      "it before",
       "PMC3413455: no perforation",
       [](const Attempt& a, std::size_t n) {
         return is_cut_through(a.exercise->structures[n].voxels, *a.scan, a.after) ? 1.0 : 0.0;
       },
       false));
   all.push_back(of_contact("no_go_min_distance_mm", "mm",
-                           "least distance of the burr's surface from a structure; negative if it reached in",
+                           "least distance of the burr's surface from a structure; negative if it was inside",
                            "Voormolen: 3 mm left every facial nerve undamaged, 1 and 2 mm did not",
                            &Contacts::min_distance_mm));
 }
 
 void add_work(std::vector<Measure>& all) {
-  all.push_back({"duration_s", "s", "length of all ticks", "", duration_s});
-  all.push_back({"cutting_s", "s", "length of the ticks that removed bone", "", cutting_s});
+  all.push_back({"duration_s", "s", "duration of all ticks", "", duration_s});
+  all.push_back({"cutting_s", "s", "duration of all ticks that removed bone", "", cutting_s});
   all.push_back({"idle_s", "s", "duration_s - cutting_s", "", idle_s});
   all.push_back(
       {"strokes", "",
@@ -367,13 +365,13 @@ void add_work(std::vector<Measure>& all) {
                  force(nullptr, 0.5)});
   all.push_back({"force_p95_N", "N", "95th percentile of that force", "", force(nullptr, 0.95)});
   for (const Zone* zone : {&kNear, &kMiddle, &kFar}) {
-    const std::string where = zone == &kNear     ? "with the burr's surface under 4 mm from a structure"
+    const std::string where = zone == &kNear     ? "with the burr's surface less than 4 mm from a structure"
                               : zone == &kMiddle ? "4 to 8 mm from the nearest structure"
-                                                 : "over 8 mm from any structure";
+                                                 : "more than 8 mm from any structure";
     all.push_back({fmt::format("force_median_{}_N", zone->name), "N", "median force " + where, kZones,
                    force(zone, 0.5)});
     all.push_back({fmt::format("removal_rate_{}_mm3_s", zone->name), "mm³/s",
-                   "bone of reference density removed " + where + ", by the time of cutting there", kZones,
+                   "bone of reference density removed " + where + ", per second of cutting there", kZones,
                    [zone](const Attempt& a) { return removal_rate_mm3_s(a, zone); }});
     all.push_back(
         {fmt::format("burr_radius_median_{}_mm", zone->name), "mm", "median burr radius " + where, kZones,
@@ -383,23 +381,21 @@ void add_work(std::vector<Measure>& all) {
 
 void add_course(std::vector<Measure>& all) {
   all.push_back({"step_s", "s",
-                 "time from when the steps before it were done until done_percent of a step's bone was gone; "
-                 "empty if it was not. Without a step: the sum",
+                 "time from completion of the previous steps until done_percent of a step's bone was "
+                 "removed; empty if it never was. Without a step: the sum",
                  "", steps_s, Measure::Each::step, step_s});
   all.push_back({"dice_peak_percent", "%",
-                 "greatest Dice coefficient on the way; progress.csv has its course", kProduct,
+                 "greatest Dice coefficient during the attempt; progress.csv has it over time", kProduct,
                  [](const Attempt& a) { return peak_of(a).dice_percent; }});
   all.push_back({"dice_peak_s", "s", "time of the greatest Dice coefficient", kProduct,
                  [](const Attempt& a) { return peak_of(a).time_s; }});
-  all.push_back(
-      {"hidden_cutting_percent", "%",
-       "share of the cutting, as far as a view was recorded, in which bone or the picture's edge hid the "
-       "burr's contact",
-       "PMC3413455: visibility while removing bone", hidden_cutting_percent});
+  all.push_back({"hidden_cutting_percent", "%",
+                 "share of the cutting time with a recorded view in which bone or the picture's edge hid the "
+                 "burr's contact",
+                 "PMC3413455: visibility while removing bone", hidden_cutting_percent});
   all.push_back(
       {"view_changes", "",
-       "times at which the view began to turn, shift or zoom after half a second at rest; empty without "
-       "views",
+       "how often the view began to turn, shift or zoom after half a second at rest; empty without views",
        "PMC3413455: use of the view", [](const Attempt& a) { return view_changes(a.views); }});
 }
 

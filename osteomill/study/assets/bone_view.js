@@ -108,7 +108,7 @@ window.Osteomill = (function () {
     };
     const scale = el("i");
     scale.style.background = "linear-gradient(90deg," + palette.slice(0, 5).map(([mm, c]) => "#" + ("00000" + c.toString(16)).slice(-6) + " " + 25 * mm + "%").join(",") + ")";
-    bar.append(el("label", {}, el("input", { type: "checkbox", id: "thickness", checked: true, onchange: event => set(event.target.checked) }), "bone left over structures"),
+    bar.append(el("label", {}, el("input", { type: "checkbox", id: "thickness", checked: true, onchange: event => set(event.target.checked) }), "bone thickness over structures"),
       el("span", { class: "scale" }, "0", scale, "4 mm"));
     set(true);
   }

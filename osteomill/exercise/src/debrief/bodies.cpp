@@ -111,7 +111,7 @@ void add_bodies(json& data, const Attempt& attempt, const LabelMap& colours, std
   add({.name = "bone", .opacity = exercise.structures.empty() ? 1 : 0.5},
       mesh_in_one_piece(DensityView(attempt.after)));
   add({"target", "target", colour_of(0), 0.2}, surface(exercise.target, all));
-  add({"left of the target", "left", "#0f7a3d"},
+  add({"remaining target", "left", "#0f7a3d"},
       surface(exercise.target, [&](const VoxelIndex& v) { return !attempt.removed.contains(v); }));
   add({"removed outside", "outside", "#e8590c", 0.8},
       surface(attempt.removed, [&](const VoxelIndex& v) { return exercise.is_outside(v); }));

@@ -235,7 +235,7 @@ void put_first_way(json& data, const FirstWay& first, const std::string& recordi
   json mark = {{"kind", "parting"},
                {"time", tick.time_s},
                {"place", numbers_of(tick.burr_W)},
-               {"title", fmt::format("{:.2f} s: the ways part", tick.time_s)},
+               {"title", fmt::format("{:.2f} s: branch point", tick.time_s)},
                {"facts", json::array({json::array({"when", fmt::format("{:.3f} s", tick.time_s)}),
                                       json::array({"ticks in common", std::to_string(first.from.ticks)})})},
                {"command", command_at(recording_name, tick.time_s)}};
