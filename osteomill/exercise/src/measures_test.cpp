@@ -23,7 +23,7 @@ double measured(const std::string& name, const Attempt& attempt) {
   return measure == nullptr ? -1e9 : measure->value(attempt);
 }
 
-/// Takes the voxels out of the bone at once, without a session.
+/// Removes the voxels from the bone at once, without a session.
 Attempt attempt_removing(const PlacedExercise& placed, const Volume& scan, const Region& region) {
   Volume after = scan;
   region_voxels(region, scan, "task.toml").for_each([&](const VoxelIndex& v) { after.lower_density(v, 0); });
@@ -40,7 +40,7 @@ class MeasuresOfABox : public ::testing::Test {
     placed_ = place_exercise(exercise_, scan_);
   }
   Attempt removing(const BoxShape& box) const { return attempt_removing(placed_, scan_, region_of({box})); }
-  /// An attempt that removes nothing, with ticks of 1 ms.
+  /// Returns an attempt that removes nothing, with ticks of 1 ms.
   Attempt with_ticks(const std::vector<AttemptTick>& ticks) const {
     Attempt attempt = removing({{-1, -1, 5}, {1, 1, 6}});
     attempt.ticks = ticks;
@@ -55,7 +55,7 @@ class MeasuresOfABox : public ::testing::Test {
 };
 
 TEST_F(MeasuresOfABox, CountHowMuchOfTheTargetAndOfWhatIsOutsideWasRemoved) {
-  // The target is 4 x 4 x 4 mm; this takes its upper half, and half as much beside it.
+  // The target is 4 x 4 x 4 mm; this removes its upper half, and half as much next to it.
   const Attempt attempt = removing({{-2, -2, -2}, {4, 2, 0}});
   EXPECT_DOUBLE_EQ(measured("target_removed_percent", attempt), 50);
   EXPECT_DOUBLE_EQ(measured("removed_outside_mm3", attempt), 16);
@@ -75,7 +75,7 @@ TEST_F(MeasuresOfABox, FindTheBoneLeftOverAStructure) {
 }
 
 TEST_F(MeasuresOfABox, TimeContactsFromTheTickInWhichTheBurrReachesTheStructure) {
-  // Down at 1 mm/s from z = -3: a burr of 1 mm reaches z = -6 after 2 s; up again; and once more.
+  // Moves down at 1 mm/s from z = -3: a burr of 1 mm reaches z = -6 after 2 s; then up again; twice.
   std::vector<AttemptTick> ticks;
   for (int pass = 0; pass < 2; ++pass) {
     for (int n = 0; n < 4000; ++n) {
@@ -170,7 +170,7 @@ TEST_F(MeasuresOfABox, TimeEachStepFromWhenThoseBeforeItWereDone) {
                      {"lower", region_of({BoxShape{{-2, -2, -4}, {2, 2, -2}}}), 100}};
   placed_ = place_exercise(exercise_, scan_);
   Attempt attempt = removing({{-2, -2, -4}, {3, 2, 0}});
-  // From the top at 1 mm/s from 1 s on; beside the target at the end.
+  // Removed from the top at 1 mm/s, beginning at 1 s; next to the target at the end.
   attempt.removed.for_each([&](const VoxelIndex& v) {
     const Vec3 place_W = scan_.geometry().world_from_voxel(v);
     attempt.removal_times_s[row_major(scan_.geometry().dims, v.i, v.j, v.k)] =
@@ -178,11 +178,11 @@ TEST_F(MeasuresOfABox, TimeEachStepFromWhenThoseBeforeItWereDone) {
   });
   for (int n = 0; n <= 1000; ++n) attempt.ticks.push_back({.time_s = 0.01 * n, .dt_s = 0.01});
   const Measure& step_s = *find_measure("step_s");
-  // Half of the upper half is gone after 1 mm; the lower one, after 4 mm.
+  // Half of the upper half is gone after 1 mm; the lower half, after 4 mm.
   EXPECT_NEAR(step_s.value_at(attempt, 0), 2, 0.15);
   EXPECT_NEAR(step_s.value_at(attempt, 1), 3, 0.15);
   EXPECT_NEAR(step_s.value(attempt), 5, 0.15);
-  // The product is best before bone goes that should stay.
+  // The Dice coefficient peaks before bone is removed that should stay.
   EXPECT_DOUBLE_EQ(measured("dice_peak_percent", attempt), 100);
   EXPECT_NEAR(measured("dice_peak_s", attempt), 5, 0.15);
   EXPECT_DOUBLE_EQ(measured("dice_percent", attempt), 200.0 * 64 / (64 + 80));
@@ -208,7 +208,7 @@ TEST(Perforation, IsAWayThroughAStructureAndNotAHoleInIt) {
   EXPECT_EQ(perforated({{-1, -1, -1}, {1, 1, 0}}), 0);
   EXPECT_EQ(perforated({{-1, -1, -3.8}, {1, 1, 0}}), 0);
   EXPECT_EQ(perforated({{-1, -1, -4}, {1, 1, 0}}), 1);
-  // From the hollow up, and past it.
+  // From the cavity upwards, and past it.
   EXPECT_EQ(perforated({{-1, -1, -4}, {1, 1, -2.3}}), 0);
   EXPECT_EQ(perforated({{4, -1, -5}, {5, 1, 0}}), 0);
 }
@@ -228,7 +228,7 @@ TEST(IsHidden, ByBoneUnlessItIsCutAwayOrByThePicturesEdge) {
   const ViewSample above = view_from({0, 0, 60}, Vec3::UnitZ());
   EXPECT_FALSE(is_hidden(above, bone, Vec3::Zero()));
   EXPECT_TRUE(is_hidden(view_from({0, 0, -60}, -Vec3::UnitZ()), bone, Vec3::Zero()));
-  // The floor of the hollow is hidden from above, too, until a cut takes its roof away.
+  // The floor of the cavity is hidden from above too, until a cut removes its roof.
   const auto cut_above = [&](double z) {
     ViewSample view = above;
     view.cuts[1] = {-Vec3::UnitZ(), -z};
@@ -238,7 +238,7 @@ TEST(IsHidden, ByBoneUnlessItIsCutAwayOrByThePicturesEdge) {
   EXPECT_TRUE(is_hidden(cut_above(-2), bone, {0, 0, -5}));
   EXPECT_FALSE(is_hidden(cut_above(-4.5), bone, {0, 0, -5}));
   EXPECT_TRUE(is_hidden(cut_above(-6), bone, {0, 0, -5})) << "it is cut away itself";
-  // The picture reaches to tan 0.25 of 60 mm, and 1.5 times as far to its sides.
+  // The picture extends to tan 0.25 of 60 mm vertically, and 1.5 times as far horizontally.
   EXPECT_FALSE(is_hidden(above, bone, {0, 15, 0.5}));
   EXPECT_TRUE(is_hidden(above, bone, {0, 16, 0.5}));
   EXPECT_FALSE(is_hidden(above, bone, {22, 0, 0.5}));
@@ -275,7 +275,7 @@ TEST(SeenContacts, AreThoseOfTheSessionsViews) {
   const PlacedExercise placed =
       place_exercise(exercise_with_target(region_of({SphereShape{{0.03, 0.05, 0.4}, 1.5}})), bone);
   EXPECT_TRUE(std::isnan(measured("hidden_cutting_percent", make_attempt(placed, bone, recording))));
-  // From above in the first half, and from below in the second.
+  // Seen from above in the first half, from below in the second.
   double cutting_s = 0;
   const std::vector<AttemptTick> ticks = attempt_ticks(recording);
   for (const AttemptTick& tick : ticks) cutting_s += tick.is_cutting() ? tick.dt_s : 0;
@@ -292,7 +292,7 @@ TEST(SeenContacts, AreThoseOfTheSessionsViews) {
   const Attempt attempt = make_attempt(placed, bone, recording);
   EXPECT_NEAR(measured("hidden_cutting_percent", attempt), 50, 10);
   EXPECT_EQ(measured("view_changes", attempt), 1);
-  // Every voxel that went has a time, and the deepest went last.
+  // Every removed voxel has a time, and the deepest is the last.
   EXPECT_EQ(attempt.removal_times_s.size(), attempt.removed.count());
 }
 
@@ -322,7 +322,7 @@ TEST(Strokes, EndAfterATimeWithoutCutting) {
   EXPECT_EQ(strokes_of(ticks).size(), 2u);
 }
 
-// Bone below z = 0 from which a shape is cut, with an edge as the mill leaves it.
+// Cuts a shape from bone below z = 0, with an edge like that left by milling.
 Attempt attempt_cutting(const PlacedExercise& placed, const Volume& scan,
                         const std::function<double(const Vec3&)>& signed_distance_mm) {
   Volume after = scan;
@@ -378,7 +378,7 @@ TEST_P(CutVolume, OfASessionIsThatWhichItsMillCounted) {
   EXPECT_GT(measured("cutting_s", attempt), 0.1);
 }
 
-// Returns the volume below z = 0 that a ball sweeps along the simulated tool's path, by counting points.
+// Returns the volume below z = 0 swept by a ball along the simulated tool's path, by point counting.
 double swept_mm3(const Recording& recording, double radius_mm) {
   constexpr double kApart_mm = 0.05;
   constexpr std::size_t kTicks = 25;
@@ -400,8 +400,8 @@ double swept_mm3(const Recording& recording, double radius_mm) {
   return static_cast<double>(swept) * std::pow(kApart_mm, 3);
 }
 
-// A burr at rest would widen its hole, because the skin of the haptic algorithm then holds it off by up to
-// 0.1 mm, which milling bridges.
+// A resting burr would widen its hole: the margin of the haptic algorithm then holds it off by up to 0.1 mm,
+// which milling bridges.
 TEST_P(CutVolume, OfAPlungeAndOfASlotIsThatSweptByTheToolWithinTwoPercent) {
   const Volume bone = bone_below_zero(GetParam(), 10);
   const PlacedExercise placed =
@@ -412,7 +412,7 @@ TEST_P(CutVolume, OfAPlungeAndOfASlotIsThatSweptByTheToolWithinTwoPercent) {
     return places;
   };
   const std::vector<Vec3> plunge = way({0.03, 0.05, 1.7}, {0.03, 0.05, 0.2}, 0.0004);
-  // Several voxels deep, since voxels are counted whole.
+  // Several voxels deep, because voxels are counted whole.
   std::vector<Vec3> slot = way({-1.97, 0.05, 1.7}, {-1.97, 0.05, -0.1}, 0.0005);
   for (const Vec3& place_W : way({-1.97, 0.05, -0.1}, {2.03, 0.05, -0.1}, 0.0008)) slot.push_back(place_W);
   for (const std::vector<Vec3>& places : {lift(plunge), lift(slot)}) {
@@ -424,7 +424,7 @@ TEST_P(CutVolume, OfAPlungeAndOfASlotIsThatSweptByTheToolWithinTwoPercent) {
   }
 }
 
-// A cone's frustum within a cylinder of 4 mm: its sides lean by 4 degrees.
+// A conical frustum within a cylinder of 4 mm; its sides lean by 4 degrees.
 TEST(Crown, HasTheReductionAndTaperOfItsShapes) {
   const double lean = 4 * std::numbers::pi / 180;
   GridGeometry grid = centred_cube(56, 0.2);
@@ -446,7 +446,7 @@ TEST(Crown, HasTheReductionAndTaperOfItsShapes) {
   EXPECT_NEAR(measured("reduction_median_mm", tapered), 1.22, 0.1);
   EXPECT_NEAR(measured("reduction_p10_mm", tapered), 1.04, 0.1);
   EXPECT_LT(measured("undercut_mm3", tapered), 0.05);
-  // Upside down it has undercuts all round: a ring under the wider top.
+  // Upside down it has an undercut all round: a ring below the wider top.
   const Attempt undercut = cut([&](const Vec3& p) {
     const double radius_mm = 2.5 + (p.z() + 3) * std::tan(lean);
     return std::max((p.head<2>().norm() - radius_mm) * std::cos(lean), p.z() - 2.5);

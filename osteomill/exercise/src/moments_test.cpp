@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing_support;
 
-/// A session in the target, and then in a groove 9 mm long beside it.
+/// A session in the target, and then in a groove 9 mm long next to it.
 class MomentsOfAGroove : public ::testing::Test {
  protected:
   MomentsOfAGroove() {
@@ -37,7 +37,7 @@ class MomentsOfAGroove : public ::testing::Test {
 };
 
 TEST_F(MomentsOfAGroove, BeginInTheTickAndAtThePlaceInWhichBoneOutsideWentFirst) {
-  // Goes through all voxels after every tick.
+  // Checks all voxels after every tick.
   std::vector<std::size_t> gone;
   Volume bone = scan_;
   repeat_milling(bone, recording_, [&](std::size_t, const Volume& now, const VolumeChange&) {
@@ -56,7 +56,7 @@ TEST_F(MomentsOfAGroove, BeginInTheTickAndAtThePlaceInWhichBoneOutsideWentFirst)
   double removed_mm3 = 0;
   for (std::size_t n = 0; n < moments.size(); ++n) {
     EXPECT_EQ(moments[n].kind, Moment::Kind::outside);
-    // Each begins and ends with a tick that took some, and has all between.
+    // Each begins and ends with a tick that removed some, and contains all between.
     const std::size_t from = moments[n].first_tick, to = moments[n].last_tick;
     EXPECT_GT(gone[from], gone[from - 1]);
     EXPECT_GT(gone[to], gone[to - 1]);

@@ -36,7 +36,7 @@ TEST(PlaceExercise, TakesTheBoneOfTheTargetAndNotTheAirAboveIt) {
 }
 
 TEST(PlaceExercise, FacesUpFromAFissureOfWhichItHasOneWall) {
-  // A slit of 1 mm, 6 mm deep, beside which the target has a much wider wall than surface.
+  // A slit of 1 mm, 6 mm deep, next to which the target has much more wall than surface.
   const auto below = plane(Vec3::Zero(), Vec3::UnitZ());
   const Volume bone = shape_volume(centred_cube(64, 0.25), [&](const Vec3& p) {
     return std::max(below(p), std::min({0.5 - std::abs(p.y()), p.z() + 6}));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRadius_mm = 4;
 
-// A ball about the origin, as the distance from its surface.
+// Returns a ball about the origin, from its distance function.
 BrickMesh ball() {
   GridGeometry geometry;
   geometry.dims = {48, 48, 48};
@@ -28,7 +28,7 @@ BrickMesh ball() {
   return mesh_in_one_piece(DensityView(Volume(DensityGrid(geometry, std::move(densities)), 0)));
 }
 
-// By Gauss's theorem.
+// Uses Gauss's theorem.
 double volume_mm3(const BrickMesh& mesh) {
   double volume_mm3 = 0;
   const auto corner = [&](std::size_t n) { return vec3_of(mesh.vertices[mesh.indices[n]].position_mm); };

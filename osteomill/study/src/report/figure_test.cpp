@@ -40,7 +40,7 @@ TEST(Gnuplot, ItsOwnErrorIsPassedOnInOneLine) {
   EXPECT_EQ(failure.find('\n'), std::string::npos) << failure;
 }
 
-// A quoted text must come out as it went in, whatever its content.
+// A quoted text must be printed unchanged, whatever its content.
 TEST(Gnuplot, QuotedTextIsOnlyText) {
   const TemporaryFolder work;
   const std::string hostile = R"(it's "a" `touch owned` \n @x ')";

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// 3 N that turn slowly, with 0.2 N at 100 Hz on top.
+// 3 N in a slowly turning direction, plus 0.2 N at 100 Hz.
 TEST(VectorMetrics, ASteadyForceWithABuzzOnIt) {
   std::vector<Vec3> force;
   for (int n = 0; n < 10000; ++n) {
@@ -31,7 +31,7 @@ TEST(VectorMetrics, ASteadyForceWithABuzzOnIt) {
   EXPECT_NEAR(m.step_max, 0.2 * 2 * std::sin(0.1 * kPi), 0.01);
 }
 
-// The magnitude stays the same; only the vector's difference shows the kick.
+// The magnitude stays the same; only the vector difference shows the jump.
 TEST(VectorMetrics, AFlipOfDirectionIsAStep) {
   std::vector<Vec3> force(1000, Vec3(0, 0, 2));
   for (std::size_t n = 500; n < force.size(); ++n) force[n] = {0, 0, -2};
@@ -39,7 +39,7 @@ TEST(VectorMetrics, AFlipOfDirectionIsAStep) {
   EXPECT_DOUBLE_EQ(vector_metrics(force, 1000).mean, 2);
 }
 
-// Directions on a cone of 2 degrees about any axis: each strays by 2 degrees.
+// Directions on a cone of 2 degrees about any axis: each deviates by 2 degrees.
 TEST(DirectionMetrics, ACone) {
   for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 2, -0.5)}) {
     const Quat turn = smallest_rotation(Vec3::UnitZ(), axis);
@@ -94,7 +94,7 @@ TEST(RunMetrics, PutsTheFiguresOfARecordingTogether) {
   EXPECT_DOUBLE_EQ(m.removed_mm3, 0.25 * 999);
 }
 
-// A machine that does something else for a while lengthens what the clock says of a tick, not its own work.
+// Preemption lengthens a tick's wall-clock time, not its CPU time.
 TEST(RunMetrics, TheRateIsThatOfTheThreadsOwnTimeWhereItIsKnown) {
   Recording preempted = simple_recording(1000);
   EXPECT_DOUBLE_EQ(run_metrics(preempted).tick_us.max, 2000) << "by the clock";
@@ -118,13 +118,13 @@ TEST(RunMetrics, ABurrThatBuzzesInOnePlaceDoesNotGetFar) {
   for (std::size_t n = 0; n < moving.records.size(); ++n)
     moving.records[n].X_WT.position_mm = {n % 40 < 20 ? 0.3 : -0.3, 0, 0};
   EXPECT_NEAR(run_metrics(moving).burr_excursion_mm, 0, 0.08);
-  // Another place for the last half of the time is 0.5 mm from the mean.
+  // The position in the second half of the time is 0.5 mm from the mean.
   for (std::size_t n = 500; n < 1000; ++n) moving.records[n].X_WT.position_mm.z() = 1;
   EXPECT_NEAR(run_metrics(moving).burr_excursion_mm, 0.5, 0.01);
 }
 
-// Handle and tool lean by 20 degrees together; then the tool leans 2 degrees less than the handle, half of
-// the time.
+// Handle and tool tilt by 20 degrees together; then, half of the time, the tool tilts 2 degrees less than the
+// handle.
 TEST(RunMetrics, TheLeanThatTheHandCommandsIsNoSpreadAgainstTheHandle) {
   Recording leaning = simple_recording(1000);
   const auto leant = [](double degrees) {
@@ -156,7 +156,7 @@ TEST(RunMetrics, BoneIsRemovedPerSecondOfCutting) {
   EXPECT_TRUE(std::isnan(run_metrics(cutting).removal_mm3_per_s));
 }
 
-// Five mm^3 milled, taken back, made again, and three more milled.
+// Mills five mm^3, undoes and redoes it, and mills three more.
 TEST(RunMetrics, ACutMadeAgainIsNotCountedTwice) {
   Recording recording = simple_recording(1000);
   for (std::size_t n = 0; n < 1000; ++n) {
@@ -175,7 +175,7 @@ TEST(RunMetrics, ACutMadeAgainIsNotCountedTwice) {
   EXPECT_NEAR(run_metrics(recording).removed_mm3, 5, 1e-12);
 }
 
-// Free air before and after changes nothing but the shares: only what is felt is measured.
+// Free air before and after changes only the contact shares: felt quantities are measured in contact.
 TEST(RunMetrics, FreeAirIsNotMeasured) {
   const RunMetrics touching = run_metrics(simple_recording(4000));
   Recording longer = simple_recording(10000);
@@ -191,8 +191,7 @@ TEST(RunMetrics, FreeAirIsNotMeasured) {
   EXPECT_FALSE(touching.contact.is_lost());
 }
 
-// A burr that is pressed has no torque to be steady or not, and a shaft that touches nothing no direction of
-// its own.
+// A pressed burr has no torque to be steady, and a shaft without contact has no direction of its own.
 TEST(RunMetrics, ATorqueIsMeasuredWhereThereIsOne) {
   Recording burr_alone = simple_recording(4000);
   for (TickRecord& record : burr_alone.records) record.wrench.torque_Nmm *= 1e-6;

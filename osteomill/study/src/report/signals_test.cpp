@@ -97,7 +97,7 @@ TEST(MultipleCorrelation, IsOneWhereAFilterOfTheLeaderIsFollowedAndNearNothingFo
     late[n] = Vec3(0, 0, 3).cross(leader[n - 2]) - 0.4 * leader[n];
   }
   EXPECT_NEAR(follows(late, leader), 1, 1e-6);
-  // By chance alone 15 coefficients explain 15 / 5000 of the squares.
+  // By chance alone, 15 coefficients explain 15 / 5000 of the squares.
   EXPECT_NEAR(follows(noise(2), leader), std::sqrt(15.0 / 5000), 0.02);
 }
 

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace testing_support;
 
-/// Rates at the paper's resolutions, beside the paper's own; the measured ones are made up.
+/// Returns rates at the paper's resolutions, with the paper's own; the measured ones are made up.
 std::vector<RateRow> sample_rates() {
   const auto row = [](std::string_view algorithm, const char* resolution, int points, double us,
                       double paper_hz) {
@@ -57,7 +57,7 @@ class ReportTest : public ::testing::Test {
                                              ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(out_);
   }
-  // Set OSTEOMILL_KEEP_REPORTS to look at what the tests have drawn.
+  // Set OSTEOMILL_KEEP_REPORTS to inspect the reports that the tests write.
   void TearDown() override {
     if (std::getenv("OSTEOMILL_KEEP_REPORTS") == nullptr) fs::remove_all(out_);
   }
@@ -103,7 +103,7 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
   EXPECT_NE(summary.find("\npoint-shell,holding,20000,"), std::string::npos);
 }
 
-// Runs of different length removed other volumes at one rate.
+// Runs of different length remove different volumes at the same rate.
 TEST_F(ReportTest, RatesStandBesideVolumes) {
   std::vector<Recording> runs = sample_runs(4000);
   runs.front().records.resize(3000);
@@ -138,7 +138,7 @@ TEST_F(ReportTest, AnAlgorithmThatCouldNotBeMatchedIsNamedWithTheReason) {
   EXPECT_NE(html.find("is not matched. Left out of this comparison: another leaps.</p>"), std::string::npos);
 }
 
-// A report of a session at the window describes what the person did, and mentions no trial.
+// A report of a session in the window describes what the person did, and does not mention trials.
 TEST_F(ReportTest, ASessionSpeaksOfItself) {
   Recording run = sample_run("point-shell", "milling");
   run.description.phase = "";
@@ -203,7 +203,7 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
   EXPECT_EQ(html.find("<script"), std::string::npos);
 }
 
-// The samples' burr goes down from z = 20 mm by 0.2 mm/s.
+// The burr of the samples moves down from z = 20 mm at 0.2 mm/s.
 TEST_F(ReportTest, ThePushAndTheDepthAreSaidAndABurrThatWentTooDeep) {
   for (const double entry_z_mm : {20.0, 21.0}) {
     std::vector<Recording> runs = sample_runs();
@@ -232,7 +232,7 @@ TEST_F(ReportTest, ThePushAndTheDepthAreSaidAndABurrThatWentTooDeep) {
   }
 }
 
-// Two comparisons of which each has another burr, push and seed, and what is left of a third.
+// Two comparisons with different burr, push and seed, and the remains of a third.
 TEST_F(ReportTest, NothingIsConcludedFromRecordingsThatDoNotBelongTogether) {
   std::vector<Recording> runs = sample_runs(200);
   const std::string together = bytes_of(write_comparison_report(runs, out_));

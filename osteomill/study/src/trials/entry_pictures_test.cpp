@@ -12,7 +12,7 @@ namespace {
 using testing_support::centred_cube;
 using testing_support::shape_volume;
 
-// A block, open to the viewer or behind a ridge, in which a hole is milled.
+// Mills a hole in a block, open to the viewer or behind a ridge, and returns the share seen.
 double seen_of_hole(double ridge_mm) {
   const Volume before = shape_volume(centred_cube(60, 0.25), [&](const Vec3& p) {
     const double block = std::max(p.head<2>().cwiseAbs().maxCoeff() - 6.5, p.z());

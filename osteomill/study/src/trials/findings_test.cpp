@@ -24,7 +24,7 @@ Recording short_run(std::string_view algorithm, std::string_view phase) {
   return recording;
 }
 
-// Figures are set by hand: what is tested is the rules.
+// Figures are set by hand, to test only the rules.
 class FindingsTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -58,7 +58,7 @@ class FindingsTest : public ::testing::Test {
       m.contacts_mean = 15;
     }
   }
-  // The numbers, from 1, of the findings with this verdict.
+  // Returns the numbers, from 1, of the findings with this verdict.
   std::vector<std::size_t> findings_that(Verdict verdict) const {
     std::vector<std::size_t> numbers;
     const std::vector<Finding> findings = check_findings(group_, grips_);
@@ -139,7 +139,7 @@ TEST_F(FindingsTest, WhatWasNotRecordedIsNotJudged) {
   const auto gone = [](const MeasuredRun& run) { return run.algorithm == "surface-points"; };
   group_.runs.erase(std::remove_if(group_.runs.begin(), group_.runs.end(), gone), group_.runs.end());
   grips_.clear();
-  // All but the rate and 3 by itself.
+  // All except for the rate and the finding on 3 alone.
   EXPECT_EQ(findings_that(Verdict::not_recorded), (Numbers{2, 3, 4, 5, 7, 8}));
 }
 

@@ -25,7 +25,7 @@ MillingSetup setup_of(const AlgorithmDescription& algorithm) {
   return {.tool = kTool, .algorithm = algorithm, .tick_s = kTick_s};
 }
 
-// The force at rest at this depth, come from outside.
+// Returns the force at rest at this depth, approached from outside.
 double force_at_rest_N(HapticAlgorithm& algorithm, double depth_mm) {
   Pose X_WD;
   double force_N = 0;
@@ -39,7 +39,7 @@ double force_at_rest_N(HapticAlgorithm& algorithm, double depth_mm) {
   return force_N;
 }
 
-// Between 0.4 and 0.6 N, by what is felt at rest.
+// Returns the slope between 0.4 and 0.6 N, from forces at rest.
 double slope_at_rest_N_per_mm(HapticAlgorithm& algorithm) {
   std::optional<double> from_mm, from_N;
   for (double depth_mm = -0.2; depth_mm < 3; depth_mm += 0.02) {
@@ -92,7 +92,7 @@ TEST(MatchStiffness, WhatNoSettingGivesIsRefused) {
   }
 }
 
-// The paper's second pushes with one ring of vertices after another, each capped as it is all in bone.
+// Surface-points adds one ring of vertices after another, each saturating once it is entirely in bone.
 TEST(MatchStiffness, ASlopeThatIsLeaptOverIsRefused) {
   try {
     setting_felt_as(1.5, setup_of(algorithm_named("surface-points")), wall());

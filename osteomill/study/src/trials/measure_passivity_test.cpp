@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRadius_mm = 1.5;
 
-// The wall of the textbooks: a spring along its normal.
+// The textbook wall: a spring along its normal.
 class IdealWall final : public HapticAlgorithm {
  public:
   explicit IdealWall(double stiffness_N_per_mm, double damping_Ns_per_mm = 0)
@@ -53,9 +53,9 @@ StiffnessLimit ideal_limit(const WallPress& press) {
   return seek_stiffness_limit(press_at, 1.0);
 }
 
-// Returns the stiffness at which a mass on a damper and a spring whose force comes `delay_s` + half a tick
-// late swings for ever: K cos(w t) = m w^2, K sin(w t) = b w. The rule 2 b / (T + 2 tau) is its limit for
-// slow swings.
+// Returns the stiffness at which a mass on a damper and a spring, whose force is late by `delay_s` + half a
+// tick, oscillates forever: K cos(w t) = m w^2, K sin(w t) = b w. The rule 2 b / (T + 2 tau) is its limit for
+// slow oscillations.
 double exact_limit_N_per_mm(const WallPress& press) {
   const double late_s = press.handle.force_delay_s + 0.5 * press.tick_s;
   const double rate = 1e3 * press.damping_Ns_per_mm / press.handle.mass_kg;
@@ -88,7 +88,7 @@ TEST(Passivity, ADeviceWithoutDampingKeepsNothingPassive) {
 }
 
 TEST(Passivity, AWallThatGivesWayIsNotCalledPassive) {
-  // 5 mm would carry the force.
+  // It would carry the force only at 5 mm.
   IdealWall soft(0.1);
   EXPECT_EQ(press_on_wall(soft, kRadius_mm, device(0.005, 0)).motion, WallMotion::gives_way);
   IdealWall none(0);
@@ -107,7 +107,7 @@ TEST(Passivity, AnOverdampedDeviceThatCreepsToRestIsPassive) {
   EXPECT_EQ(press_on_wall(wall, kRadius_mm, device(0.1, 0)).motion, WallMotion::dies_out);
 }
 
-// A force that jumps at the surface keeps the handle swinging without growing: that is not passive either.
+// A force that jumps at the surface makes the handle oscillate without growth: not passive either.
 class Relay final : public HapticAlgorithm {
  public:
   void prepare(const AlgorithmInputs& /*inputs*/) override {}
@@ -135,7 +135,7 @@ TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
       HapticStep step;
       const double depth_mm = kRadius_mm - X_WD.position_mm.z();
       step.wrench.force_N.z() = std::max(0.0, depth_mm);
-      // Only once it has been let go.
+      // Only after the handle has been released.
       if (++steps_ > 300) step.wrench.force_N.z() = std::numeric_limits<double>::quiet_NaN();
       return step;
     }
@@ -172,7 +172,7 @@ TEST(Passivity, TheSearchSaysWhereItEnds) {
   EXPECT_EQ(limit_at(1e9, 0, 1).stiffness_N_per_mm, 200);
   EXPECT_EQ(limit_at(0, 0, 1).kind, StiffnessLimit::Kind::below_all);
   EXPECT_EQ(limit_at(1e9, 1e9, 1).kind, StiffnessLimit::Kind::below_all);
-  // Too soft, or not passive, but never both at once.
+  // Either too soft or not passive at any stiffness.
   EXPECT_EQ(limit_at(1, 1, 5).kind, StiffnessLimit::Kind::below_all);
 }
 

@@ -12,7 +12,7 @@
 namespace osteomill {
 namespace {
 
-// The built-in tooth at twice its voxel size, and a hand that is through in a few seconds.
+// The built-in tooth at twice its voxel size, and a hand that finishes in a few seconds.
 class MillingTrialTest : public ::testing::TestWithParam<std::string> {
  protected:
   MillingTrialTest()
@@ -42,7 +42,7 @@ class MillingTrialTest : public ::testing::TestWithParam<std::string> {
     result.density_in_hole = density_at(trial.volume().grid(), place_in_hole());
     return result;
   }
-  // The burr of line-proxy lags its line by a radius: in six seconds it comes 0.9 mm deep, the others 2.7 mm
+  // The burr of line-proxy lags its line by a radius: in six seconds it gets 0.9 mm deep, the others 2.7 mm
   // or more.
   Vec3 place_in_hole() const { return entry_.point_W + 0.5 * entry_.direction_W; }
 
@@ -73,7 +73,7 @@ TEST_P(MillingTrialTest, TheSameSeedGivesTheSameBits) {
   EXPECT_NE(run(2).milling.back().X_WD.position_mm, first.milling.back().X_WD.position_mm);
 }
 
-// The hole is the other one's; hand and script go on, and nothing is milled.
+// The hole is the other algorithm's; hand and script continue, and nothing is milled.
 TEST_P(MillingTrialTest, HoldsInAHoleThatAnotherAlgorithmMilled) {
   MillingTrial milled(bone_, densities_, entry_, settings_);
   double last_s = 0;
@@ -105,7 +105,7 @@ TEST_P(MillingTrialTest, LeavesAHoleAndStandsInItWithItsShaftAgainstTheWall) {
     max_torque_Nmm = std::max(max_torque_Nmm, record.wrench.torque_Nmm.norm());
     EXPECT_EQ(record.fault, WrenchFault::none);
   }
-  // The line of line-proxy is thinner than the hole that it mills.
+  // The line of line-proxy is thinner than the hole it mills.
   if (GetParam() != "line-proxy") {
     EXPECT_GT(max_torque_Nmm, 0.2);
   }

@@ -1,4 +1,4 @@
-// A program that links the library brings an algorithm of its own, and compares it with the paper's.
+// A program that links the library defines its own algorithm and compares it with the paper's.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -18,7 +18,7 @@
 namespace osteomill {
 namespace {
 
-// A cushion above a height: the burr's centre is pushed up by a spring.
+// A cushion at a height: a spring pushes the burr's centre up.
 class Cushion final : public HapticAlgorithm {
  public:
   Cushion(double stiffness_N_per_mm, double height_mm)
@@ -90,11 +90,11 @@ TEST(OwnAlgorithm, IsRunRecordedAndReportedBesideThePapers) {
   std::ifstream in(page);
   const std::string html{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   EXPECT_NE(html.find("9 cushion"), std::string::npos);
-  // The page holds its figures as bytes; #8e24aa as gnuplot writes it.
+  // The page embeds its figures; #8e24aa as gnuplot writes it.
   std::ifstream figure(folder / "report/figures/fig7_force.svg");
   const std::string svg{std::istreambuf_iterator<char>(figure), std::istreambuf_iterator<char>()};
   EXPECT_NE(svg.find("rgb(142,  36, 170)"), std::string::npos);
-  // The paper's findings need the paper's three.
+  // The paper's findings need its three algorithms.
   EXPECT_NE(html.find("further findings belong to algorithms, phases or grips"), std::string::npos);
 }
 

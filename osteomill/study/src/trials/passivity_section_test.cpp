@@ -23,7 +23,8 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-// 1 follows the rule, 2 feels half of it and has none on the last device, 3 never ends. No measurement.
+// 1 follows the rule, 2 feels half of it and has no limit on the last device, 3 is always passive. Not
+// measured.
 std::vector<PassivityRow> sample_rows() {
   std::vector<PassivityRow> rows;
   std::vector<AlgorithmDescription> algorithms;
@@ -49,7 +50,7 @@ class PassivitySectionTest : public ::testing::Test {
     fs::remove_all(out_);
     fs::create_directories(out_);
   }
-  // Set OSTEOMILL_KEEP_REPORTS to look at what the tests have drawn.
+  // Set OSTEOMILL_KEEP_REPORTS to inspect the reports that the tests write.
   void TearDown() override {
     if (std::getenv("OSTEOMILL_KEEP_REPORTS") == nullptr) fs::remove_all(out_);
   }
@@ -109,7 +110,7 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   ReportExtras extras{.passivity = sample_rows()};
   auto runs = testing_support::sample_runs(500);
   for (Recording& run : runs) run.path = out_ / run.path;
-  // Beside the recorded hand.
+  // Hands in addition to the recorded one.
   const std::uint64_t first = runs.front().description.seed;
   for (std::uint64_t seed = first + 1; seed < first + 8; ++seed) {
     for (const Recording& run : runs) {

@@ -8,7 +8,8 @@
 namespace osteomill {
 namespace {
 
-// 3 s of holding, meant to be 2 s: in the first the hand still leans in, with twice the force.
+// 3 s of holding, of which 2 s were planned: in the first second the hand still leans in, with twice the
+// force.
 Recording late_holding() {
   Recording recording;
   recording.path = "some/holding.h5";
@@ -39,7 +40,7 @@ TEST(PhaseMetrics, AHoldingIsMeasuredForAsLongAsItWasToLast) {
   EXPECT_EQ(phase_metrics(unknown).steps, 3000u);
 }
 
-// In contact and at one place, leaning on the wall, for 2 s.
+// In contact and in one place, leaning on the wall, for 2 s.
 Recording steady_holding() {
   Recording recording = late_holding();
   recording.records.erase(recording.records.begin(), recording.records.begin() + 1000);
@@ -65,7 +66,7 @@ TEST(PhaseMetrics, AHoldThatIsNoneIsNamed) {
   for (std::size_t n = 0; n < buzzes.records.size(); ++n)
     buzzes.records[n].X_WT.position_mm.x() = n % 20 < 10 ? -0.4 : 0.4;
   EXPECT_EQ(measured_phase(buzzes).not_reached, "") << "how calm it is held is what is measured";
-  // The hand's own shortfall comes first, and milling is no hold.
+  // The hand's own shortfall comes first, and milling is not a hold.
   wanders.description.settings.push_back({std::string(kNotReachedKey), std::string("the tool was lost"), ""});
   EXPECT_EQ(measured_phase(wanders).not_reached, "the tool was lost; the burr moved by more than 0.5 mm");
   wanders.description.phase = kMilling;

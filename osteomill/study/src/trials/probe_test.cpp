@@ -17,7 +17,7 @@ TEST(Probe, TheDefaultAlgorithmsTorqueIsLeverTimesForceWhateverTheTool) {
     const Probe right = probe(setup, wall, edge);
     EXPECT_LT(right.torque_error, 0.02) << tool.burr_radius_mm;
     EXPECT_GT(right.felt_N_per_mm, 0.5) << tool.burr_radius_mm;
-    // Softer by half is felt as softer by half.
+    // Halving the setting halves the stiffness felt.
     setup.haptics.set_option("stiffness", 0.4);
     EXPECT_NEAR(probe(setup, wall, edge).felt_N_per_mm, 0.4, 0.04) << tool.burr_radius_mm;
   }

@@ -26,7 +26,7 @@ class RecordedTrialTest : public ::testing::Test {
   Volume bone_;
 };
 
-// Anything but what it is if nothing is said, and within its range.
+// Changes each field to another value within its range.
 template <typename Struct>
 void change(Struct& s) {
   double n = 1;
@@ -45,7 +45,7 @@ void expect_same(const Struct& restored, const Struct& made_with) {
     EXPECT_EQ(field.get(restored), field.get(made_with)) << field.name << field.option;
 }
 
-// Returns the settings that the recording alone says the trial was made with.
+// Returns the trial's settings as reconstructed from the recording alone.
 TrialSettings settings_of(const RunDescription& run) {
   TrialSettings settings;
   static_cast<MillingSetup&>(settings) = session_settings(run, "a.h5").setup;
@@ -93,7 +93,7 @@ TEST_F(RecordedTrialTest, AnotherTremorIsOneOfTheSameHand) {
   EXPECT_NE(paths_mm[0], try_trial(StudyTest::milling, plan).rows.front().run.metrics.path_mm);
 }
 
-// The algorithms are exchanged in the first second, in which the force may leap.
+// The algorithms are exchanged in the first second, in which the force may jump.
 TEST_F(RecordedTrialTest, AHoldingInOneHoleCountsFromASecondAfterTheExchange) {
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 1.5;
@@ -103,7 +103,7 @@ TEST_F(RecordedTrialTest, AHoldingInOneHoleCountsFromASecondAfterTheExchange) {
   EXPECT_NEAR(held.back().metrics.steps, 750, 1) << "half of it, as it is shorter than 2 s";
 }
 
-// The hand is in the loop: another one anywhere would feel, and mill, something else.
+// The hand is in the loop: any difference in it would change what is felt and milled.
 TEST_F(RecordedTrialTest, MillsAgainWhatWasRecorded) {
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 1.5;

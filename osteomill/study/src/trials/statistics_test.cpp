@@ -10,7 +10,7 @@ namespace osteomill {
 
 namespace {
 
-// Differences 1, 2, ..., n whose negative ones have ranks that sum to `sum`.
+// Returns differences 1, 2, ..., n, of which the negative ones have ranks that sum to `sum`.
 std::vector<double> with_negative_sum(std::size_t n, std::size_t sum) {
   std::vector<double> differences(n);
   for (std::size_t rank = n; rank >= 1; --rank) {
@@ -22,8 +22,8 @@ std::vector<double> with_negative_sum(std::size_t n, std::size_t sum) {
   return differences;
 }
 
-// The greatest sum that is significant at 5 %, two-sided: Wilcoxon and Wilcox (1964), table 2, as reprinted
-// in textbooks.
+// Largest sum that is significant at 5 %, two-sided: Wilcoxon and Wilcox (1964), table 2, as reprinted in
+// textbooks.
 TEST(SignedRank, CriticalValuesAreThoseOfTheTables) {
   const struct {
     std::size_t n, critical;
@@ -90,7 +90,7 @@ TEST(Holm, StepsDown) {
 
 namespace {
 
-// 1, 2, ..., n, last first.
+// Returns n, ..., 2, 1.
 std::vector<double> ranks(std::size_t n) {
   std::vector<double> values(n);
   std::iota(values.rbegin(), values.rend(), 1.0);

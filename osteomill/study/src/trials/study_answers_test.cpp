@@ -22,7 +22,7 @@ std::string conclusions_of(const std::vector<MeasuredRun>& rows) {
   return text;
 }
 
-// A row of a table, whose cells stand between bars.
+// Returns a row of a table, with its cells separated by bars.
 std::string row_of(const Table& table, const std::string& name) {
   for (const auto& row : table.rows) {
     std::string text;
@@ -32,12 +32,12 @@ std::string row_of(const Table& table, const std::string& name) {
   return "none";
 }
 
-// A row of the section's table of milling.
+// Returns a row of the section's table of milling.
 std::string force_row(const std::vector<MeasuredRun>& rows) {
   return row_of(hands_section(Study(rows), {}).parts.back().tables.front(), "force above 20 Hz, rms (N)");
 }
 
-// A row of the table that answers.
+// Returns a row of the table of answers.
 std::string answer_row(const std::vector<MeasuredRun>& rows, const std::string& algorithm) {
   return row_of(conclusions(Study(rows))[0], algorithm);
 }
@@ -59,7 +59,7 @@ TEST(Conclusions, RankAlgorithmsByWhatTheHandsSettle) {
   const std::vector<Table> tables = conclusions(study);
   EXPECT_EQ(tables[0].header.size(), 8u);
   EXPECT_EQ(tables[0].header[1], "Calm force while milling\nabove 20 Hz, of the mean\n(less is calmer)");
-  // 1 and 3 change places in force from hand to hand; their torques do not.
+  // The order of 1 and 3 in force varies between hands; that of their torques does not.
   EXPECT_TRUE(
       answer_row(rows, "1 line-proxy").starts_with("1 line-proxy|5.2 %\nnot settled\nagainst 3|30 %\n3rd|"));
   EXPECT_TRUE(answer_row(rows, "2 surface-points").starts_with("2 surface-points|52 %\n3rd|20 %\n2nd|"));
@@ -90,7 +90,7 @@ TEST(Conclusions, GiveTheSizeOfADifferenceAndIfAHandNoticesIt) {
     r.metrics.force_N.hp_rms =
         (r.algorithm == "surface-points" ? 1.996 : 1) * (0.1 + 0.001 * static_cast<double>(r.seed));
   expect_says(force_row(twice), "2 is 100 % more than 1, p = 0.023");
-  // A tenth more in every hand: less than the fifth that a hand notices of what trembles.
+  // A tenth more in every hand: less than the fifth of a vibration that a hand notices.
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows) {
     const double more = r.algorithm == "surface-points" ? 1.1 : 1;
@@ -102,7 +102,7 @@ TEST(Conclusions, GiveTheSizeOfADifferenceAndIfAHandNoticesIt) {
 }
 
 TEST(Conclusions, TorqueIsComparedPerTorque) {
-  // Its torque trembles half as much, since there is a tenth of it.
+  // Its torque trembles half as much, because it is a tenth.
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows) {
     if (r.algorithm != "line-proxy") continue;
@@ -121,7 +121,7 @@ TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
   for (MeasuredRun& r : rows)
     if (r.algorithm == "line-proxy" && r.phase == kHolding && r.seed < 4) r.not_reached = "the shaft turned";
   expect_says(answer_row(rows, "1 line-proxy"), "|5 of 8|");
-  // An algorithm that most hands could not work with is not recommended.
+  // An algorithm that most hands could not complete the test with is not recommended.
   for (MeasuredRun& r : rows) {
     if (r.algorithm == "line-proxy") r.metrics.torque_Nmm.hp_share = 0.001;
     if (r.algorithm == "point-shell" && r.seed < 5) r.not_reached = "the shaft turned";
@@ -134,7 +134,7 @@ TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
       << take;
   expect_says(take, "1 line-proxy is calmest in torque while milling: 0.1 % (2 surface-points 20 %, p = 0.0");
   expect_says(take, "Not considered, because too few hands did all of the test: 3 point-shell (4 of 8).");
-  // Its place is no rank, and takes none.
+  // It has no rank, and takes none from the others.
   expect_says(answer_row(rows, "3 point-shell"), "|10 %\nnot considered|");
   expect_says(answer_row(rows, "2 surface-points"), "|20 %\n2nd|");
   expect_says(about_the_table(Study(rows)), "Ranks are those among the algorithms that did all of the test");
@@ -153,7 +153,7 @@ TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
   expect_says(answer_row(rows, "3 point-shell"), "|8 of 8|");
 }
 
-// Two further runs of the first hand, whose forces tremble by 0.01 and 0.03 N more.
+// Two more runs of the first hand, whose forces tremble by 0.01 and 0.03 N more.
 TEST(Conclusions, SayWhatTremorAloneGives) {
   for (const std::uint64_t seeds : {1u, 8u}) {
     std::vector<MeasuredRun> rows = sample_rows(seeds);
@@ -225,7 +225,7 @@ TEST(Conclusions, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
     expect_says(force_row(rows), fmt::format("1 and 3 in {} hands: not settled", 8 - lost));
     expect_says(answer_row(rows, "1 line-proxy"),
                 lost == 4 ? "\n4 of 8 hands\nnot considered|" : "\n5 of 8 hands\nnot settled\nagainst 2, 3|");
-    // Half of the hands do not speak for all, and keep no other from its rank.
+    // Half of the hands are not a majority, and do not affect the ranks of the others.
     if (lost == 4) expect_says(answer_row(rows, "3 point-shell"), "|10 %\n1st|");
     const Table verdicts = conclusions(Study(rows))[1];
     EXPECT_EQ(row_of(verdicts, "not recorded"), "none");

@@ -38,7 +38,7 @@ TEST(StudyDesign, ValuesOfSeveralOptionsStayTogether) {
   EXPECT_EQ(find_value(design.trial(1), "push"), nullptr);
 }
 
-// Each part of each range in exactly one trial, whatever the order in which trials are asked for.
+// Each part of each range is in exactly one trial, in whatever order trials are requested.
 TEST(StudyDesign, ALatinHypercubeTriesEachPartOfEachRangeOnce) {
   constexpr std::size_t kTrials = 50;
   const LatinHypercube hypercube{kTrials,

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kTrials = 4;
 
-// Four pushes, a map of each phase.
+// Four pushes, with a map for each phase.
 StudyDesign sample_design() {
   StudyAxis pushes;
   for (const char* push : {"1", "2", "3", "4"}) pushes.push_back({{"push", push}, {"burr-radius", push}});
@@ -29,7 +29,7 @@ StudyDesign sample_design() {
   return design;
 }
 
-// Trials of which some did not hold: one was measured, and one lost the bone.
+// Trials of which some did not hold: one was measured, and one lost contact.
 StudyFolder sample_study(const TemporaryFolder& folder, std::size_t unreached) {
   const StudyFolder study{folder.path(), {.trials = kTrials, .trials_a_slice = kTrials}};
   Slice slice{.cpu_s = 3};

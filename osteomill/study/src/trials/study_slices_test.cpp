@@ -59,7 +59,7 @@ void write_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-// One bit of one value.
+// Flips one bit of one value.
 void damage(const fs::path& path) {
   std::string bytes = bytes_of(path);
   const double value = 0.1;
@@ -146,7 +146,7 @@ TEST(StudySlices, ARecordComesBackAndNoneIsNone) {
   EXPECT_THROW(read_study_record(folder.path()), InputError);
 }
 
-// A few bytes changed in many ways; with --gtest_repeat and --gtest_shuffle others each time.
+// Changes a few bytes in various ways; --gtest_repeat and --gtest_shuffle give different ones each time.
 std::string mutated(std::string bytes, std::mt19937& random) {
   const auto below = [&](std::size_t end) { return random() % end; };
   for (std::size_t n = 1 + below(3); n > 0; --n) {
@@ -170,7 +170,7 @@ void expect_end(const std::function<void()>& read) {
   }
 }
 
-// HDF5 alone follows an address that leads nowhere, and ends the program.
+// HDF5 itself follows an invalid address and crashes the program.
 TEST(StudySlices, NoDamagedByteEndsTheProgram) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "HDF5 reads beyond its memory in the child, and loses some when it refuses";
@@ -195,7 +195,7 @@ TEST(StudySlices, NoDamagedByteEndsTheProgram) {
   }
 }
 
-// With `change` made to the slice's file.
+// Returns whether the slice's file can be read after `change`.
 bool is_read_after(const std::function<void(hid_t)>& change) {
   const TemporaryFolder folder;
   const StudyFolder study{folder.path(), sample_record()};
@@ -239,8 +239,7 @@ bool same_number(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-// A trial of a study and the same trial in recordings: each figure, from the slice's file and from the
-// recordings'.
+// Compares each figure of a trial, from the slice's file and from recordings of the same trial.
 TEST(StudySlices, ARowEqualsTheRowMeasuredFromItsRecording) {
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 5));

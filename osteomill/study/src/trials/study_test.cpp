@@ -66,7 +66,7 @@ TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
     EXPECT_EQ(pairs[0].second, "surface-points");
     EXPECT_FALSE(pairs[2].second_is_greater);
     EXPECT_EQ(pairs[2].first, "surface-points");
-    // Two of three pairs lie at the least p, 2^(1 - n); Holm takes three times the first.
+    // Two of three pairs have the smallest p, 2^(1 - n); Holm multiplies the first by three.
     EXPECT_DOUBLE_EQ(pairs[0].p, 3 * std::pow(0.5, static_cast<double>(seeds) - 1));
     EXPECT_EQ(pairs[0].p <= kSignificance, seeds == 7);
     EXPECT_GT(pairs[1].p, 0.5);
@@ -76,7 +76,7 @@ TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
 TEST(Study, FindingsAreCountedHandByHand) {
   std::vector<MeasuredRun> rows = sample_rows(5);
   for (MeasuredRun& r : rows) {
-    // Seed 4 alone does not buzz, and 1 turns least in three of the five.
+    // Only seed 4 does not buzz, and 1 turns least in three of the five.
     if (r.seed == 4 && r.algorithm == "surface-points") r.metrics.force_N.hp_rms = 0.01;
     if (r.algorithm == "line-proxy") r.metrics.shaft.spread_deg = r.seed < 3 ? 1 : -1;
   }
@@ -91,7 +91,7 @@ TEST(Study, FindingsAreCountedHandByHand) {
   EXPECT_EQ(findings[0].agreeing, 5u);
   EXPECT_TRUE(check_study_findings(Study(sample_rows(1, 0.1)))[1].of_medians.verdict ==
               Verdict::does_not_agree);
-  // A result that a coin gives as easily is no verdict.
+  // A result that a coin gives as easily is not a verdict.
   EXPECT_EQ(findings[0].verdict, Verdict::agrees);
   EXPECT_EQ(findings[1].verdict, Verdict::not_settled);
   EXPECT_EQ(findings[7].of_medians.verdict, Verdict::does_not_agree);
@@ -108,7 +108,7 @@ TEST(Study, FewerThanFiveHandsSettleNoFinding) {
   }
 }
 
-// 2's hands in other grips are no rows of the study, and decide one finding.
+// Hands of 2 in other grips are not rows of the study, and decide one finding.
 TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
   std::vector<MeasuredRun> rows = sample_rows(3);
   const std::size_t all = rows.size();
@@ -196,7 +196,7 @@ TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
   std::filesystem::remove(path);
 }
 
-// A report of the first seed's recordings finds the other hands, grips and tremors in the table again.
+// A report of the first seed's recordings finds the other hands, grips and tremors in the table.
 TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "study.csv";

@@ -20,13 +20,14 @@ const VertexSearchRow& row_of(const std::string& part, int vertices) {
 }
 
 TEST(VertexSearch, AGapBetweenVerticesGoesInAsDeepAsItIsWide) {
-  // Half of the angle between two vertices of a circle, and from a face of the octahedron to its vertices.
+  // Half the angle between two vertices of a circle, and the angle from a face of the octahedron to its
+  // vertices.
   EXPECT_NEAR(row_of("circle", 8).unseen_worst, 1 - std::cos(std::numbers::pi / 8), 0.006);
   EXPECT_NEAR(row_of("circle", 4).unseen_worst, 1 - std::sqrt(0.5), 0.006);
   EXPECT_NEAR(row_of("sphere", 6).unseen_worst, 1 - std::sqrt(1.0 / 3), 0.01);
 }
 
-// On the circle the springs of vertices at the angles a from the wall's normal add up to what they are here.
+// On the circle, the springs of vertices at the angles a from the wall's normal add up to these sums.
 TEST(VertexSearch, TheForceIsTheOneThatTheEquationsGive) {
   double worst_deg = 0;
   for (int side = 0; side < 1000; ++side) {
