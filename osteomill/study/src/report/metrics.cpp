@@ -282,7 +282,7 @@ RunMetrics run_metrics(const Recording& recording, std::size_t first) {
   if (is_enough_contact(contact.torque)) metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
   if (is_enough_contact(contact.shaft)) {
     metrics.shaft = direction_metrics(shaft_W);
-    // An algorithm that shows the tool at the handle differs by rounding alone.
+    // The spread is only rounding if an algorithm shows the tool at the handle.
     constexpr double kRounding_deg = 1e-6;
     const double spread_deg = direction_metrics(shaft_D).spread_deg;
     metrics.shaft_from_handle_deg = spread_deg < kRounding_deg ? 0 : spread_deg;

@@ -34,7 +34,7 @@ struct Finding {
   Verdict verdict = Verdict::not_recorded;
 };
 
-/// The grips of the same hand for one of the findings, the loosest first: the factors of its stiffness and
+/// Grips of the same hand for the finding on grips, loosest first: factors of its stiffness and
 /// damping (gripping, hand.h).
 inline constexpr std::array<double, 3> kGrips{0.5, 1, 2};
 

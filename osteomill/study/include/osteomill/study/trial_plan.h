@@ -14,7 +14,7 @@ namespace osteomill {
 
 /// A trial of the test of section 8.2, and what its recordings describe (record_trial()).
 struct TrialPlan {
-  /// The bone as scanned; outlives the plan.
+  /// The bone as scanned; must outlive the plan.
   const Volume& bone;
   ScanIdentity scan;
   BoneDensities densities;
