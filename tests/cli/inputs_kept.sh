@@ -46,7 +46,7 @@ kept() {
     ln "$input" "out/$written"
     local code=0
     timeout 60 "$osteomill" "$@" --quiet >said 2>error || code=$?
-    [ $code -eq 1 ] && [ "$(wc -l <error)" -eq 1 ] && grep -q "out/[^ ]*: is what is read" error ||
+    [ $code -eq 1 ] && [ "$(wc -l <error)" -eq 1 ] && grep -q "out/[^ ]*: is an input file" error ||
       fault "$*: $input as out/$written: $code, $(cat error)"
     [ "out/$written" -ef "$input" ] || fault "$*: $input was written over as out/$written"
     [ -z "$(find out -name '*.writing-*')" ] || fault "$*: left $(find out)"

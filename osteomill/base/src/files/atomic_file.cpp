@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A name beside `path` that `create` makes a file or folder of, which it does not if there is one. Keeps
-// the extension last, since libraries choose a format by it.
+// Creates a file or folder with a new name in the folder of `path`; `create` must fail with EEXIST if the
+// name is taken. Keeps the extension last, because libraries choose the format by it.
 template <typename Create>
 fs::path create_beside(const fs::path& path, const Create& create) {
   for (int number = 1;; ++number) {
@@ -53,7 +53,7 @@ bool is_device_or_pipe(const fs::path& path) {
 }
 
 void write_through(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  // Opening a FIFO otherwise waits until another program reads it.
+  // Without O_NONBLOCK, opening a FIFO blocks until another program reads it.
   const int reader_is_there = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (reader_is_there < 0)
     throw InputError(path.string(),
@@ -63,7 +63,7 @@ void write_through(const fs::path& path, const std::function<void(const fs::path
   const TemporaryFolder folder;
   const fs::path whole = folder / ("whole" + path.extension().string());
   write(whole);
-  // To copy nothing counts as a failure.
+  // Streaming an empty buffer sets failbit.
   if (!fs::is_empty(whole)) out << std::ifstream(whole, std::ios::binary).rdbuf();
   out.close();
   if (!out) throw InputError(path.string(), with_reason("cannot be written to its end"));
@@ -78,7 +78,7 @@ void rename_to(const fs::path& from, const fs::path& target, const fs::path& pat
   throw InputError(path.string(), reason);
 }
 
-// An open folder, and the lock that shows that its owner lives.
+// An open folder whose lock shows that its owner is alive.
 class LockedFolder {
  public:
   explicit LockedFolder(const fs::path& path)
@@ -88,7 +88,7 @@ class LockedFolder {
   }
   LockedFolder(const LockedFolder&) = delete;
   LockedFolder& operator=(const LockedFolder&) = delete;
-  // Also false if the file system has no such locks (folders on NFS): the lock is unknown there.
+  // Also returns false if the file system has no such locks (folders on NFS).
   bool try_lock() const { return descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0; }
 
  private:
@@ -97,7 +97,7 @@ class LockedFolder {
 
 constexpr const char* kBeside = "files";
 
-// Removes folders that a killed program left half-written.
+// Removes temporary folders left by killed programs.
 void remove_orphaned_folders(const fs::path& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
@@ -114,7 +114,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 }
 
 void require_not_input(const fs::path& path) {
-  if (is_input(path)) throw InputError(path.string(), "is what is read; name another file to write");
+  if (is_input(path)) throw InputError(path.string(), "is an input file; name another output file");
 }
 
 void remove_stale(const fs::path& folder, const std::function<bool(const std::string&)>& stale) {
@@ -131,7 +131,7 @@ void remove_stale(const fs::path& folder, const std::function<bool(const std::st
   }
 }
 
-// Throws the current exception again, with a temporary file's name replaced by its final one.
+// Rethrows the current exception with the temporary file's name replaced by its final one.
 [[noreturn]] void rethrow_with_final_name(const fs::path& beside, const fs::path& folder) {
   try {
     throw;
@@ -144,7 +144,7 @@ void remove_stale(const fs::path& folder, const std::function<bool(const std::st
   }
 }
 
-// A path that is not absolute does not count.
+// Ignores relative paths.
 fs::path folder_from_environment(const char* variable) {
   const char* value = std::getenv(variable);
   const fs::path folder = value != nullptr ? value : "";
@@ -165,7 +165,7 @@ fs::path output_path(const fs::path& path) {
   std::error_code error;
   require_not_input(path);
   if (fs::is_directory(path, error)) throw InputError(path.string(), "cannot be written: it is a folder");
-  // A link of the system to a pipe (/dev/stdout) has no other name.
+  // A system link to a pipe (/dev/stdout) cannot be resolved to a path.
   if (is_device_or_pipe(path)) return path;
   fs::path target = path;
   for (int n = 0; fs::is_symlink(fs::symlink_status(target, error)); ++n) {

@@ -118,7 +118,7 @@ TEST_F(AtomicFileTest, WhatIsReadIsNotWrittenOverByAnyOfItsNames) {
                InputError);
   EXPECT_EQ(content(scan), "mine");
   EXPECT_NO_THROW(output_path(folder_ / "new.nrrd"));
-  // Whatever then has its name, or its inode, is another file.
+  // A later file of that name, or with that inode, is a different file.
   fs::remove(scan);
   EXPECT_NO_THROW(output_path(folder_ / "other.nrrd"));
 }
@@ -158,7 +158,7 @@ TEST_F(AtomicFileTest, OfFilesThatBelongTogetherNoneIsLeftWhereOneFails) {
   };
   EXPECT_THROW(write_folder_atomically(folder_ / "new", fail), InputError);
   EXPECT_EQ(file_count(), 0);
-  // Nor if it turns out only as they are moved.
+  // Also if the failure occurs only while moving the files.
   fs::create_directories(folder_ / "b.csv");
   EXPECT_THROW(write_folder_atomically(folder_,
                                        [](const fs::path& beside) {
@@ -173,7 +173,7 @@ TEST_F(AtomicFileTest, AFolderKeepsNothingStaleOfAnEarlierOutput) {
   for (const char* name : {"a.h5", "b.h5", "notes.txt"}) std::ofstream(folder_ / name) << "old";
   const auto stale = [](const std::string& name) { return name.ends_with(".h5"); };
   const auto write = [&](const fs::path& beside) {
-    EXPECT_TRUE(fs::exists(folder_ / "b.h5")) << "it stays while the new is written";
+    EXPECT_TRUE(fs::exists(folder_ / "b.h5")) << "old files stay until the new ones are written";
     std::ofstream(beside / "a.h5") << "new";
   };
   write_folder_atomically(folder_, write, stale);
@@ -183,10 +183,10 @@ TEST_F(AtomicFileTest, AFolderKeepsNothingStaleOfAnEarlierOutput) {
   EXPECT_THROW(write_folder_atomically(
                    folder_, [](const fs::path&) { throw InputError("x", "y"); }, stale),
                InputError);
-  EXPECT_EQ(content(folder_ / "a.h5"), "new") << "what fails replaces nothing";
+  EXPECT_EQ(content(folder_ / "a.h5"), "new") << "a failed write replaces nothing";
 }
 
-// The child ends within `write` as one that is killed does.
+// The child exits within `write`, like a killed process.
 TEST_F(AtomicFileTest, WhatAKilledProgramLeavesIsRemovedAndWhatALivingOneWritesIsNot) {
   const ::pid_t child = ::fork();
   if (child == 0) {
@@ -198,7 +198,7 @@ TEST_F(AtomicFileTest, WhatAKilledProgramLeavesIsRemovedAndWhatALivingOneWritesI
   ASSERT_EQ(::waitpid(child, nullptr, 0), child);
   EXPECT_TRUE(fs::exists(folder_ / ".files.writing-1"));
   write_folder_atomically(folder_, [&](const fs::path& outer) {
-    EXPECT_EQ(outer, folder_ / ".files.writing-1") << "the place is free again";
+    EXPECT_EQ(outer, folder_ / ".files.writing-1") << "the name is free again";
     write_folder_atomically(folder_, [&](const fs::path& inner) {
       EXPECT_NE(inner, outer);
       std::ofstream(inner / "b.h5") << "b";

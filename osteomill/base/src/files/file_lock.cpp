@@ -21,13 +21,13 @@ namespace {
 
 constexpr const char* kLockedByOther = "another program is writing to it";
 
-// A pipe is not waited for.
+// Does not block on a FIFO.
 int open_for_check(const fs::path& path) {
   return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 }
 
-// Renames a file if the new name is free; otherwise returns false, with errno EEXIST. NFS needs a link for
-// that.
+// Renames a file if the new name is free; otherwise returns false with errno EEXIST. NFS does not support
+// RENAME_NOREPLACE.
 bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL) return false;
@@ -51,14 +51,14 @@ bool FileLock::is_at(const fs::path& path) const {
          held.st_ino == named.st_ino && held.st_dev == named.st_dev;
 }
 
-// The former holder may have renamed or removed the file meanwhile.
+// Checks the name again: the previous holder may have renamed or removed the file.
 std::optional<FileLock> FileLock::try_lock(const fs::path& path) {
   FileLock lock(open_for_check(path));
   if (lock.descriptor_ < 0 || !lock.try_lock() || !lock.is_at(path)) return std::nullopt;
   return lock;
 }
 
-// Between the two calls another program may take the file for a leftover.
+// Between open and lock another program may take the file for a leftover.
 FileLock FileLock::create_locked(const fs::path& path) {
   FileLock lock(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (lock.descriptor_ < 0) refuse(path, "cannot be created: ");
@@ -87,7 +87,7 @@ std::optional<fs::path> set_aside(const fs::path& path) {
     const fs::path name = path.parent_path() /
                           (path.stem().string() + "-" + std::to_string(number) + path.extension().string());
     if (rename_to_free_name(path, name)) return name;
-    if (errno != EEXIST) refuse(path, "is there, and cannot be kept under another name: ");
+    if (errno != EEXIST) refuse(path, "exists and cannot be renamed: ");
   }
 }
 

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::mutex mutex;
-// By name: of a file that has gone, the inode may be another's.
+// Stored by name: the inode of a deleted file may be reused.
 std::optional<std::set<fs::path>> inputs;
 
 }  // namespace

@@ -15,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Takes the file of this name of the program's own control group and of those that hold it to `use`.
+// Calls `use` with the file `name` of the program's control group and of each of its ancestors.
 void for_each_control_group(const fs::path& root, const char* name,
                             const std::function<void(std::ifstream&)>& use) {
   std::ifstream groups(root / "proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {
-    // Version 2 has one tree, without a number.
+    // Only the line of cgroup v2, which has hierarchy number 0 and no controller list.
     if (!line.starts_with("0::/")) continue;
     fs::path group = fs::path(line.substr(4)).lexically_normal();
     for (;; group = group.parent_path()) {
@@ -31,7 +31,7 @@ void for_each_control_group(const fs::path& root, const char* name,
   }
 }
 
-// Any number of processors, more than a cpu_set_t holds too.
+// Retries with larger sets, because a machine may have more processors than a cpu_set_t holds.
 std::size_t processors_of_this_program() {
   for (std::size_t room = CPU_SETSIZE; room <= 64 * CPU_SETSIZE; room *= 2) {
     cpu_set_t* const set = CPU_ALLOC(room);
@@ -51,7 +51,7 @@ std::size_t allowed_threads(const fs::path& root) {
   double threads = static_cast<double>(processors_of_this_program());
   for_each_control_group(root, "cpu.max", [&](std::ifstream& file) {
     double quota_us = 0, period_us = 0;
-    // No number: "max".
+    // Extraction fails for "max".
     if (file >> quota_us >> period_us && period_us > 0) threads = std::min(threads, quota_us / period_us);
   });
   return static_cast<std::size_t>(std::max(1.0, std::ceil(threads)));

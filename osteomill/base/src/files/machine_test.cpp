@@ -43,7 +43,7 @@ TEST_F(Machine, TheNarrowestControlGroupCounts) {
   EXPECT_EQ(allowed_threads(root()), 1u);
 }
 
-// In a container of a cgroup namespace of its own, or with the host's path.
+// In a container with its own cgroup namespace, or with the host's path.
 TEST_F(Machine, AContainersLimitsAreFoundAtTheTop) {
   for (const char* group : {"0::/\n", "0::/docker/0123\n", "0::/../..\n"}) {
     write("proc/self/cgroup", group);

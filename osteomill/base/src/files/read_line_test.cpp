@@ -22,7 +22,7 @@ TEST(ReadLine, RefusesWhatIsLongerThanItMayBe) {
   std::string line;
   EXPECT_TRUE(read_line(in, line, 8));
   EXPECT_THROW(read_line(in, line, 8), LineTooLong);
-  EXPECT_EQ(line.size(), 8u) << "and reads no more of it";
+  EXPECT_EQ(line.size(), 8u) << "stops reading at the limit";
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ std::string quoted(const std::string& word) {
 
 ProcessResult run_program(const std::vector<std::string>& words, std::chrono::duration<double> limit) {
   constexpr std::size_t kMaxKeptBytes = 16'000'000;
-  // Whatever it has started ends with it, or else this would wait for that.
+  // Kills child processes too; otherwise fread would wait for them.
   std::ostringstream seconds;
   seconds << limit.count();
   std::string line = "timeout --signal=KILL " + seconds.str() + " ";

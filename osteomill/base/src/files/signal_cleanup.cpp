@@ -21,11 +21,11 @@ constexpr std::array kSignals{SIGTERM, SIGINT, SIGHUP};
 std::array<struct sigaction, kSignals.size()> actions_before;
 std::atomic<void (*)()> before_cleanup{nullptr};
 
-// A path that is taken from an entry belongs to the thread that took it. Files for which there is no entry
-// are left.
+// A path taken out of a slot belongs to the thread that took it. Files that find no free slot are not
+// removed.
 std::array<std::atomic<char*>, 64> registered_paths{};
 
-// Removes a folder with calls that are safe in a signal's handler. Other threads may still put files into it.
+// Removes a file or folder with async-signal-safe calls. Retries, because other threads may still add files.
 void remove_recursively(int in, const char* name) {
   constexpr int kTries = 100;
   if (::unlinkat(in, name, 0) == 0) return;

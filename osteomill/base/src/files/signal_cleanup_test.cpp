@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns how a child that does this and then gets the signal ends.
+// Returns the exit status of a child that runs `before` and then receives the signal.
 template <typename Do>
 int status_of_child_ended_by(int signal, const Do& before) {
   const ::pid_t child = ::fork();
@@ -31,7 +31,7 @@ int status_of_child_ended_by(int signal, const Do& before) {
 }
 
 TEST(Leftovers, GoWhenTheProgramIsAskedToEnd) {
-  // No TemporaryFolder, which the child would remove too.
+  // Not a TemporaryFolder, which the child would remove too.
   const fs::path folder = fs::path(::testing::TempDir()) / "signal_cleanup";
   fs::remove_all(folder);
   fs::create_directories(folder);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 TemporaryFolder::TemporaryFolder() {
   std::error_code error;
   const fs::path parent = fs::temp_directory_path(error);
-  if (error) throw InputError("TMPDIR", "is no folder for temporary files: " + error.message());
+  if (error) throw InputError("TMPDIR", "is not a usable folder for temporary files: " + error.message());
   std::string name = (parent / "osteomill-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
     throw InputError(parent.string(), std::string("cannot hold a temporary folder: ") + std::strerror(errno));

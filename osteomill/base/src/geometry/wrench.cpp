@@ -13,7 +13,7 @@ bool clamp_length(Vec3& vector, double limit) {
   return true;
 }
 
-// No limit stays none in a time of no length.
+// Avoids inf * 0 = NaN for an unlimited rate.
 Vec3 towards(const Vec3& from, const Vec3& to, double rate, double dt_s) {
   const double most = rate < WrenchRates::kAny ? rate * dt_s : rate;
   const double change = (to - from).norm();
@@ -50,7 +50,7 @@ std::string_view name_of(WrenchFault fault) noexcept {
 }
 
 SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) noexcept {
-  // A norm that overflows is caught here too: components near the largest double cannot be scaled.
+  // Also catches a norm that overflows: components near the largest double cannot be scaled.
   if (!std::isfinite(wrench.force_N.norm()) || !std::isfinite(wrench.torque_Nmm.norm())) {
     return {Wrench{}, WrenchFault::not_finite};
   }

@@ -30,7 +30,7 @@ bool would_wait() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS;
 }
 
-// The address of IPv4 before others: what listens on "localhost" mostly does there.
+// Prefers IPv4, because most servers on "localhost" listen there.
 std::string number_of(const addrinfo* found) {
   const addrinfo* best = found;
   for (const addrinfo* other = found; other != nullptr && best->ai_family != AF_INET; other = other->ai_next)
@@ -40,8 +40,8 @@ std::string number_of(const addrinfo* found) {
   return number.data();
 }
 
-// Returns the address of a host; empty if the name is not known. A name server that does not answer keeps a
-// thread of its own waiting, so that neither opening a device again nor ending the program waits for it.
+// Returns the address of a host; empty if the name cannot be resolved. Resolves in a detached thread, so that
+// an unresponsive name server delays neither reopening a device nor ending the program.
 std::string resolved(const std::string& host) {
   std::promise<std::string> promise;
   std::future<std::string> number = promise.get_future();
@@ -80,7 +80,7 @@ Socket::Socket(const std::string& device, const HostAndPort& at, Kind kind) : ki
       error != 0)
     throw InputError(device, gai_strerror(error));
   socket_ = ::socket(found->ai_family, found->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  // Also for datagrams, so that those of other senders are ignored.
+  // Also for datagrams, to ignore those from other senders.
   int reason = ::connect(socket_, found->ai_addr, found->ai_addrlen) == 0 ? 0 : errno;
   freeaddrinfo(found);
   if (reason == EINPROGRESS) {

@@ -15,7 +15,8 @@ double of_ascending(std::span<const double> values, double share) {
 }  // namespace
 
 PercentileRanks percentile_ranks(double share, std::size_t count) {
-  // A share such as 0.999 is not exact in a double: a product a hair from a whole number is that number.
+  // A share such as 0.999 is not exact in a double; treats a product this close to a whole number as that
+  // number.
   constexpr double kHair = 1e-6;
   const double rank = share * static_cast<double>(count);
   const auto clamped = [&](double number) {

@@ -25,8 +25,8 @@ TEST(Distribution, KnownValues) {
   EXPECT_DOUBLE_EQ(distribution_of({}).max, 0);
 }
 
-// Against counting in whole numbers: the least k with 1000 k >= share in thousandths * n, and if the two
-// are equal its neighbour too.
+// Compares with integer arithmetic: the smallest k with 1000 k >= thousandths * n; if both sides are equal,
+// also its successor.
 TEST(Percentile, RanksAreExactOfEveryNumberOfValues) {
   for (std::size_t n = 1; n <= 2000; ++n) {
     for (const std::size_t thousandths : {1u, 500u, 950u, 990u, 998u, 999u, 1000u}) {

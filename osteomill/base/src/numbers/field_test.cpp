@@ -88,7 +88,7 @@ TEST(Field, ThoseOfAPartAreFieldsOfTheWhole) {
   EXPECT_EQ(fields[0].unit, "mm");
   EXPECT_EQ(find_field(fields, "width"), nullptr);
   EXPECT_EQ(field_of_option(fields, "part-length"), &fields[0]);
-  EXPECT_EQ(field_of_option(fields, ""), nullptr) << "though a field has no option";
+  EXPECT_EQ(field_of_option(fields, ""), nullptr) << "although a field has an empty option";
 }
 
 TEST(Field, ARangeIsSaidInWords) {

@@ -17,7 +17,7 @@ TEST(RecentRate, IsThatOfTheLastWholeSecond) {
   EXPECT_EQ(rate.per_s(103.25), 0);
 }
 
-// However much was counted before anyone asked.
+// Ignores events counted before the first call.
 TEST(RecentRate, TheFirstSecondBeginsWithTheFirstCall) {
   RecentRate rate;
   for (int n = 0; n < 50; ++n) rate.count();

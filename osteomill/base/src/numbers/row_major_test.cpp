@@ -19,7 +19,7 @@ TEST(RowMajor, CountsEveryCellOnceInOrder) {
   EXPECT_EQ(cell_count(dims), index);
 }
 
-// 2048^3 is more than an int counts.
+// 2048^3 exceeds the range of an int.
 TEST(RowMajor, IsNotLimitedToAnInt) {
   const std::array<int, 3> dims{2048, 2048, 2048};
   EXPECT_EQ(row_major(dims, 2047, 2047, 2047), cell_count(dims) - 1);

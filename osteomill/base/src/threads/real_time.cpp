@@ -11,7 +11,7 @@ namespace osteomill {
 
 namespace {
 
-// Above ordinary work, below the kernel's own threads that serve the devices.
+// Above ordinary threads, below the kernel threads that serve the devices.
 constexpr int kPriority = 40;
 
 }  // namespace
@@ -24,8 +24,8 @@ std::optional<std::string> request_real_time() {
     refused = std::string("no real-time scheduling (") + std::strerror(error) +
               "): ticks will be late under load; rtprio in /etc/security/limits.conf allows it";
   }
-  // Not what is allocated later: under a limit, locking that would make allocations fail. And pages as they
-  // are: made present for writing, all that copies of a bone share would be copied.
+  // Without MCL_FUTURE, because under a memory limit locking later allocations would make them fail. With
+  // MCL_ONFAULT, because prefaulting pages for writing would duplicate those that copies of a bone share.
   if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0) {
     refused += std::string(refused.empty() ? "" : "; ") + "memory not locked (" + std::strerror(errno) + ")";
   }

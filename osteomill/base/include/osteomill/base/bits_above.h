@@ -11,8 +11,8 @@
 
 namespace osteomill {
 
-/// Returns bits of which bit n is set if row[n] > limit, for n below `count`, a multiple of 4 up to 32. Safe
-/// in the haptic tick.
+/// Returns a bit mask: bit n is set if row[n] > limit, for n below `count`, a multiple of 4 up to 32. Safe in
+/// the haptic tick.
 inline std::uint32_t bits_above(const float* row, int count, float limit) {
   std::uint32_t bits = 0;
 #ifdef __SSE2__
@@ -27,8 +27,7 @@ inline std::uint32_t bits_above(const float* row, int count, float limit) {
   return bits;
 }
 
-/// Returns the largest float that is not above `value`: a float is above `value` exactly if it is above this
-/// one.
+/// Returns the largest float not above `value`. Any float exceeds `value` exactly if it exceeds this one.
 inline float largest_float_up_to(double value) {
   constexpr double kMax = std::numeric_limits<float>::max();
   const float nearest = static_cast<float>(std::clamp(value, -kMax, kMax));

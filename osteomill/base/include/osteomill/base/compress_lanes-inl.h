@@ -1,4 +1,4 @@
-// Included once for each set of vector instructions, hence the guard that hwy/foreach_target.h toggles.
+// Included once per SIMD target, hence the guard that hwy/foreach_target.h toggles.
 #if defined(OSTEOMILL_COMPRESS_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef OSTEOMILL_COMPRESS_LANES_INL
 #undef OSTEOMILL_COMPRESS_LANES_INL
@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace osteomill {
 namespace HWY_NAMESPACE {
 
-/// The mask as a number: bit n is set if the mask names lane n.
+/// Returns the mask as an integer: bit n is set if lane n is selected.
 template <class D>
 HWY_INLINE unsigned bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
@@ -24,7 +24,8 @@ HWY_INLINE unsigned bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
   return bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
 }
 
-/// For each choice of up to 8 lanes, given as one bit for each lane: the chosen lanes, then the others.
+/// Permutations for every selection of up to 8 lanes, indexed by bit mask: the selected lanes first, then the
+/// others.
 inline constexpr auto kLaneOrder = [] {
   constexpr int kLanes = 8;
   std::array<std::array<std::int32_t, kLanes>, 1u << kLanes> orders{};
@@ -39,10 +40,9 @@ inline constexpr auto kLaneOrder = [] {
   return orders;
 }();
 
-/// Moves the lanes that a mask names to the front of a vector, in their order; what the other lanes hold
-/// afterwards is undefined. One object serves any number of vectors. Highway's own Compress looks up its
-/// table again for each vector, and GCC 12 copies that whole table to the stack first: with AVX2, two thirds
-/// of the time of gathering points.
+/// Moves the lanes selected by a mask to the front of a vector, in order; the remaining lanes are undefined.
+/// One object serves any number of vectors. Highway's own Compress looks up its table for each vector, and
+/// GCC 12 first copies that whole table to the stack: with AVX2, two thirds of the time of gathering points.
 template <class D>
 class CompressLanes {
  public:

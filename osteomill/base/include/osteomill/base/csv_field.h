@@ -6,8 +6,7 @@
 
 namespace osteomill {
 
-/// Returns free text as a field of a CSV file (RFC 4180): in quotes if it holds what separates fields or
-/// rows.
+/// Returns free text as a CSV field (RFC 4180), quoted if it contains a comma, a quote or a line feed.
 inline std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -15,7 +14,7 @@ inline std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-/// Splits a row in which no field stands in quotes into its fields, without the blanks about them.
+/// Splits a row without quoted fields into its fields and strips the blanks around each.
 inline std::vector<std::string_view> csv_fields(std::string_view row) {
   if (row.ends_with('\r')) row.remove_suffix(1);
   std::vector<std::string_view> fields;

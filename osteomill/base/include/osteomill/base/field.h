@@ -15,8 +15,7 @@
 
 namespace osteomill {
 
-/// The numbers that are allowed; both ends belong to them. An infinite end allows an infinite value; not a
-/// number is allowed by no range.
+/// A range of allowed numbers, ends included. An infinite end allows an infinite value; no range allows NaN.
 struct NumberRange {
   double min = std::numeric_limits<double>::lowest();
   double max = std::numeric_limits<double>::max();
@@ -33,7 +32,7 @@ struct NumberRange {
   static constexpr NumberRange finite() { return {}; }
   static constexpr NumberRange positive() { return {.min = std::numeric_limits<double>::min()}; }
   static constexpr NumberRange not_negative() { return {.min = 0}; }
-  /// Returns the range of a limit: not negative, and infinite for no limit.
+  /// Returns the range of a limit: not negative; infinity means no limit.
   static constexpr NumberRange limit() { return {.min = 0, .max = std::numeric_limits<double>::infinity()}; }
   static constexpr NumberRange on_or_off() { return {.min = 0, .max = 1, .whole = true}; }
   static constexpr NumberRange count(int min, int max = std::numeric_limits<int>::max()) {
@@ -41,33 +40,33 @@ struct NumberRange {
   }
 };
 
-/// Returns the range in words: "a number above 0", "a whole number from 1 to 32", "on or off".
+/// Returns a description of the range: "a number above 0", "a whole number from 1 to 32", "on or off".
 std::string range_text(const NumberRange& range);
 
-/// All there is to say of one value, for everything that names, checks, shows, reads or writes it: the
-/// command line, files, tables. Best written with the members' names, because most fields leave some out:
-/// `{.name = "push", .unit = "N", .range = NumberRange::positive(), .doc = "Push", .option = "push"}`.
+/// Describes one value for all code that checks, shows, reads or writes it: the command line, files, tables.
+/// Use designated initialisers, because most fields omit some members: `{.name = "push", .unit = "N", .range
+/// = NumberRange::positive(), .doc = "Push", .option = "push"}`.
 struct FieldDescription {
-  /// The name in files; empty if files do not have the value.
+  /// The name in files; empty if files do not store the value.
   std::string name = {};
-  /// The unit, in ASCII as files of settings write it ("mm^3"); empty for a pure number. For a text, a word
-  /// for what it holds ("FILE").
+  /// The unit, in ASCII as in settings files ("mm^3"); empty for a dimensionless number. For a text, a
+  /// placeholder word ("FILE").
   std::string unit = {};
-  /// The allowed values of a number; a switch is 0 or 1. For a text that is a list, the allowed number of its
+  /// The allowed values of a number; a switch is 0 or 1. For a text that is a list, the allowed number of
   /// entries.
   NumberRange range = {};
-  /// A description in one line.
+  /// A one-line description.
   std::string doc = {};
-  /// Bits for further properties, which the struct's header defines.
+  /// Bits for further properties, defined in the struct's header.
   unsigned flags = 0;
-  /// The name of the option on the command line, which is also its key in files for --config and in studies;
-  /// empty if there is none.
+  /// The name of the command-line option, which is also its key in --config files and studies; empty if there
+  /// is none.
   std::string option = {};
-  /// The names of the values 0, 1, ... of a choice, by which options and studies give it.
+  /// The names of the values 0, 1, ... of a choice, as used by options and studies.
   std::vector<std::string> choices = {};
 
   bool has(unsigned flag) const { return (flags & flag) != 0; }
-  /// Returns the name of a value of a choice, or "on" or "off" of a switch; nothing for any other number.
+  /// Returns the name of a choice's value, or "on" or "off" for a switch; nothing for any other number.
   std::optional<std::string> name_of_value(double value) const {
     if (choices.empty() && range == NumberRange::on_or_off()) return value == 0 ? "off" : "on";
     if (!(value >= 0 && value < static_cast<double>(choices.size()))) return std::nullopt;
@@ -75,7 +74,7 @@ struct FieldDescription {
   }
 };
 
-/// A flag of any struct's fields: a file may lack it, and it then keeps its default.
+/// Flag for the fields of any struct: files may omit it; it then keeps its default.
 inline constexpr unsigned kMayBeAbsent = 1u << 31;
 
 /// One value of a struct: a number, or a text.
@@ -85,13 +84,13 @@ struct Field : FieldDescription {
   std::function<void(Struct&, const Value&)> set;
 };
 
-/// Returns every field of a struct that is a number, or a text, in the order in which people should read
-/// them; specialised beside each struct that has any. The list is made at the first call and stays.
+/// Returns all fields of a struct that are numbers, or texts, in reading order; specialised beside each
+/// struct that has any. The list is created by the first call and stays valid.
 template <typename Struct, typename Value = double>
 const std::vector<Field<Struct, Value>>& fields_of();
 
-/// Makes the field of a number, a switch, an enumeration or a text or path. `access` gives a reference to it:
-/// a pointer to the member, or a function that takes the struct, constant or not.
+/// Creates the field of a number, a switch, an enumeration, a text or a path. `access` gives a reference to
+/// it: a member pointer, or a function that takes the struct, const or not.
 template <typename Struct, typename Access>
 auto field(FieldDescription description, Access access) {
   using Value = std::remove_cvref_t<std::invoke_result_t<Access, Struct&>>;
@@ -109,7 +108,7 @@ auto field(FieldDescription description, Access access) {
       }};
 }
 
-/// Returns the fields of a part of `Outer` as fields of the whole. `access` gives a reference to the part.
+/// Returns the fields of a member of `Outer` as fields of `Outer`. `access` gives a reference to the member.
 template <typename Outer, typename Access, typename Value,
           typename Inner = std::remove_cvref_t<std::invoke_result_t<Access, Outer&>>>
 std::vector<Field<Outer, Value>> fields_within(Access access, const std::vector<Field<Inner, Value>>& inner) {
@@ -124,7 +123,7 @@ std::vector<Field<Outer, Value>> fields_within(Access access, const std::vector<
   return fields;
 }
 
-/// Returns the fields of several lists as one.
+/// Concatenates lists of fields.
 template <typename Struct, typename Value = double>
 std::vector<Field<Struct, Value>> joined(std::vector<std::vector<Field<Struct, Value>>> lists) {
   std::vector<Field<Struct, Value>> all;

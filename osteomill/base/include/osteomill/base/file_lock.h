@@ -8,14 +8,14 @@
 
 namespace osteomill {
 
-/// Holds a file or a folder for this object alone, among all programs that ask the same way, until it is
-/// destroyed or its program ends, however that ends. A file system without such locks (folders on NFS) locks
-/// nothing: there every program gets the lock.
+/// Exclusive lock on a file or folder among all programs that use this class. Held until the object is
+/// destroyed or its program ends, in whatever way. A file system without such locks (folders on NFS) locks
+/// nothing: every program gets the lock.
 class FileLock {
  public:
-  /// Returns nothing if another one holds `path`, or if the file is no longer there.
+  /// Returns nothing if `path` is locked by another holder or no longer exists.
   static std::optional<FileLock> try_lock(const std::filesystem::path& path);
-  /// Creates an empty file and holds it. Throws InputError if there is one already, or none can be created.
+  /// Creates an empty file and locks it. Throws InputError if the file exists or cannot be created.
   static FileLock create_locked(const std::filesystem::path& path);
 
   ~FileLock();
@@ -25,7 +25,7 @@ class FileLock {
     return *this;
   }
 
-  /// Returns whether the file of that name is the one that is held.
+  /// Returns whether `path` names the locked file.
   bool is_at(const std::filesystem::path& path) const;
 
  private:
@@ -35,28 +35,28 @@ class FileLock {
   int descriptor_;
 };
 
-/// Returns whether a FileLock holds the file. From any thread; waits for nothing.
+/// Returns whether a FileLock holds the file. From any thread; does not block.
 bool is_locked(const std::filesystem::path& path);
 
-/// Renames a file that an earlier program left ("r.part.h5") to the first name that is free ("r.part-1.h5"),
-/// which is returned; nothing if there is no file. Throws InputError if a FileLock holds it, or it cannot be
+/// Renames a file that an earlier program left ("r.part.h5") to the first free name ("r.part-1.h5") and
+/// returns that name; nothing if there is no file. Throws InputError if a FileLock holds it, or it cannot be
 /// renamed.
 std::optional<std::filesystem::path> set_aside(const std::filesystem::path& path);
 
-/// A folder for output, held by this object alone: a second program that wants it is refused at once.
+/// An output folder locked by this object: a second program that opens it is refused at once.
 class OutputFolder {
  public:
-  /// Creates it, and its parents, if it is not there. Throws InputError if that is impossible, or another
-  /// program holds it.
+  /// Creates the folder and its parents if missing. Throws InputError if that fails, or another program has
+  /// locked it.
   explicit OutputFolder(std::filesystem::path folder);
-  /// Removes what was created here and is still empty.
+  /// Removes the folders that this object created and that are still empty.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
  private:
   std::filesystem::path folder_;
-  // The innermost first.
+  // Created folders, innermost first.
   std::vector<std::filesystem::path> made_;
   std::optional<FileLock> lock_;
 };

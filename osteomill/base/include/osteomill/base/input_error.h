@@ -9,8 +9,8 @@
 
 namespace osteomill {
 
-/// Returns the text with a question mark for every control character, a line's end among them: a file's own
-/// words may hold anything.
+/// Returns the text with every control character, line ends included, replaced by a question mark: text from
+/// a file may contain anything.
 inline std::string in_one_line(std::string_view text) {
   std::string line(text);
   for (char& c : line) {
@@ -19,31 +19,30 @@ inline std::string in_one_line(std::string_view text) {
   return line;
 }
 
-/// Reports that something the user handed in is at fault: a file, a folder, a row of it, or an option's
-/// value. The command line prints `what()` as its one line and exits with code 1. Never thrown inside a
-/// haptic tick.
+/// Reports faulty user input: a file, a folder, a row of a file, or the value of an option. The command line
+/// prints `what()` as its one line and exits with code 1. Never thrown in a haptic tick.
 class InputError : public std::runtime_error {
  public:
-  /// Makes the message "SUBJECT: REASON". `subject` names the file (or option), `reason` says what is wrong
-  /// with it, without a full stop. `what()` is one line whatever they hold.
+  /// Creates the message "SUBJECT: REASON". `subject` names the file or option; `reason` states the fault,
+  /// without a full stop. `what()` is always a single line.
   InputError(std::string_view subject, std::string_view reason)
       : std::runtime_error(in_one_line(std::string(subject) + ": " + std::string(reason))) {}
 };
 
-/// Returns `what` with the system's reason for a failed call behind it ("cannot be written: No space left on
+/// Returns `what` followed by the system's reason for a failed call ("cannot be written: No space left on
 /// device"); `what` alone if `error` (errno) is 0.
 inline std::string with_reason(const std::string& what, int error = errno) {
   return error == 0 ? what : what + ": " + std::generic_category().message(error);
 }
 
-/// Returns what an exception says, in one line. `failure` is not null.
+/// Returns the message of an exception in one line. `failure` must not be null.
 inline std::string reason_of(const std::exception_ptr& failure) {
   try {
     std::rethrow_exception(failure);
   } catch (const std::exception& error) {
     return in_one_line(error.what());
   } catch (...) {
-    return "an exception without words";
+    return "unknown exception";
   }
 }
 

@@ -4,9 +4,9 @@
 
 namespace osteomill {
 
-/// While one lives, this program does not write over a file that it has read as input: `output_path`
-/// (atomic_file.h) refuses it. Meant for commands, whose user may name the same file as input and output.
-/// Only one may live at a time.
+/// While an object of this class exists, `output_path` (atomic_file.h) refuses to overwrite a file that this
+/// program has read as input. Meant for commands, whose user may name the same file as input and output. Only
+/// one may exist at a time.
 class InputProtection {
  public:
   InputProtection();
@@ -15,12 +15,12 @@ class InputProtection {
   InputProtection& operator=(const InputProtection&) = delete;
 };
 
-/// Notes a file that is read as input. All code that opens one calls this, whether the user named the file or
-/// it was found in a folder, behind a header or beside a recording. From any thread.
+/// Registers an input file. All code that opens an input file must call this, whether the user named the file
+/// or it was found in a folder, through a header or beside a recording. From any thread.
 void note_input(const std::filesystem::path& path);
 
-/// Returns whether this file was noted, compared by device and inode; always false while no InputProtection
-/// lives. From any thread.
+/// Returns whether the file is registered, compared by device and inode; always false without an
+/// InputProtection. From any thread.
 bool is_input(const std::filesystem::path& path);
 
 }  // namespace osteomill

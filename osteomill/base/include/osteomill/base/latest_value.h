@@ -6,19 +6,19 @@
 
 namespace osteomill {
 
-/// The newest of the values that one thread writes, for one other thread to read whole: three buffers, of
-/// which each thread owns one and the third changes hands. Neither side ever waits; both are safe in the
+/// Passes the latest value from one writing thread to one reading thread without tearing. Triple-buffered:
+/// each thread owns a buffer and they exchange the third. Neither side ever waits; both are safe in the
 /// haptic tick if copying a T is.
 template <typename T>
 class LatestValue {
  public:
-  /// Makes this the newest value. For the writing thread.
+  /// Publishes a value. For the writing thread.
   void write(const T& value) noexcept(std::is_nothrow_copy_assignable_v<T>) {
     buffers_[writing_] = value;
     writing_ = shared_.exchange(writing_ | kNewFlag, std::memory_order_acq_rel) & kIndexMask;
   }
-  /// Returns the newest value written, or a default one before the first. Valid until the next call. For the
-  /// reading thread.
+  /// Returns the latest value, or a default-constructed one before the first write. Valid until the next
+  /// call. For the reading thread.
   const T& read() noexcept {
     if ((shared_.load(std::memory_order_relaxed) & kNewFlag) != 0) {
       reading_ = shared_.exchange(reading_, std::memory_order_acq_rel) & kIndexMask;

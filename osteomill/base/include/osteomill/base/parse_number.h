@@ -8,8 +8,8 @@
 
 namespace osteomill {
 
-/// Returns the number that a text is as a whole, whatever the locale ("nan" and "inf" are numbers here);
-/// nothing if it is none.
+/// Parses the whole text as a number, independent of the locale; accepts "nan" and "inf". Returns nothing if
+/// it is not a number.
 template <typename Number>
 std::optional<Number> parsed_number(std::string_view text) {
   Number number = 0;
@@ -19,8 +19,8 @@ std::optional<Number> parsed_number(std::string_view text) {
   return number;
 }
 
-/// Returns the finite number that a text is as a whole, whatever the locale; nothing if it is none. Every
-/// option and every field that holds a number is read by this function.
+/// Parses the whole text as a finite number, independent of the locale. Returns nothing if it is not one.
+/// Every numeric option and field is read by this function.
 inline std::optional<double> parsed_finite(std::string_view text) {
   const auto number = parsed_number<double>(text);
   return number && std::isfinite(*number) ? number : std::nullopt;

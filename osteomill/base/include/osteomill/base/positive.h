@@ -10,7 +10,7 @@ namespace osteomill {
 inline bool is_positive(double value) {
   return std::isfinite(value) && value > 0;
 }
-/// Returns whether a value is finite and not below 0.
+/// Returns whether a value is finite and at least 0.
 inline bool is_not_negative(double value) {
   return std::isfinite(value) && value >= 0;
 }

@@ -7,14 +7,14 @@
 
 namespace osteomill {
 
-/// Reports a line that is longer than it may be (read_line()).
+/// Thrown by read_line() for a line that exceeds its limit.
 class LineTooLong : public std::length_error {
  public:
   LineTooLong() : std::length_error("a line is too long") {}
 };
 
-/// Reads the next line into `line`, without its end, and never more than `max_bytes` of it: a file without
-/// line ends takes no memory. Returns false at the end of the stream. Throws LineTooLong for a longer line.
+/// Reads the next line into `line`, without its line end. Returns false at the end of the stream. Throws
+/// LineTooLong beyond `max_bytes`, so that a file without line ends cannot exhaust memory.
 inline bool read_line(std::istream& in, std::string& line, std::size_t max_bytes) {
   constexpr int kEnd = std::char_traits<char>::eof();
   line.clear();

@@ -6,14 +6,14 @@
 
 namespace osteomill {
 
-/// Asks the system to run the calling thread before all ordinary ones (SCHED_FIFO) and to keep the program's
-/// memory as it is now in RAM (mlockall). Returns in one line what the system refused and why, if it refused
-/// anything; the program goes on without it. Makes system calls: before the first tick, not in it.
+/// Requests real-time scheduling (SCHED_FIFO) for the calling thread and locks the program's current memory
+/// in RAM (mlockall). Returns one line with what the system refused and why, or nothing; the program can
+/// continue without it. Makes system calls: call before the first tick, not in it.
 std::optional<std::string> request_real_time();
 
-/// Keeps signals away from the thread that makes it, and from any thread that this one starts, until it is
-/// destroyed. They receive only the signals of their own faults, because the code that handles one
-/// (CrashStop) waits for the threads that drive a device.
+/// Blocks signals in the constructing thread, and in threads that it starts, until this object is destroyed.
+/// Faults of the thread itself (SIGSEGV and the like) still arrive. Needed because the signal handler of
+/// CrashStop waits for the threads that drive a device.
 class BlockedSignals {
  public:
   BlockedSignals();

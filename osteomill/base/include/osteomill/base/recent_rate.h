@@ -4,13 +4,12 @@
 
 namespace osteomill {
 
-/// Counts events, and gives how many there were in the last completed second, 0 before. Reads no clock
-/// itself. Safe in the haptic tick.
+/// Event rate in the last completed second; 0 before. Does not read a clock. Safe in the haptic tick.
 class RecentRate {
  public:
   void count() noexcept { ++count_; }
-  /// Returns how many events a second were counted in the last completed second. Has to be called more often
-  /// than once a second. `now_s` never goes back; the first second begins with the first call.
+  /// Returns the number of events per second in the last completed second. Must be called more than once a
+  /// second. `now_s` must not decrease; the first second starts with the first call.
   double per_s(double now_s) noexcept {
     const double passed_s = now_s - period_start_s_;
     if (passed_s >= 1) {

@@ -5,7 +5,7 @@
 
 namespace osteomill {
 
-/// Returns the greatest round number (1, 2 or 5 times a power of ten) that is not above a positive value.
+/// Returns the largest round number (1, 2 or 5 times a power of ten) not above a positive value.
 inline double round_down(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double times : {5.0, 2.0}) {
@@ -14,7 +14,7 @@ inline double round_down(double value) {
   return power;
 }
 
-/// Returns the least round number (1, 2 or 5 times a power of ten) that is not below a positive value.
+/// Returns the smallest round number (1, 2 or 5 times a power of ten) not below a positive value.
 inline double round_up(double value) {
   return 1 / round_down(1 / value);
 }

@@ -4,9 +4,8 @@
 
 namespace osteomill {
 
-/// Marks a file or folder that is only meant to be there while this object lives, as that of a
-/// TemporaryFolder. A program that is asked to end meanwhile (install_signal_cleanup()) removes it with
-/// all that is in it; this object's end does not.
+/// Registers a file or folder for removal, with its content, if a signal ends the program while this object
+/// exists (install_signal_cleanup()). The destructor does not remove it. Used by TemporaryFolder.
 class SignalCleanup {
  public:
   explicit SignalCleanup(const std::filesystem::path& path);
@@ -18,13 +17,13 @@ class SignalCleanup {
   int slot_;
 };
 
-/// Lets SIGTERM, SIGINT and SIGHUP remove every SignalCleanup before they do what they did; one that is
-/// ignored stays so. For a program to call as it starts, before or after it makes a CrashStop: devices are
-/// let go of first either way.
+/// Makes SIGTERM, SIGINT and SIGHUP remove every SignalCleanup's path before their previous action; an
+/// ignored signal stays ignored. Call at program start, before or after creating a CrashStop: devices are
+/// released first either way.
 void install_signal_cleanup();
 
-/// Lets these signals call `action` before they remove anything; null for nothing. It may only do what is
-/// safe in a signal's handler. CrashStop sets one.
+/// Sets a function that these signals call before they remove anything; null for none. It must be
+/// async-signal-safe. Used by CrashStop.
 void set_before_signal_cleanup(void (*action)());
 
 }  // namespace osteomill

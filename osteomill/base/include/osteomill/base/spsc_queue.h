@@ -12,13 +12,14 @@ extern "C" void __tsan_ignore_thread_end();
 
 namespace osteomill {
 
-/// A queue of fixed capacity from one thread to one other (single producer, single consumer; moodycamel's,
-/// made known to the thread sanitizer). Both ends are safe in the haptic tick (no allocation, lock or system
-/// call) if making and moving a T is. It is made and destroyed while neither thread uses it.
+/// Queue of fixed capacity, single producer, single consumer (moodycamel's, annotated for the thread
+/// sanitizer). Both ends are safe in the haptic tick (no allocation, lock or system call) if constructing and
+/// moving a T is. Construct and destroy it while neither thread uses it.
 template <typename T>
 class SpscQueue {
  public:
-  /// Makes room for `capacity` values or a few more. Touches all its memory, so that no tick is the first to.
+  /// Reserves space for at least `capacity` values. Touches all its memory, so that no tick causes a page
+  /// fault.
   explicit SpscQueue(std::size_t capacity) : queue_(capacity) {
     while (queue_.try_enqueue(T())) {
     }
@@ -26,33 +27,32 @@ class SpscQueue {
     }
   }
 
-  /// Makes a value at its place in the queue. Returns false, with nothing made or moved from, if the queue is
-  /// full. For the sending thread.
+  /// Constructs a value in place. Returns false, without constructing or moving anything, if the queue is
+  /// full. For the producer.
   template <typename... From>
   bool try_push(From&&... from) {
     const Access access(&queue_);
     return queue_.try_emplace(std::forward<From>(from)...);
   }
-  /// Takes out the oldest value; returns false if there is none. For the receiving thread.
+  /// Pops the oldest value; returns false if the queue is empty. For the consumer.
   bool try_pop(T& value) {
     const Access access(&queue_);
     return queue_.try_dequeue(value);
   }
-  /// Returns the oldest value at its place, valid until `pop`; null if there is none. For the receiving
-  /// thread.
+  /// Returns the oldest value in place, valid until `pop`; null if the queue is empty. For the consumer.
   T* front() {
     const Access access(&queue_);
     return queue_.peek();
   }
-  /// Takes out the oldest value, if there is one. For the receiving thread.
+  /// Discards the oldest value, if any. For the consumer.
   void pop() {
     const Access access(&queue_);
     queue_.pop();
   }
 
  private:
-  // The thread sanitizer does not know the fences by which the queue orders its places. It is told to leave
-  // them alone, and that what was written before a value went in is seen by who took it out.
+  // The thread sanitizer does not understand the fences that order the queue's slots. Makes it ignore them,
+  // and declares that writes before a push are visible after the pop.
   class Access {
    public:
     explicit Access([[maybe_unused]] void* queue) {

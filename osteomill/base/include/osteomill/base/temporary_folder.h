@@ -7,11 +7,11 @@
 
 namespace osteomill {
 
-/// A new folder, which is removed with all that is in it when this object is destroyed, or its program is
-/// asked to end (signal_cleanup.h).
+/// A new folder, removed with its content when this object is destroyed or a signal ends the program
+/// (signal_cleanup.h).
 class TemporaryFolder {
  public:
-  /// Throws InputError if none can be made.
+  /// Throws InputError if the folder cannot be created.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

@@ -6,35 +6,33 @@
 
 namespace osteomill {
 
-/// Thrown to end long work that is no longer wanted.
+/// Thrown to cancel long work.
 struct WorkStopped : std::exception {
-  const char* what() const noexcept override { return "stopped, since it is no longer wanted"; }
+  const char* what() const noexcept override { return "cancelled"; }
 };
 
-/// Reports to its listener, as long as it lives, how far the long work of this thread is: reading a scan,
-/// meshing it, preparing an algorithm. The haptic tick reports nothing. The work reports at least about every
-/// tenth of a second; to stop it, throw WorkStopped from the listener, which ends the work and frees its
-/// memory.
+/// Reports the progress of long work in this thread (reading a scan, meshing it, preparing an algorithm) to a
+/// listener, as long as this object exists. The haptic tick reports nothing. The work reports at least about
+/// every 0.1 s; to cancel it, throw WorkStopped from the listener, which ends the work and frees its memory.
 class WorkProgress {
  public:
-  /// Called often, in this thread, with the share done of the whole, from 0 to 1 and never falling.
+  /// Called often, in this thread, with the completed share of the whole, 0 to 1, never decreasing.
   using Listener = std::function<void(double share_done)>;
   explicit WorkProgress(Listener listener);
   ~WorkProgress();
   WorkProgress(const WorkProgress&) = delete;
   WorkProgress& operator=(const WorkProgress&) = delete;
 
-  /// Reports that this share (0 to 1) of the work is done. Called by the work; does nothing if no listener is
-  /// set.
+  /// Reports the completed share (0 to 1) of the work. Called by the work; does nothing without a listener.
   static void done(double share);
-  /// Reports that this many of the work's parts are done.
+  /// Reports the number of completed parts.
   static void done(std::size_t parts, std::size_t of_parts) {
     done(of_parts > 0 ? static_cast<double>(parts) / static_cast<double>(of_parts) : 1);
   }
 
-  /// Marks one piece of a larger work: all that is done while it lives counts from the end of the piece
-  /// before it to `until`, a share of the larger work. When it is destroyed the piece counts as done, unless
-  /// an exception ended it.
+  /// One part of a larger task: progress reported while this object exists is mapped to the range from the
+  /// end of the previous part to `until`, a share of the larger task. Its destructor marks the part
+  /// completed, unless an exception ended it.
   class Part {
    public:
     explicit Part(double until);
@@ -48,12 +46,12 @@ class WorkProgress {
     int exceptions_;
   };
 
-  /// Returns a listener for a WorkProgress in another thread, on which this thread waits: it passes that
-  /// thread's progress on to this one's listener.
+  /// Returns a listener for a WorkProgress in another thread that this thread waits for; it forwards that
+  /// thread's progress to this thread's listener.
   static Listener of_this_thread();
 
  private:
-  // The piece of the whole that a thread works on, and how far the whole is.
+  // The range of the whole that the current part covers, and the progress of the whole.
   struct Work {
     Listener* listener = nullptr;
     double from = 0;
@@ -63,7 +61,7 @@ class WorkProgress {
   static thread_local Work work_;
 
   Listener listener_;
-  // The work around, which is listened to again once this is over.
+  // The enclosing work, restored by the destructor.
   Work outer_;
 };
 

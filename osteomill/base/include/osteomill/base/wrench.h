@@ -7,8 +7,7 @@
 
 namespace osteomill {
 
-/// Force and torque as they act on the hand, in the axes of the world frame W; the torque is about the burr's
-/// centre.
+/// Force and torque on the hand, in the axes of the world frame W; the torque is about the burr's centre.
 struct Wrench {
   Vec3 force_N = Vec3::Zero();
   Vec3 torque_Nmm = Vec3::Zero();
@@ -21,13 +20,13 @@ struct Wrench {
   }
 };
 
-/// The greatest force and torque that a device may be asked for.
+/// The largest force and torque that may be sent to a device.
 struct WrenchLimits {
   double force_N = 20.0;
   double torque_Nmm = 500.0;
 };
 
-/// Why a wrench was changed on its way to the device.
+/// Reason why a wrench was changed on its way to the device.
 enum class WrenchFault : unsigned char {
   none = 0,
   force_clamped = 1,
@@ -35,45 +34,45 @@ enum class WrenchFault : unsigned char {
   force_and_torque_clamped = 3,
   /// The algorithm's wrench was not finite; zero was sent.
   not_finite = 4,
-  /// The device gave no finite pose; zero was sent.
+  /// The device's pose was not finite; zero was sent.
   pose_not_finite = 5,
-  /// The device moved further in a tick than a hand can; zero was sent.
+  /// The device moved further in one tick than a hand can; zero was sent.
   pose_jumped = 6,
-  /// The tick came too late; zero was sent.
+  /// The tick was late; zero was sent.
   tick_late = 7,
-  /// Something else than what was asked for was sent: the wrench is being faded in, was changing too fast, or
-  /// is damped.
+  /// The wrench was modified: faded in, limited in its rate of change, or damped.
   rate_limited = 8,
-  /// Zero was sent, since nothing that is sent reaches the hand (Device::is_driven), or since the tool was in
-  /// bone when it began to and has not left it yet.
+  /// Zero was sent, because nothing that is sent reaches the hand (Device::is_driven), or because the tool
+  /// was inside bone when driving began and has not left it yet.
   held_back = 9,
 };
 
-/// Returns the fault in words: "none", "force clamped", "pose not finite". Recordings name their codes so.
+/// Returns the fault's name: "none", "force clamped", "pose not finite". Recordings store it with their
+/// codes.
 std::string_view name_of(WrenchFault fault) noexcept;
 
-/// A wrench that may be sent, and why it is not the one that was asked for.
+/// A wrench that may be sent, and why it differs from the requested one.
 struct SafeWrench {
   Wrench wrench;
   WrenchFault fault = WrenchFault::none;
 };
 
-/// Returns the wrench that may be sent: force and torque shortened to the limits without turning them, or
-/// zero if any component is not finite. Safe in the haptic tick.
+/// Returns the wrench that may be sent: force and torque each scaled down to its limit, or zero if any
+/// component is not finite. Safe in the haptic tick.
 SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) noexcept;
 
-/// The limits to how fast the vectors of force and torque may change (`approach`); no limit unless set.
+/// Limits on the rate of change of force and torque (`approach`); unlimited by default.
 struct WrenchRates {
   static constexpr double kAny = std::numeric_limits<double>::infinity();
   double force_N_s = kAny;
   double torque_Nmm_s = kAny;
 };
 
-/// The rates for a person's hand, with which 20 N and 500 N mm are gone within 5 ms.
+/// Rates for a person's hand; 20 N and 500 N mm fall to zero within 5 ms.
 inline constexpr WrenchRates kHandWrenchRates{4000, 1e5};
 
-/// Returns `to`, or the wrench as far from `from` towards it as the rates allow in `dt_s`. Safe in the haptic
-/// tick.
+/// Returns `to`, or the wrench between `from` and `to` that the rates allow to reach in `dt_s`. Safe in the
+/// haptic tick.
 Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s) noexcept;
 
 /// Returns whether force and torque are exactly zero.
