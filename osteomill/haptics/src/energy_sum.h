@@ -8,13 +8,13 @@
 
 namespace osteomill {
 
-/// A move of the tool (delta in mm, then omega in rad) and what is dual to it (N, N mm), both in T's axes
-/// about the burr's centre: x(t) = x + R t delta, R(t) = R exp(t omega), t from 0 to 1.
+/// A motion of the tool (delta in mm, then omega in rad), or its dual (N, N mm), both in T's axes about the
+/// burr's centre: x(t) = x + R t delta, R(t) = R exp(t omega), t from 0 to 1.
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// The energy of some points and its derivatives by a move of the tool, at t = 0. For points that push
-/// without an energy, only `gradient` (their push) and `convex` are set. Safe in the haptic tick.
+/// Energy of a set of points and its derivatives with respect to tool motion, at t = 0. For contacts without
+/// an energy, only `gradient` (their push) and `convex` are set. Safe in the haptic tick.
 struct EnergySum {
   double energy_Nmm = 0;
   Vector6 gradient = Vector6::Zero();

@@ -5,10 +5,10 @@
 
 namespace osteomill {
 
-/// These functions append a line to `warnings` for each poor setting of the paper's algorithms. The settings
-/// keep ranges in which all numbers are finite, because poor ones may be wanted for a comparison.
+/// These functions warn of poor settings of the paper's algorithms. The settings' ranges only keep numbers
+/// finite, because poor values may be wanted for a comparison.
 
-/// Appends a line if the spring is so soft that a hand reaches no force, or so stiff that it cannot be held.
+/// Appends a line if the spring is too soft for a hand to reach a force, or too stiff to be held.
 void add_stiffness_warning(std::vector<std::string>& warnings, const std::string& setting, double N_per_mm);
 /// Appends a line if a tick may read enough densities (at most `reads`) to take over a millisecond.
 void add_reads_warning(std::vector<std::string>& warnings, const std::string& settings, int reads);

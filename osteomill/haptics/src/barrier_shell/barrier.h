@@ -4,15 +4,15 @@
 
 namespace osteomill::barrier_shell {
 
-/// The energy of bone near a core, per area of bone surface. With w = `width_mm`, p0 = `pressure_N_per_mm2`
-/// and x = 1 - d / w it is psi(d) = (w p0 / 3) x^3 / (1 - x) for distances d < w, else zero. Soft at first
-/// touch and infinite at the core, twice continuously differentiable, without a logarithm. Safe in the tick.
+/// Energy of bone near a core, per area of bone surface. With w = `width_mm`, p0 = `pressure_N_per_mm2` and x
+/// = 1 - d / w it is psi(d) = (w p0 / 3) x^3 / (1 - x) for distances d < w, else zero. Soft at first touch,
+/// infinite at the core, twice continuously differentiable, and without a logarithm. Safe in the tick.
 struct Barrier {
   double width_mm;
   double pressure_N_per_mm2;
 
-  /// Nearer than this share of the width the barrier no longer grows, so that its values stay finite; no
-  /// certified step comes so near.
+  /// Share of the width below which the barrier stops growing, so that its values stay finite; no certified
+  /// step comes this near.
   static constexpr double kNearestShare = 1e-3;
 
   /// psi (N/mm), p = -psi' (N/mm^2) and -p' = psi'' (N/mm^3).

@@ -14,7 +14,7 @@
 
 namespace osteomill::barrier_shell {
 
-/// Settings of the barrier-shell algorithm, as its description says them. There are no switches.
+/// Settings of barrier-shell; its description gives their meaning, ranges and defaults.
 struct Settings {
   double translational_stiffness_N_per_mm = 2;
   double torsional_stiffness_Nmm_per_rad = 1000;
@@ -29,17 +29,17 @@ struct Settings {
 
 struct NewtonStep;
 
-/// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. Two convex cores within
-/// the tool keep away from the isosurface's points by a barrier that grows without bound; each tick a few
-/// Newton steps lower the sum of barrier and virtual coupling, and each step is certified free of penetration
-/// before it is taken. Incremental potential contact (Li et al. 2020) for a tool on a volume that changes.
-/// Structures of the volume that have a guard add a barrier each (Guards).
+/// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. A barrier that grows
+/// without bound keeps two convex cores inside the tool away from the isosurface's points. Each tick takes a
+/// few Newton steps on the sum of barrier and virtual coupling energy, each certified free of penetration
+/// before it is taken. This is incremental potential contact (Li et al. 2020) for a tool on a changing
+/// volume. Structures of the volume that have a guard add a barrier each (Guards).
 ///
-/// `X_WT` of a step is the simulated tool, the wrench the coupling's; `contacts` counts the points that a
-/// core meets and the guards, `burr_force_W_N` is what the ball presses with.
+/// `X_WT` of a step is the simulated tool, the wrench the coupling's; `contacts` counts points in contact
+/// with a core, and guards; `burr_force_W_N` is the ball's force on the bone.
 class BarrierShell final : public HapticAlgorithm {
  public:
-  /// Settings within their ranges.
+  /// Takes settings within their ranges.
   explicit BarrierShell(const Settings& settings);
 
   void prepare(const AlgorithmInputs& inputs) override;
@@ -80,28 +80,28 @@ class BarrierShell final : public HapticAlgorithm {
   bool has_pose_ = false;
   Pose X_WT_;
   Pose X_WD_before_;
-  // The tool's way in the last tick, which the next gathering reaches for.
+  // The tool's move in the last tick, which determines the next leeway.
   MoveSize last_move_;
-  // The leeway that the last gathering gave, and what is left of it.
+  // Leeway of the last gathering, and the remainder.
   MoveSize leeway_;
   MoveSize leeway_left_;
-  // Began inside bone and has not yet been outside: moves with the device, and nothing is felt.
+  // Started inside bone and has not been outside since: follows the device without force.
   bool started_inside_bone_ = false;
-  // True once all bone around the tool was known; until then the tool stands still.
+  // True once all bone around the tool is known; until then the tool stands still.
   bool has_begun_ = false;
-  // Inset of the cores, mm, still to be removed by growing, for a tool that began in touch with bone.
+  // Remaining inset of the cores, mm, for a tool that started in contact with bone; shrinks as they grow.
   double core_inset_mm_ = 0;
-  // Progress of the blend, 0 to 1, from the wrench sent before to the computed one.
+  // Progress, 0 to 1, of the blend from the previously sent wrench to the computed one.
   double ramp_ = 1;
   Wrench ramp_from_;
   Wrench sent_;
-  // The stored energy at the end of the last tick, valid if has_energy_.
+  // Stored energy at the end of the last tick, valid if has_energy_.
   double energy_before_Nmm_ = 0;
   bool has_energy_ = false;
   Counts counts_;
 };
 
-/// Describes algorithm 4, not the paper's.
+/// Describes algorithm 4, which is not from the paper.
 AlgorithmDescription description();
 
 }  // namespace osteomill::barrier_shell

@@ -4,25 +4,25 @@
 
 namespace osteomill::barrier_shell {
 
-/// Returns how far within the tool's surface its cores lie: the rounding, but at most half of the least of
-/// its two radii and the shaft's length.
+/// Returns the inset of the cores from the tool's surface, mm: the rounding, but at most half of the burr's
+/// radius, the shaft's radius and the shaft's length.
 double inset_within(const MillingTool& tool, double rounding_mm);
 
-/// The two convex bodies within the tool that bone never reaches, in T: a ball about the burr's centre and a
-/// cylinder along the shaft from z = 0 to `cylinder_length_mm`. A burr of another convex shape would be
+/// The two convex bodies inside the tool that bone never reaches, in T: a ball about the burr's centre and a
+/// cylinder along the shaft from z = 0 to `cylinder_length_mm`. A burr of another convex shape would need
 /// another core.
 struct Cores {
   double ball_radius_mm;
   double cylinder_radius_mm;
   double cylinder_length_mm;
 
-  /// Returns the cores `inset_within` the tool's surface; `smaller_mm` further within if a tool that began in
-  /// touch with bone has not yet grown to its size (at least a hair of each core stays).
+  /// Returns the cores, inset by `inset_within`, and by `smaller_mm` more while a tool that started in
+  /// contact with bone has not grown to full size (a minimal core always remains).
   static Cores within(const MillingTool& tool, double rounding_mm, double smaller_mm = 0);
 };
 
-/// Distance of a point of bone to a core (negative inside), its gradient (the unit direction out of the core)
-/// and its second derivative, all in T and by the point's place.
+/// Signed distance of a bone point to a core (negative inside), its gradient (the unit direction out of the
+/// core) and second derivative with respect to the point's position, all in T.
 struct CoreDistance {
   double distance_mm;
   Vec3 outward_T;

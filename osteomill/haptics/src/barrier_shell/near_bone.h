@@ -9,53 +9,54 @@
 
 namespace osteomill::barrier_shell {
 
-/// The size of a move: how far, and by which angle. The leeway of gathered points is the greatest move for
-/// which they suffice.
+/// Size of a motion: distance and angle. The leeway of gathered points is the largest motion for which they
+/// are complete.
 struct MoveSize {
   double move_mm = 0;
   double turn_rad = 0;
 };
 
-/// The bone near the tool's parts as measured from one pose.
+/// Bone near the tool's parts, measured at one pose.
 struct MeasuredBone {
-  /// Makes room for as many points at each part as NearBone has.
+  /// Allocates for as many points per part as NearBone.
   explicit MeasuredBone(std::size_t capacity = 0) : ball(capacity), cylinder(capacity) {}
 
   MeasuredPoints ball;
   MeasuredPoints cylinder;
 
-  /// Returns the greatest share of any point's distance that a move from that pose by a barrier may use up.
+  /// Returns the largest share of any point's distance that a move from that pose uses up; `barrier` gives
+  /// the smallest distance that counts.
   double max_use(const Vector6& move_T, const Barrier& barrier) const noexcept;
 };
 
-/// The bone near a tool's ball and cylinder: gathered once and then good for every pose within its leeway.
-/// Safe in the haptic tick.
+/// Bone near a tool's ball and cylinder: gathered once, then valid for every pose within its leeway. Safe in
+/// the haptic tick.
 class NearBone {
  public:
-  /// Makes room for `capacity` points at each part. The ball meets the bricks' fine points; the cylinder
-  /// meets the coarse ones, or the fine ones if `fine_at_cylinder`.
+  /// Allocates for `capacity` points per part. The ball uses the bricks' fine points; the cylinder uses the
+  /// coarse ones, or the fine ones if `fine_at_cylinder`.
   explicit NearBone(std::size_t capacity = 0, bool fine_at_cylinder = false);
 
   /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the leeway.
-  /// Makes bricks, as many as a tick may.
+  /// Builds missing bricks within the tick's budget.
   void gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
               const MoveSize& leeway) noexcept;
-  /// Returns whether a point may have been left out, for want of room or because its brick is not made yet:
-  /// the tool must not move then.
+  /// Returns whether points may be missing, for lack of space or because a brick is not built yet; the tool
+  /// must not move then.
   bool is_incomplete() const noexcept { return brick_missing_ || ball_.overflowed || cylinder_.overflowed; }
   bool is_empty() const noexcept { return point_count() == 0; }
-  /// Returns how many points a sum goes through.
+  /// Returns the number of points in an evaluation.
   std::size_t point_count() const noexcept { return ball_.count + cylinder_.count; }
 
-  /// Measures the points from a pose within the leeway of the last gathering.
+  /// Measures the points at a pose within the leeway of the last gathering.
   void measure(const Cores& cores, const Barrier& barrier, const Pose& X_WT,
                MeasuredBone& measured) const noexcept;
-  /// Lists in `bricks` those that support the tool, with points that were measured nearer than `within_mm` to
-  /// a part since the last gathering, and about the load that each bears.
+  /// Lists in `bricks` those that support the tool: with points measured since the last gathering at less
+  /// than `within_mm` from a part, and the approximate load on each.
   void list_supporting(const MeasuredBone& measured, double within_mm, BoneBricks& bricks) const noexcept;
 
  private:
-  // A brick's slot, and where its points begin.
+  // A brick's slot, and the index of its first point at each part.
   struct GatheredBrick {
     std::uint32_t slot;
     std::size_t at_ball;
@@ -63,7 +64,7 @@ class NearBone {
   };
 
   bool fine_at_cylinder_;
-  // The bricks gathered: the first brick_count_ entries.
+  // Gathered bricks: the first brick_count_ entries.
   std::vector<GatheredBrick> bricks_;
   std::size_t brick_count_ = 0;
   bool brick_missing_ = false;
@@ -72,8 +73,8 @@ class NearBone {
   NearPoints cylinder_;
 };
 
-/// Searches for bone within `reach_mm` of the tool at `X_WT` or anywhere within the leeway. Returns true only
-/// if there is none; may return false in free space. Classifies octree nodes but builds no bricks.
+/// Returns true only if there is no bone within `reach_mm` of the tool at `X_WT` or anywhere within the
+/// leeway; may return false in free space. Classifies octree nodes but builds no bricks.
 bool check_clearance(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
                      const MoveSize& leeway) noexcept;
 

@@ -10,27 +10,27 @@
 
 namespace osteomill::barrier_shell {
 
-/// The region in which points are gathered: within `near_mm` of a core or, at the cylinder, within `near_mm`
-/// + `per_lever` times their distance from the burr's centre.
+/// Region in which points are gathered: within `near_mm` of the ball, or within `near_mm` + `per_lever` times
+/// the point's distance from the burr's centre of the cylinder.
 struct GatherRegion {
   Cores cores;
   double near_mm = 0;
   double per_lever = 0;
 };
 
-/// Appends the points of a brick that lie in the part's region; `frame` is the brick's, seen from the
-/// tool. The first call chooses the widest vector instructions that the processor has; they give the same
-/// bits as the narrowest. That holds for all functions below too. Safe in the haptic tick.
+/// Appends the points of a brick that lie in the part's region; `frame` maps the brick's frame to T. The
+/// first call selects the widest SIMD target of the processor; all targets give the same bits. That applies
+/// to all functions below too. Safe in the haptic tick.
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
                       const GatherRegion& region, NearPoints& near) noexcept;
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
                           const GatherRegion& region, NearPoints& near) noexcept;
 
-/// Names the sums over points on the ball. With n the direction out of it, p the push, q = p / r and
-/// m = psi'' + q: energy, q, p n and m n n^T.
+/// Sums over points on the ball. With n the outward direction, p the push, q = p / r and m = psi'' + q:
+/// energy, q, p n and m n n^T.
 enum class BallSum { energy, q, px, py, pz, mxx, mxy, mxz, myy, myz, mzz, count };
-/// Names the sums over points on the cylinder's side. With n = (u, v, 0), p the push, q = p / rho and
-/// m = psi'' + q: energy, and q, p n, m n n^T and p rho n n^T times powers of z as named.
+/// Sums over points on the cylinder's side. With n = (u, v, 0), p the push, q = p / rho and m = psi'' + q:
+/// energy, and q, p n, m n n^T and p rho n n^T, times powers of z as named.
 enum class SideSum {
   energy,
   q,
@@ -55,7 +55,7 @@ enum class SideSum {
   count
 };
 
-/// Sums over points in `NearPoints::kLanes` lanes each, named by BallSum or SideSum.
+/// Sums over points in `NearPoints::kLanes` lanes each, indexed by BallSum or SideSum.
 template <typename Name>
 struct Lanes {
   static constexpr std::size_t kSums = static_cast<std::size_t>(Name::count);
@@ -74,21 +74,21 @@ struct Lanes {
   }
 };
 
-/// Sums over points and measures each, as measure_ball and measure_cylinder do. Points at the cylinder's ends
-/// are listed in `measured.at_end` and left out of the sums.
+/// Sum over points and measure each, for measure_ball and measure_cylinder. Points at the cylinder's ends are
+/// listed in `measured.at_end` and excluded from the sums.
 void sum_ball(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
               Lanes<BallSum>& lanes, MeasuredPoints& measured) noexcept;
 void sum_side(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
               Lanes<SideSum>& lanes, MeasuredPoints& measured) noexcept;
 
-/// Returns the greatest `distance_used / distance` of a move; at least 0. A distance below `min_distance_mm`
-/// counts as that.
+/// Return the largest `distance_used / distance` of a move; at least 0. Distances are clamped to at least
+/// `min_distance_mm`.
 double max_use_by_ball(const MeasuredPoints& measured, const Vector6& move_T,
                        double min_distance_mm) noexcept;
 double max_use_by_cylinder(const MeasuredPoints& measured, const Vector6& move_T,
                            double min_distance_mm) noexcept;
 
-/// Returns the sets of vector instructions that this was compiled for, as bits of hwy/targets.h.
+/// Returns the SIMD targets for which this was compiled, as bits of hwy/targets.h.
 std::int64_t near_kernel_targets();
 
 }  // namespace osteomill::barrier_shell

@@ -13,28 +13,28 @@
 
 namespace osteomill {
 
-/// The bone's surface as points in bricks under an octree. Bricks are built when the tool comes near and
-/// evicted when memory runs short, and so are the octree's nodes: neither time nor memory grows with the
-/// scan. Milling takes densities away only, so a brick that has not been brought up to date shows more bone
-/// than there is. Building allocates; all else is safe in the haptic tick.
+/// The bone's surface as points in bricks under an octree. Bricks and octree nodes are built when the tool
+/// comes near and evicted when memory runs short, so neither time nor memory grows with the scan. Milling
+/// only lowers densities, so a brick that is not up to date shows more bone than there is. Building
+/// allocates; all else is safe in the haptic tick.
 class BoneBricks {
  public:
-  /// For a burr of a millimetre, points nearer to one another say nothing more.
+  /// Point spacing, mm. For a burr of a millimetre, denser points add no information.
   static constexpr double kSpacing_mm = 0.13;
 
   BoneBricks() = default;
-  /// `volume` outlives it. Fine points are at most `spacing_mm` apart, coarse ones twice that where the bone
-  /// is flat. `tick_s` is the nominal length of a tick.
+  /// `volume` must outlive this object. Fine points are at most `spacing_mm` apart, coarse ones twice that on
+  /// flat bone. `tick_s` is the nominal length of a tick.
   BoneBricks(const Volume& volume, double spacing_mm, double tick_s = 1e-3);
 
   const SurfaceLattice& lattice() const { return lattice_; }
   const BrickPoints& fine() const { return store_.fine(); }
   const BrickPoints& coarse() const { return store_.coarse(); }
 
-  /// Goes down the octree into the nodes that `overlap` lets through (BrickTree::visit), builds each missing
-  /// brick that it reaches, as far as memory and this tick's budget allow, and calls `use(brick, slot)`
-  /// for each brick with points, in a fixed order. The brick's points are those of `slot` in `fine` and
-  /// `coarse`. Returns whether no brick is missing.
+  /// Descends the octree into the nodes selected by `overlap` (BrickTree::visit), builds each missing brick
+  /// that it reaches, within memory and this tick's budget, and calls `use(brick, slot)` for each brick with
+  /// points, in a fixed order. The brick's points are those of `slot` in `fine` and `coarse`. Returns false
+  /// if a brick is still missing.
   template <typename Overlap, typename Use>
   bool build_and_visit(const Overlap& overlap, const Use& use) {
     bool all = true;
@@ -49,8 +49,8 @@ class BoneBricks {
     });
     return all;
   }
-  /// Classifies unknown nodes that `build_and_visit` would reach, as far as this tick's budget allows, until
-  /// it finds one that may hold points. Returns whether it found one.
+  /// Classifies unknown nodes that `build_and_visit` would reach, within this tick's budget, until one may
+  /// contain points. Returns whether it found one.
   template <typename Overlap>
   bool search_for_points(const Overlap& overlap) {
     bool found = false;
@@ -66,29 +66,29 @@ class BoneBricks {
     return found;
   }
 
-  /// About the number of points that a tick updates in bricks on which the tool does not rest.
+  /// Approximate number of points updated per tick in bricks that do not support the tool.
   static constexpr int kOtherPointsPerTick = 100;
-  /// Follows densities that fell in `voxels`: updates points. Bricks that the surface enters are built at
-  /// once, or the next time the tool meets them. Bricks on which the tool rests take turns (UpdateQueue). Of
-  /// all other bricks about `others` points are updated a tick; building bricks and skipping unchanged ones
-  /// count as points too.
+  /// Updates points after densities fell in `voxels`. Bricks that the surface enters are built at once, or
+  /// when the tool next comes near. Bricks that support the tool take turns (UpdateQueue). In all other
+  /// bricks about `others` points are updated per tick; building bricks and skipping unchanged ones are
+  /// charged as points too.
   void refresh(const VoxelBox& voxels, int others = kOtherPointsPerTick) noexcept;
-  /// List the slots of the bricks on which the tool rests, and with which load, in any unit. The caller must
-  /// refresh the list after every step.
+  /// List the slots of the bricks that support the tool, with their load in any unit. The caller must refresh
+  /// the list after every step.
   void clear_supporting() { queue_.clear_supporting(); }
   void add_supporting(std::uint32_t slot, float load) { queue_.add_supporting(slot, load); }
   bool is_up_to_date() const { return queue_.is_empty(); }
-  /// Returns how many bricks wait for their update, including those on which the tool rests.
+  /// Returns the number of bricks that await an update, including supporting ones.
   std::size_t pending_count() const noexcept { return queue_.size(); }
-  /// Evicts bricks and nodes that are not near the tool, if memory runs short.
+  /// Evicts bricks and nodes far from the tool if memory runs short.
   void evict_far_bricks(const MillingTool& tool, const Pose& X_WT) noexcept;
-  /// Begins a tick: evicts bricks if memory runs short, and updates bricks that still wait if no densities
-  /// fell since the tick before. From the first tick on, a tick builds no more bricks than it has time for.
+  /// Begins a tick: evicts bricks if memory runs short, and updates pending bricks if no densities fell since
+  /// the last tick. From the first call on, each tick builds bricks only within its budget.
   void begin_tick(const MillingTool& tool, const Pose& X_WT) noexcept {
     if (queue_.begin_tick()) refresh({});
     evict_far_bricks(tool, X_WT);
   }
-  /// Returns how many points were dropped because the pool was full when a brick grew.
+  /// Returns the number of points dropped because the pool was full when a brick grew.
   std::uint64_t dropped() const { return fine().dropped() + coarse().dropped(); }
 
  private:

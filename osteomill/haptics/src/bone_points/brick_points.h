@@ -10,8 +10,8 @@
 
 namespace osteomill {
 
-/// A point of the shell: where it lies in its brick's frame (mm) and the area of surface that it stands for
-/// (mm^2), and the unit normal out of that surface in the grid's axes (zero if it is not known).
+/// A point of the shell: its position in its brick's frame (mm), the surface area that it represents (mm^2),
+/// and the outward unit normal in the grid's axes (zero if unknown).
 struct ShellPoint {
   float x_mm;
   float y_mm;
@@ -30,8 +30,8 @@ struct ShellPoint {
   friend bool operator==(const ShellPoint&, const ShellPoint&) = default;
 };
 
-/// Points of one brick, up to 32 at a time, each coordinate in a row of its own. Slots without a point lie
-/// far away and have no area, so that all 32 may be computed alike.
+/// Up to 32 points of one brick, as a structure of arrays. Empty slots hold a distant point without area, so
+/// that all 32 can be processed alike.
 struct PointChunk {
   static constexpr std::size_t kSlots = 32;
   static constexpr float kFarAway_mm = 1e6f;
@@ -40,7 +40,7 @@ struct PointChunk {
   alignas(64) std::array<float, kSlots> z_mm;
   alignas(64) std::array<float, kSlots> area_mm2;
 
-  /// Returns a point without its normal, which is not stored.
+  /// Returns a point; its normal is not stored.
   ShellPoint point(std::size_t slot) const { return {x_mm[slot], y_mm[slot], z_mm[slot], area_mm2[slot]}; }
   void clear(std::size_t slot) {
     x_mm[slot] = y_mm[slot] = z_mm[slot] = kFarAway_mm;
@@ -48,10 +48,10 @@ struct PointChunk {
   }
 };
 
-/// Points of a brick before they are stored, each coordinate in a row of its own, with room for `most` and
-/// for whole vectors behind the last.
+/// Points of a brick before they are stored, as a structure of arrays with capacity for `most` points and
+/// padding for whole SIMD vectors.
 struct PointRows {
-  /// No room.
+  /// Capacity 0.
   PointRows() = default;
   explicit PointRows(std::size_t most);
 
@@ -73,13 +73,13 @@ struct PointRows {
   }
 };
 
-/// The points of every brick, in chunks out of one pool that is allocated once. Reading and changing are safe
-/// in the haptic tick; one thread writes. A pool that has run out drops points and counts them.
+/// The points of all bricks, in chunks from one preallocated pool. Reading and writing are safe in the haptic
+/// tick, for one writing thread. An exhausted pool drops points and counts them.
 class BrickPoints {
  public:
   static constexpr std::uint32_t kNoChunk = std::numeric_limits<std::uint32_t>::max();
 
-  /// A sphere about the points of a brick, in the brick's frame.
+  /// Bounding sphere of a brick's points, in the brick's frame.
   struct Bound {
     std::array<float, 3> centre_mm{0, 0, 0};
     float radius_mm = 0;
@@ -102,14 +102,14 @@ class BrickPoints {
   const PointChunk& chunk(std::uint32_t index) const { return chunks_[index]; }
   std::uint32_t next_chunk(std::uint32_t index) const { return next_[index]; }
   std::size_t free_chunks() const { return free_chunks_; }
-  /// Returns the number of points of all bricks.
+  /// Returns the total number of points.
   std::size_t total() const { return total_; }
-  /// Points that found no room since the start.
+  /// Returns the number of points dropped since the start.
   std::uint64_t dropped() const { return dropped_; }
 
-  /// Puts `points` in the place of the brick's points; how many there was room for.
+  /// Replaces the brick's points. Returns how many were stored.
   std::uint32_t replace(std::size_t brick, const PointRows& points);
-  /// Calls `f(point)` for each of the brick's points, in their order.
+  /// Calls `f(point)` for each of the brick's points, in order.
   template <typename F>
   void for_each_of(std::size_t brick, F&& f) const {
     std::uint32_t left = bricks_[brick].count;

@@ -9,33 +9,33 @@
 
 namespace osteomill {
 
-/// The points of bricks, fine and coarse, in a fixed number of slots. A value: copies share nothing. Building
+/// The fine and coarse points of bricks, in a fixed number of slots. Copies are independent. Building
 /// allocates; all else is safe in the haptic tick.
 class BrickStore {
  public:
   static constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
 
   BrickStore() = default;
-  /// Has room for this number of bricks, and of chunks of their fine and coarse points.
+  /// Allocates for this number of bricks, and of chunks of their fine and coarse points.
   BrickStore(std::size_t slots, std::size_t fine_chunks, std::size_t coarse_chunks);
 
   const BrickPoints& fine() const { return fine_; }
   const BrickPoints& coarse() const { return coarse_; }
-  /// The brick whose points a slot holds.
+  /// Returns the brick stored in a slot.
   const VoxelIndex& brick(std::uint32_t slot) const { return slots_[slot].brick; }
   bool is_used(std::uint32_t slot) const { return fine_.brick(slot).count != 0; }
-  /// Returns whether densities that its points are made from have fallen since they were made.
+  /// Returns whether densities that its points depend on have fallen since it was built.
   bool is_stale(const SurfaceLattice& lattice, std::uint32_t slot) const {
     return slots_[slot].changes != lattice.changes_of(slots_[slot].brick);
   }
   /// Returns whether one more brick fits, however many points it has.
   bool has_free_space() const;
 
-  /// Builds the points of a brick that has `slot`, or kNoSlot if it has none yet; it then takes one, for
-  /// which there must be space, and gives it back if it has no points. Returns the brick's occupancy.
+  /// Builds the points of a brick that has `slot`, or kNoSlot if it has none yet; it then takes a free one,
+  /// which must exist. Frees the slot if the brick has no points. Returns the brick's occupancy.
   SurfaceLattice::Occupancy build(const SurfaceLattice& lattice, const VoxelIndex& brick,
                                   std::uint32_t& slot);
-  /// Evicts bricks that are not `kept(brick)` if memory runs short, slot by slot in turn, and calls
+  /// While memory runs short, evicts bricks that are not `kept(brick)`, slot by slot in turn, and calls
   /// `evicted(brick)` for each.
   template <typename Kept, typename Evicted>
   void evict_far_bricks(const Kept& kept, const Evicted& evicted) {
@@ -49,8 +49,7 @@ class BrickStore {
   }
 
  private:
-  // Holds the brick, the change counter of the densities from which its points were built, and the rows
-  // without bone.
+  // The brick, the change counter of its densities when it was built, and its rows without bone.
   struct Slot {
     VoxelIndex brick;
     std::uint32_t changes = 0;
@@ -65,7 +64,7 @@ class BrickStore {
   std::vector<std::uint32_t> free_;
   std::size_t free_count_ = 0;
   std::size_t next_to_evict_ = 0;
-  // The surface of the brick that is being made.
+  // Surface of the brick being built.
   SurfaceLattice::BrickSurface surface_;
 };
 

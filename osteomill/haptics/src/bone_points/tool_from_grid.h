@@ -4,13 +4,13 @@
 
 namespace osteomill {
 
-/// The grid's frame G of points of bone, seen from the tool: a point of G lies at `offset_mm + turn * p_G` in
-/// T. The turn mirrors if the grid is left-handed.
+/// Transform from the frame G of a grid of bone points to T: a point of G is `offset_mm + turn * p_G` in T.
+/// `turn` includes a reflection if the grid is left-handed.
 struct ToolFromGrid {
   Mat3 turn;
   Vec3 offset_mm;
 
-  /// Takes any type that says where G lies in W: points `origin_W() + direction() * p_G`.
+  /// Takes any type that gives the pose of G in W: points are at `origin_W() + direction() * p_G`.
   template <typename Points>
   ToolFromGrid(const Points& points, const Pose& X_WT) {
     const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();

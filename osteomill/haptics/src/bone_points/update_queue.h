@@ -13,20 +13,21 @@
 
 namespace osteomill {
 
-/// Schedules the update of bricks after densities fell: which bricks wait, and on which of them the tool
-/// rests. Bounds the work of a tick, counted in points, in proportion to its length, so that a faster loop
-/// does the same work in a second. A value without pointers; all of it is safe in the haptic tick.
+/// Schedules the update of bricks after densities fell, separately for bricks that support the tool. Bounds
+/// the work per tick, counted in points, in proportion to the tick's length, so that a faster loop does the
+/// same work per second. Holds no pointers; all of it is safe in the haptic tick.
 class UpdateQueue {
  public:
-  /// Share of the load from which a supporting brick is updated at every call. In turns of two calls such
-  /// bricks let the tool sink unevenly, a buzz at half the haptic rate of up to 0.04 N mm (tooth, 3 N); with
-  /// 1/50 0.008 N mm are left, with 1/100 0.005, as if all were updated. No more than 1/share bricks have it.
+  /// Share of the load from which a supporting brick is updated at every call. If such bricks took turns over
+  /// two calls, the tool would sink unevenly: a buzz at half the haptic rate of up to 0.04 N mm (tooth, 3 N).
+  /// With 1/50, 0.008 N mm remain; with 1/100, 0.005, as if all bricks were updated. At most 1/share bricks
+  /// reach it.
   static constexpr float kBearingShare = 0.01f;
-  /// About the number of points that a tick of 1 ms would update in the bricks on which the tool rests if all
-  /// took turns. (Tried: updating such a brick only once its surface has sunk by 2 um, judged by bone lost
-  /// over area. It took half the time but doubled the steps of torque, 0.28 N mm for 0.14; tooth, 3 N.)
+  /// Approximate number of points that a 1 ms tick updates in supporting bricks that take turns. (Tried:
+  /// updating a brick only once its surface has sunk by 2 um, judged by bone lost per area. It halved the
+  /// time but doubled the torque steps, from 0.14 to 0.28 N mm; tooth, 3 N.)
   static constexpr int kSupportingPointsPerMs = 1500;
-  /// About the number of points that a tick of 1 ms builds in bricks that the tool meets for the first time.
+  /// Approximate number of points that a 1 ms tick builds in bricks that the tool reaches for the first time.
   static constexpr int kBuiltPointsPerMs = 2500;
   static constexpr std::size_t kMaxSupporting = 1024;
 
@@ -34,16 +35,16 @@ class UpdateQueue {
       : supporting_points_(points_in(tick_s, kSupportingPointsPerMs)),
         built_points_(points_in(tick_s, kBuiltPointsPerMs)) {}
 
-  /// Adds bricks. They wait in one box, and each brick of a box has its turn, one after the other.
+  /// Adds bricks. Merges all pending bricks into one box, and visits each brick of a box once.
   void add(const VoxelBox& bricks);
-  /// Takes out the next brick, if any waits.
+  /// Removes and returns the next pending brick, if any.
   std::optional<VoxelIndex> next();
   bool is_empty() const { return walked_.empty() && waiting_.empty(); }
-  /// Returns how many bricks wait, including those on which the tool rests.
+  /// Returns the number of pending bricks, including supporting ones.
   std::size_t size() const;
 
-  /// Lists the slot of a brick on which the tool rests with a load, in any unit, if there is room. If these
-  /// bricks waited with the others, the tool would stand still and drop once the last had its turn.
+  /// Adds the slot of a brick that supports the tool, with its load in any unit, if there is space. If these
+  /// bricks waited with the others, the tool would stop and then drop when the last was updated.
   void add_supporting(std::uint32_t slot, float load) {
     if (supporting_count_ == kMaxSupporting) return;
     supporting_[supporting_count_++] = {slot, load};
@@ -53,11 +54,11 @@ class UpdateQueue {
     supporting_count_ = 0;
     load_ = 0;
   }
-  /// Calls `use(slot)` for the supporting bricks whose turn it is, a brick costing `cost_of(slot)` points.
-  /// Those that bear kBearingShare of the load have it at every call; if together these cost more than
-  /// a tick may (kSupportingPointsPerMs), as in fine voxels, those that bear the most. The others take turns,
-  /// over as many calls as all bricks would need to do that many points in each. Neighbours, whose slots
-  /// follow one another, have their turns in different calls.
+  /// Calls `use(slot)` for the supporting bricks that are due; a brick costs `cost_of(slot)` points. Bricks
+  /// that bear at least kBearingShare of the load are due at every call; if together they exceed the budget
+  /// of a tick (kSupportingPointsPerMs), as in fine voxels, only the most loaded ones are. The others take
+  /// turns, over as many calls as all bricks would need at that many points per call. Neighbours, whose slots
+  /// are consecutive, are due in different calls.
   template <typename CostOf, typename Use>
   void update_supporting_in_turns(const CostOf& cost_of, const Use& use) {
     const float least_load = bearing_load(cost_of);
@@ -74,8 +75,8 @@ class UpdateQueue {
     }
   }
 
-  /// Begins a tick with its budget of points to build; before the first tick there is no bound. Returns
-  /// whether bricks wait though none were added since the tick before.
+  /// Begins a tick and sets its budget of points to build; before the first tick it is unlimited. Returns
+  /// whether bricks are pending though none were added since the last tick.
   bool begin_tick() {
     build_budget_ = built_points_;
     return !std::exchange(added_, false) && !is_empty();
@@ -87,7 +88,7 @@ class UpdateQueue {
   static int points_in(double tick_s, int per_ms) {
     return std::max(1, static_cast<int>(std::lround(1e3 * tick_s * per_ms)));
   }
-  // Returns the least load with which a brick is updated at every call.
+  // Returns the smallest load at which a brick is updated at every call.
   template <typename CostOf>
   float bearing_load(const CostOf& cost_of) const {
     for (float share = kBearingShare; share < 1; share *= 2) {
@@ -106,7 +107,7 @@ class UpdateQueue {
   int supporting_points_;
   int built_points_;
   VoxelBox waiting_;
-  // The box whose bricks have their turns, and the next of them.
+  // The box being visited, and its next brick.
   VoxelBox walked_;
   VoxelIndex next_;
   bool added_ = false;

@@ -10,25 +10,25 @@
 
 namespace osteomill {
 
-/// The tool's signed distance and its gradient, precomputed on a regular grid over the tool's bounding box
-/// and a margin, and read by trilinear interpolation (Barbic and James 2008; "SPO" in Eriksson 2012, 6.1).
+/// Signed distance to the tool and its gradient, precomputed on a regular grid over the tool's bounding box
+/// plus a margin, read by trilinear interpolation (Barbic and James 2008; "SPO" in Eriksson 2012, 6.1).
 class SampledDistanceField {
  public:
-  /// Fills the grid from `tool_distance`; allocates 16 bytes a node. The grid reaches two nodes beyond the
-  /// tool's bounding box. Throws std::invalid_argument if an argument is out of range, or the grid would
-  /// have more than 16 million nodes.
+  /// Fills the grid from `tool_distance`; allocates 16 bytes per node. The grid extends two nodes beyond the
+  /// tool's bounding box. Throws std::invalid_argument if an argument is out of range, or the grid would have
+  /// more than 16 million nodes.
   SampledDistanceField(const MillingTool& tool, double spacing_mm);
 
-  /// A spacing that suits the (valid) tool: a 25th of its smaller radius, or more if that took over 2
-  /// million nodes.
+  /// Returns a suitable spacing for the (valid) tool: 1/25 of its smaller radius, or more if that would take
+  /// over 2 million nodes.
   static double suitable_spacing_mm(const MillingTool& tool);
 
-  /// The box in T on which the field is known.
+  /// Returns the box in T that the field covers.
   const ToolBox& box() const { return box_; }
 
-  /// Distance and unit outward direction at a point of T; nothing outside `box()`, which lies outside the
-  /// tool. The error of the distance is at most spacing^2 / (4 * radius) away from the tool's creases. Safe
-  /// in the haptic tick.
+  /// Returns distance and unit outward direction at a point of T; nothing outside `box()`, which is always
+  /// outside the tool. The distance error is at most spacing^2 / (4 * radius) away from the tool's creases.
+  /// Safe in the haptic tick.
   std::optional<ToolDistance> at(const Vec3& point_T) const noexcept;
 
  private:

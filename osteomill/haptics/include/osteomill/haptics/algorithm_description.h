@@ -12,13 +12,12 @@
 
 namespace osteomill {
 
-/// The values that the user gives to settings of the algorithms. A setting without one keeps the algorithm's
-/// default.
+/// Values that the user assigns to settings of the algorithms. All other settings keep their defaults.
 struct HapticSettings {
-  /// A value for one setting.
+  /// One assigned value.
   struct Named {
-    /// The algorithm whose setting of the name `setting` is meant. If empty, `setting` is an option
-    /// (SettingDescription::option), and every algorithm that has a setting with this option takes the value.
+    /// Name of the algorithm. If empty, `setting` is an option (SettingDescription::option), and the value
+    /// applies to every algorithm that has a setting with this option.
     std::string algorithm;
     std::string setting;
     double value;
@@ -27,75 +26,75 @@ struct HapticSettings {
   /// Values for options are applied first, then those for one algorithm, each in this order.
   std::vector<Named> named = {};
 
-  /// Sets an option for every algorithm that has it, in the place of an earlier value:
-  /// `set_option("stiffness", 2)`.
+  /// Sets an option for every algorithm that has it, replacing an earlier value: `set_option("stiffness",
+  /// 2)`.
   void set_option(const std::string& option, double value) {
     clear_option(option);
     named.push_back({"", option, value});
   }
-  /// Takes an option's value back, so that every algorithm has its default again.
+  /// Removes an option's value, so that every algorithm uses its default again.
   void clear_option(const std::string& option) {
     std::erase_if(named, [&](const Named& one) { return one.algorithm.empty() && one.setting == option; });
   }
 };
 
-/// The names and the colour by which people and files know an algorithm; a recording keeps them. Figures and
-/// file names are made from it, so the name holds only letters, digits, '-' and '_', and the label also
-/// spaces and any of ().,:+ (`is_usable`).
+/// Identifies an algorithm to people and in files; stored in recordings. Figures and file names are made from
+/// it, so the name may contain only letters, digits, '-' and '_', and the label also spaces and any of ().,:+
+/// (`is_usable`).
 struct AlgorithmId {
-  /// The name on the command line and in files: "point-shell". Two algorithms of one name are the same.
+  /// The name on the command line and in files: "point-shell". Algorithms with equal names are the same.
   std::string name;
-  /// The label in figures and tables: "3 point-shell". Algorithms are listed in the order of their labels.
+  /// The label in figures and tables: "3 point-shell". Algorithms are sorted by label.
   std::string label;
-  /// The colour of its curves, as HTML and gnuplot write it: "#c62828".
+  /// The colour of its curves, in HTML and gnuplot notation: "#c62828".
   std::string colour;
 
   friend bool operator==(const AlgorithmId& a, const AlgorithmId& b) { return a.name == b.name; }
   friend bool operator==(const AlgorithmId& a, std::string_view named) { return a.name == named; }
   friend bool operator<(const AlgorithmId& a, const AlgorithmId& b) { return a.label < b.label; }
 };
-/// Returns the algorithm's name, by which people choose it.
+/// Returns the algorithm's name.
 inline const std::string& name_of(const AlgorithmId& algorithm) {
   return algorithm.name;
 }
 
-/// Returns whether name, label and colour are such as recordings, figures and file names take.
+/// Returns whether name, label and colour are valid in recordings, figures and file names.
 bool is_usable(const AlgorithmId& algorithm);
-/// Returns whether a name holds letters, digits, '-' and '_' alone.
+/// Returns whether a name contains only letters, digits, '-' and '_'.
 bool is_plain_name(std::string_view name);
 
-/// Returns each algorithm once, in the order of their labels.
+/// Returns each algorithm once, sorted by label.
 std::vector<AlgorithmId> sorted_unique(std::vector<AlgorithmId> algorithms);
 
-/// A setting of an algorithm. Its name is that in `--set ALGORITHM.NAME=VALUE`, configuration files and
-/// recordings; every algorithm's setting of the same option is set by that option.
+/// A setting of an algorithm. Its name is used in `--set ALGORITHM.NAME=VALUE`, configuration files and
+/// recordings. An option sets every algorithm's setting with that option.
 struct SettingDescription : FieldDescription {
-  /// Its default; in the result of `setting_values`, the value in force.
+  /// Its default; in the result of `setting_values`, the effective value.
   double value = 0;
 };
 
-/// An algorithm as programs choose, set and show it. Each of the project's stands in its own folder
-/// (`algorithms.h` lists them); a program that links the library may make another and hand it to anything
-/// that takes one.
+/// An algorithm as programs select, configure and display it. The project's own are listed in `algorithms.h`,
+/// each in a folder of its own. A program that links the library may define another and pass it to any
+/// function that takes one.
 struct AlgorithmDescription {
   AlgorithmId id;
-  /// One line.
+  /// A one-line summary.
   std::string summary;
-  /// The setting by which its resolution is chosen, and what people call that; empty if there is none.
+  /// The setting that controls the resolution, and its display name; empty if there is none.
   std::string resolution_setting = {};
   std::string resolution_name = {};
-  /// Whether it holds the burr off structures that have a guard (WatchedStructure::guard_mm).
+  /// True if it keeps the burr off structures that have a guard (WatchedStructure::guard_mm).
   bool has_guards = false;
   std::vector<SettingDescription> settings = {};
-  /// Makes it with a value for each of `settings`, all within their ranges. Throws std::invalid_argument if
-  /// values do not go together.
+  /// Creates the algorithm from one value for each of `settings`, all within their ranges. Throws
+  /// std::invalid_argument if the values are inconsistent.
   std::function<std::unique_ptr<HapticAlgorithm>(std::span<const double> values)> make = {};
 };
 
-/// Returns the setting that an option of the command line sets; null if the algorithm has none.
+/// Returns the setting of a command-line option; null if the algorithm has none.
 const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option);
 
-/// Throws std::invalid_argument, naming algorithm and setting, if the value does not lie in its range.
+/// Throws std::invalid_argument, naming algorithm and setting, if the value is out of range.
 void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value);
 
 /// Returns every setting with the value that `make_algorithm` would use, in the order of the description.
@@ -103,7 +102,7 @@ void require_in_range(const AlgorithmId& algorithm, const SettingDescription& se
 std::vector<SettingDescription> setting_values(const AlgorithmDescription& algorithm,
                                                const HapticSettings& settings);
 
-/// Makes the algorithm with these settings, still to be prepared. Throws as `setting_values` does.
+/// Creates the algorithm with these settings, not yet prepared. Throws like `setting_values`.
 std::unique_ptr<HapticAlgorithm> make_algorithm(const AlgorithmDescription& algorithm,
                                                 const HapticSettings& settings);
 

@@ -13,7 +13,7 @@ struct MillingTool {
   friend bool operator==(const MillingTool&, const MillingTool&) = default;
 };
 
-/// Throws std::invalid_argument, naming the size, if a size is not positive and finite.
+/// Throws std::invalid_argument, naming the dimension, if one is not positive and finite.
 void require_valid(const MillingTool& tool);
 
 /// An axis-aligned box in T (bounding_box()).
@@ -21,19 +21,19 @@ struct ToolBox {
   Vec3 min_mm;
   Vec3 max_mm;
 };
-/// Returns the smallest box that holds the tool.
+/// Returns the smallest box that contains the tool.
 ToolBox bounding_box(const MillingTool& tool);
 
-/// The distance of a point to the tool's surface, negative inside, and the unit direction in which it grows
-/// fastest (out of the tool), both in T. On the axis, which has no such direction, it is some unit vector.
+/// Signed distance of a point to the tool's surface (negative inside) and its gradient, the unit direction
+/// out of the tool, both in T. On the axis, where the gradient is undefined, an arbitrary unit vector.
 struct ToolDistance {
   double distance_mm;
   Vec3 outward_T;
 };
 
 /// Returns the distance in closed form: the smaller of the distances to the burr's sphere and the shaft's
-/// cylinder, which is exact outside the tool, and inside it away from the place where the two meet. Safe in
-/// the haptic tick.
+/// cylinder. Exact outside the tool, and inside it except near the junction of the two. Safe in the haptic
+/// tick.
 ToolDistance tool_distance(const MillingTool& tool, const Vec3& point_T) noexcept;
 
 }  // namespace osteomill

@@ -9,9 +9,9 @@
 
 namespace osteomill {
 
-/// Completes a description with the fields of the algorithm's own struct of settings, whose defaults are the
-/// settings' defaults, and makes `Algorithm` from it. Refers to `fields`, which must outlive the description
-/// and all its copies (as fields_of does).
+/// Completes a description with the fields of the algorithm's settings struct, whose defaults become the
+/// settings' defaults, and with a function that creates `Algorithm`. Keeps a reference to `fields`, which
+/// must outlive the description and all its copies (as fields_of does).
 template <typename Algorithm, typename Settings>
 AlgorithmDescription with_settings(AlgorithmDescription description,
                                    const std::vector<Field<Settings>>& fields) {
@@ -24,7 +24,7 @@ AlgorithmDescription with_settings(AlgorithmDescription description,
   return description;
 }
 
-/// Describes the stiffness of a virtual coupling against translation, for every algorithm that has one.
+/// Describes the translational stiffness of a virtual coupling, for every algorithm that has one.
 inline FieldDescription coupling_stiffness(const NumberRange& range) {
   return {.name = "translational-stiffness",
           .unit = "N/mm",
@@ -33,7 +33,7 @@ inline FieldDescription coupling_stiffness(const NumberRange& range) {
           .option = "stiffness"};
 }
 
-/// Describes the stiffness of a virtual coupling against rotation.
+/// Describes the torsional stiffness of a virtual coupling.
 inline FieldDescription coupling_torsion(const NumberRange& range) {
   return {.name = "torsional-stiffness",
           .unit = "N mm/rad",

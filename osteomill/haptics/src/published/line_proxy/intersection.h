@@ -6,10 +6,11 @@
 #include "osteomill/base/pose.h"
 #include "osteomill/volume/volume.h"
 
-/// Finds where the intersection point of section 4.3 begins, and what it follows. Safe in the haptic tick.
+/// First position of the intersection point of section 4.3, and the point that it follows. Safe in the haptic
+/// tick.
 namespace osteomill::line_proxy {
 
-/// Into how many steps the walk divides the translation and the rotation (each at least 1).
+/// Numbers of steps for translation and rotation in the walk (each at least 1).
 struct WalkSteps {
   int translation;
   int rotation;
@@ -17,35 +18,35 @@ struct WalkSteps {
 
 /// The most active vertex at the first step n of the walk at which any vertex collides.
 struct WalkHit {
-  /// Its places at step n-1 and at step n, in W.
+  /// Its positions at step n-1 and step n, in W.
   Vec3 before_W;
   Vec3 at_W;
-  /// Eq. 1, the smallest of the active vertices: 0 to 1 if it was outside before; anything, also not
-  /// finite, if it was in bone already.
+  /// Eq. 1, the smallest of the active vertices: 0 to 1 if it was outside before; any value, even not finite,
+  /// if it was already in bone.
   double fraction;
 
   /// Eq. 2: the intersection point IP.
   Vec3 intersection_W() const { return before_W + fraction * (at_W - before_W); }
 };
 
-/// The translation/rotation method of section 4.3: from the pose of the tick before to that of this tick,
-/// first the whole translation, then the whole rotation (the shorter way round, about the tip), step by step
-/// until a vertex of the shaft collides. `vertices_T` are the shaft's; the tip's vertex has a proxy of its
-/// own and takes no part. Nothing if none collides on the way. Safe in the haptic tick.
+/// Performs the translation/rotation walk of section 4.3 from the previous tick's pose to the current one:
+/// first the whole translation, then the whole rotation (by the smaller angle, about the tip), step by step
+/// until a vertex of the shaft collides. `vertices_T` are the shaft's, without the tip's vertex, which has
+/// its own proxy. Returns nothing if none collides. Safe in the haptic tick.
 std::optional<WalkHit> walk_to_collision(const Volume& volume, std::span<const Vec3> vertices_T,
                                          const Pose& X_WT_before, const Pose& X_WT, const WalkSteps& steps);
 
-/// A point of the shaft's centreline and the density there.
+/// A point on the shaft's centreline and its density.
 struct ShaftProbe {
   Vec3 point_W;
   double density;
 };
 
-/// v_max of section 4.3: the densest point among the shaft's vertices (those of the tip left out) and among
-/// the same vertices moved along b, from the intersection point of the tick before to the burr's centre (at
-/// the proxy), in three further steps that together stay below the vertices' spacing. `vertices_T` is not
-/// empty. Among equally dense ones (bone is often saturated inside) the middle one of the first unbroken run
-/// along the shaft. Safe in the haptic tick.
+/// Returns v_max of section 4.3: the densest point among the shaft's vertices (without the tip's) and the
+/// same vertices shifted along b, from the previous intersection point to the burr's centre (at the proxy),
+/// in three further steps that together stay below the vertex spacing. `vertices_T` must not be empty. Among
+/// equally dense points (bone is often saturated inside) returns the middle of the first unbroken run along
+/// the shaft. Safe in the haptic tick.
 ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
                          const Vec3& intersection_before_W);
 

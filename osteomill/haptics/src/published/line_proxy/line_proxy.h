@@ -10,21 +10,21 @@
 
 namespace osteomill::line_proxy {
 
-/// Holds the settings of algorithm 1; line_proxy_description.cpp gives each its meaning, range and default.
+/// Settings of algorithm 1; line_proxy_description.cpp gives their meaning, ranges and defaults.
 struct Settings {
   int vertices = 51;
   double stiffness_N_per_mm = 5;
 };
 
-/// Renders algorithm 1 of Eriksson 2012 (section 4): the tool is its centreline, a row of vertices. If the
-/// tip's vertex is in bone, a point proxy stays on the surface and a spring pulls the hand to it. If the
-/// shaft, laid at that proxy, is in bone, an intersection point (IP) stays on the surface and turns the hand
-/// about the tip. Threads and real time: as HapticAlgorithm.
+/// Algorithm 1 of Eriksson 2012 (section 4): the tool is its centreline, a row of vertices. If the tip's
+/// vertex is in bone, a point proxy stays on the surface and a spring pulls the hand towards it. If the
+/// shaft, translated to that proxy, is in bone, an intersection point (IP) stays on the surface and rotates
+/// the hand about the tip. Threads and real time as in HapticAlgorithm.
 ///
 /// Chosen where the paper is silent:
-/// - normals are the sum of eight smoothed gradients (point_proxy.h);
-/// - tip and shaft remember their contacts separately, and the tip's vertex takes no part in the shaft's;
-/// - the walk starts from the previous pose laid at the proxy;
+/// - normals come from the sum of eight smoothed gradients (point_proxy.h);
+/// - tip and shaft keep their contacts separately, and the tip's vertex is excluded from the shaft's;
+/// - the walk starts from the previous pose, translated to the proxy;
 /// - there is no friction.
 class LineProxy final : public HapticAlgorithm {
  public:
@@ -40,11 +40,11 @@ class LineProxy final : public HapticAlgorithm {
   int sample_point_count() const override { return static_cast<int>(vertices_T_.size()); }
 
  private:
-  // The state that one tick leaves to the next.
+  // State carried from one tick to the next.
   struct ContactState {
     std::optional<Vec3> device_tip_W;
     std::optional<Vec3> tip_proxy_W;
-    // The centreline, laid at the tip's proxy if there is one.
+    // The centreline's pose, translated to the tip's proxy if there is one.
     std::optional<Pose> X_WL;
     std::optional<Vec3> intersection_W;
     Vec3 arm_W = Vec3::Zero();

@@ -13,31 +13,31 @@
 
 namespace osteomill::point_shell {
 
-/// Holds the settings of algorithm 3; point_shell_description.cpp gives each its meaning, range and default.
+/// Settings of algorithm 3; point_shell_description.cpp gives their meaning, ranges and defaults.
 struct Settings {
-  /// The scale of the voxels whose centres are points.
+  /// Width of the shell's voxels, whose centres are the points, in voxels of the scan.
   int scale = 3;
   double translational_stiffness_N_per_mm = 5;
   double torsional_stiffness_Nmm_per_rad = 2500;
   double damping_time_s = 0.001;
 };
 
-/// Returns kA in N/mm^3, newton a mm of depth and a mm^2 of surface: the smallest at which 20 N, the most
-/// that a device is sent by default, do not pull the burr through a plane.
+/// Returns kA, N per mm of depth and mm^2 of surface: 1.5 times the smallest value at which 20 N, the default
+/// force limit of a device, do not push the burr through a plane.
 double contact_stiffness_N_per_mm3(const MillingTool& tool);
 
-/// Renders algorithm 3 of Eriksson 2012 (section 6), modified Barbic and James 2008: the bone is a shell of
-/// points, the tool a signed distance field. Points inside the tool push it out, a virtual coupling pulls it
-/// to the device, and each step solves for the pose at which the two balance; the coupling's wrench is what
-/// the hand feels. Without contact the tool is at the device to the last bit and the wrench exactly zero.
+/// Algorithm 3 of Eriksson 2012 (section 6), modified Barbic and James 2008: the bone is a shell of points,
+/// the tool a signed distance field. Points inside the tool push it out, a virtual coupling pulls it to the
+/// device, and each step solves for the pose at which the two balance. The hand feels the coupling's wrench.
+/// Without contact the tool is exactly at the device and the wrench exactly zero.
 ///
-/// `X_WT` of a step is the simulated tool; `burr_force_W_N` the contact force of the points below the height
-/// at which the shaft comes out of the burr's sphere; `contacts` counts the points that touch.
+/// `X_WT` of a step is the simulated tool; `burr_force_W_N` is the contact force of the points below the
+/// height at which the shaft emerges from the burr's sphere; `contacts` counts the points in contact.
 ///
 /// Chosen where the paper is silent:
 /// - a point pushes along the outward normal of the tool's field;
-/// - kA follows from the rule of `contact_stiffness_N_per_mm3`;
-/// - each damper of the coupling is its spring times one time.
+/// - kA follows from `contact_stiffness_N_per_mm3`;
+/// - each damper of the coupling is its spring times one common time constant.
 class PointShell final : public HapticAlgorithm {
  public:
   /// Takes settings within their ranges.
@@ -57,7 +57,7 @@ class PointShell final : public HapticAlgorithm {
   std::optional<SampledDistanceField> tool_;
   VoxelShell shell_;
   double stiffness_N_per_mm3_ = 0;
-  // Nothing before the first step.
+  // Empty before the first step.
   std::optional<Pose> X_WT_;
   ToolMove stretch_before_;
 };

@@ -12,8 +12,8 @@
 
 namespace osteomill::point_shell {
 
-/// One bit a node of a grid: bone or not. Eight nodes of a row share a byte, and a layer of empty bytes lies
-/// all about, so that neighbours can be read without a look at the border. Safe in the haptic tick.
+/// One bit per node of a grid: set if it is bone. A byte holds eight nodes of a row. A border of empty bytes
+/// all round lets neighbours be read without bounds checks. Safe in the haptic tick.
 class BoneBits {
  public:
   BoneBits() = default;
@@ -25,7 +25,7 @@ class BoneBits {
   std::uint8_t byte(int byte, int j, int k) const { return bytes_[index(byte, j, k)]; }
   void set_byte(int byte, int j, int k, std::uint8_t bits) { bytes_[index(byte, j, k)] = bits; }
 
-  /// The nodes of that byte which are bone and have at least one of their 6 neighbours not bone.
+  /// Returns the bone nodes of that byte that have a 6-neighbour that is not bone.
   std::uint8_t surface_byte(int byte, int j, int k) const {
     const std::size_t here = index(byte, j, k);
     const std::size_t row = row_major(dims_, 0, 1, 0), slice = row_major(dims_, 0, 0, 1);
@@ -45,36 +45,36 @@ class BoneBits {
 };
 
 /// The milled object as a point shell ("MPO", Eriksson 2012, 6.1): the centres of the surface voxels (bone
-/// with one of its 6 neighbours not bone), each for the square of its size, in bricks of 8 x 8 x 8 under an
-/// octree: of a node of level n, 2^n bricks along each axis, only the box is known. Voxels, here nodes, are
-/// the scan's or, `scale` times as far apart, sampled again from it. Building allocates; `refresh` does not,
-/// and is safe in the haptic tick.
+/// with a 6-neighbour that is not bone), each representing the square of its size, in bricks of 8 x 8 x 8
+/// under an octree. Octree nodes of level n, 2^n bricks along each axis, are implicit: only their boxes are
+/// computed. Voxels, here called nodes, are the scan's or, `scale` times as far apart, resampled from it.
+/// Building allocates; `refresh` does not, and is safe in the haptic tick.
 class VoxelShell {
  public:
   static constexpr int kMaxScale = 32;
   static constexpr int kBrickNodes = 8;
 
   VoxelShell() = default;
-  /// `volume` outlives the shell; `scale` is 1 to `kMaxScale`.
+  /// `volume` must outlive the shell; `scale` is 1 to `kMaxScale`.
   VoxelShell(const Volume& volume, int scale);
 
-  /// Brings points up to date with densities that fell in `voxels`.
+  /// Updates points after densities fell in `voxels`.
   void refresh(const VoxelBox& voxels);
 
   const BrickPoints& points() const { return points_; }
-  /// An axis-aligned box of G that holds all points below a node of the octree: middle and half widths.
+  /// Axis-aligned bounding box, in G, of all points below an octree node: centre and half extents.
   struct NodeBox {
     Vec3 middle_G;
     Vec3 half_mm;
   };
-  /// Calls `visit(brick, origin_G)` for every brick with points of which neither its own box nor that of a
-  /// node above it `is_apart`: the brick's place in `points`, and the origin of its frame in the grid's frame
-  /// G (the grid's axes, mm, origin at node 0,0,0). The order is fixed. Safe in the haptic tick.
+  /// Calls `visit(brick, origin_G)` for every brick with points unless its own box or that of an ancestor
+  /// `is_apart`. Passes the brick's index in `points` and the origin of its frame in the grid's frame G (the
+  /// grid's axes, mm, origin at node 0,0,0). The order is fixed. Safe in the haptic tick.
   template <typename IsApart, typename Visit>
   void visit_bricks(const IsApart& is_apart, const Visit& visit) const {
     if (!masks_.empty()) visit_node(root_level_, {0, 0, 0}, is_apart, visit);
   }
-  /// Return where G lies in W: points `origin + direction * p_G`.
+  /// Return the pose of G in W: points are at `origin + direction * p_G`.
   const Vec3& origin_W() const { return geometry_.origin_mm; }
   const Mat3& direction() const { return geometry_.direction; }
 
@@ -88,7 +88,7 @@ class VoxelShell {
   }
   std::size_t brick_index(const VoxelIndex& b) const { return row_major(bricks_.dims(), b.i, b.j, b.k); }
 
-  // Byte j + 8 k, bit i: whether the node is on the surface.
+  // Byte j + 8 k, bit i is set if the node is on the surface.
   using SurfaceMask = std::array<std::uint8_t, kBrickNodes * kBrickNodes>;
 
   std::uint8_t bone_byte(int byte, int j, int k) const;
@@ -102,15 +102,15 @@ class VoxelShell {
   GridGeometry geometry_;
   float point_area_mm2_ = 0;
   Vec3 brick_side_mm_ = Vec3::Zero();
-  // The largest float that is not bone.
+  // Largest float that is not bone.
   float bone_above_ = 0;
   BoneBits bone_;
   VoxelBox bricks_;
-  // The level of the node that has all bricks below it.
+  // Level of the root, which covers all bricks.
   int root_level_ = 0;
   BrickPoints points_;
   std::vector<SurfaceMask> masks_;
-  // Room for one brick's points while it is rebuilt.
+  // Buffer for the points of a brick being rebuilt.
   PointRows found_{kBrickNodes * kBrickNodes * kBrickNodes};
 };
 
