@@ -9,12 +9,11 @@ void add_stiffness_warning(std::vector<std::string>& warnings, const std::string
   std::ostringstream line;
   line << setting << " of " << N_per_mm << " N/mm is ";
   if (N_per_mm < kMinStiffness_N_per_mm) {
-    line << "so soft that a newton takes " << 1 / N_per_mm << " mm; from " << kMinStiffness_N_per_mm
-         << " on a hand is held";
+    line << "too soft: 1 N takes " << 1 / N_per_mm << " mm; use " << kMinStiffness_N_per_mm << " or more";
     warnings.push_back(line.str());
   }
   if (N_per_mm > kMaxStiffness_N_per_mm) {
-    line << "so stiff that no hand can be held still; up to " << kMaxStiffness_N_per_mm << " a device may";
+    line << "too stiff to hold a hand still; use " << kMaxStiffness_N_per_mm << " or less";
     warnings.push_back(line.str());
   }
 }
@@ -23,8 +22,8 @@ void add_reads_warning(std::vector<std::string>& warnings, const std::string& se
   constexpr int kMaxReads = 25000;
   if (reads <= kMaxReads) return;
   std::ostringstream line;
-  line << settings << " may read " << reads << " densities in a tick; from about " << kMaxReads
-       << " on it takes over a millisecond";
+  line << settings << " may read " << reads << " densities in a tick; above about " << kMaxReads
+       << " it takes over a millisecond";
   warnings.push_back(line.str());
 }
 

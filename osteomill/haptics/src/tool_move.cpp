@@ -28,7 +28,7 @@ MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD
   const double fading = std::min(1.0, tick_s / release.time_s);
   const ToolMove device = move_between(X_WD_before, X_WD), stretch = move_between(X_WD_before, X_WT);
   const double moved_mm = device.translation_mm.norm(), turned_rad = device.rotation_rad.norm();
-  // Extra room along the stretch: on the side on which it grows, and on that on which it fades.
+  // Enlargement of the balls on the side of increasing and of decreasing stretch.
   const double grow_mm = 0.5 * spring_length_mm * turned_rad,
                fade_mm = fading * stretch.translation_mm.norm();
   const double grow_rad = 0.5 * moved_mm / spring_length_mm, fade_rad = fading * stretch.rotation_rad.norm();

@@ -15,7 +15,7 @@ namespace osteomill::barrier_shell {
 struct NewtonStep {
   Vector6 move_T;
   bool is_damped = false;
-  // So small that what is summed after it would be the same.
+  // Too small to change the energy sums evaluated after it.
   bool is_last = false;
   bool reaches_device = false;
 };
@@ -25,35 +25,35 @@ namespace {
 constexpr std::size_t kNearPoints = 65536;
 constexpr int kCentrelinePoints = 51;
 
-// Largest number of sums over the points in a tick.
+// Largest number of energy evaluations in a tick.
 constexpr int kMaxPasses = 4;
-// Factor by which a step is shortened if the energy did not fall.
+// Factor by which a step is shortened if it did not lower the energy.
 constexpr double kBacktrackFactor = 0.4;
-// A step below both counts as converged: the sums after it would be the same.
+// A step below both counts as converged: later sums would not change.
 constexpr double kConvergedStep_mm = 2e-4;
 constexpr double kConvergedStep_rad = 2e-5;
-// Rounding error of the energy, as a share of it: it is summed in single precision.
+// Relative rounding error of the energy, which is summed in single precision.
 constexpr double kEnergyRounding = 1e-6;
-// Relative rise of the energy attributed to rounding: the last, unevaluated step and another order of
-// summing.
+// Relative rise of the energy attributed to rounding: the last step is not evaluated, and the order of
+// summation varies.
 constexpr double kEnergyRiseTolerance = 1e-5;
 
-// The most that the tool moves between two gatherings, and what a gathering reaches for.
+// The leeway of a gathering is kLeewayPerMove times the last move plus kExtraLeeway, clamped to these bounds.
 constexpr MoveSize kMaxLeeway{0.4, 0.03};
 constexpr MoveSize kMinLeeway{0.05, 0.004};
 constexpr MoveSize kExtraLeeway{0.03, 0.002};
 constexpr double kLeewayPerMove = 3;
-// Largest move in free space: farther than the fastest hand goes in a tick.
+// Largest move in free space: more than the fastest hand covers in a tick.
 constexpr MoveSize kMaxFreeMove{5.0, 0.3};
 
-// For a tool that begins in touch with bone: its cores are first made so small that the nearest point lies
-// kStartGapShare of the skin's width away. They then grow at up to kGrowth_mm_s, as long as the nearest point
-// keeps more than kMinGapShare of the skin's width.
+// For a tool that starts in contact with bone: its cores are first shrunk until the nearest point is
+// kStartGapShare of the skin's width away. They then grow at up to kGrowth_mm_s while the nearest point stays
+// more than kMinGapShare of the skin's width away.
 constexpr double kStartGapShare = 0.2;
 constexpr double kMinGapShare = 0.02;
 constexpr double kGrowth_mm_s = 5;
-// A move of the device beyond these in a tick counts as a placement, not as a motion of the hand; the wrench
-// is then blended over kRamp_s.
+// A device move beyond these in a tick counts as a jump, not as hand motion; the wrench is then blended over
+// kRamp_s.
 constexpr double kJump_mm = 1;
 constexpr double kJump_rad = 0.1;
 constexpr double kFastestHand_mm_s = 1000;
@@ -72,32 +72,34 @@ ToolMove in_world(const Pose& X_WT, const Vector6& move_T) {
   return {X_WT.orientation * Vec3(move_T.head<3>()), X_WT.orientation * Vec3(move_T.tail<3>())};
 }
 
-// How often the damping is corrected, and by how much a step may then leave the balls before it is cut short.
+// Largest number of damping corrections, and the relative overshoot of the balls tolerated without one;
+// beyond it the step is shortened.
 constexpr int kDampings = 6;
 constexpr double kBoundTolerance = 1.01;
-// Lower bound on a radius that is a divisor, mm: in a tick of length zero nothing is released.
+// Lower bound on radii used as divisors, mm or rad: in a tick of length zero nothing is released.
 constexpr double kMinRadius = 1e-9;
 
-// A small tool's skin is thinner with its rounding, so that what is drawn is felt at once. And a burr meets
-// about its section of bone: with pressures against that, any burr is held alike where it is drawn.
+// A small tool has a thinner skin, in proportion to its reduced rounding, so that it is felt where it is
+// drawn. A burr meets bone over about its cross-section, so pressure is scaled inversely with it: every burr
+// is held where it is drawn.
 Barrier skin_of(const MillingTool& tool, const Settings& settings) {
   const double thinner = inset_within(tool, settings.rounding_mm) / settings.rounding_mm;
   const double smaller = MillingTool{}.burr_radius_mm / tool.burr_radius_mm;
   return {thinner * settings.skin_width_mm, smaller * smaller * settings.pressure_N_per_mm2};
 }
 
-// The widest spacing whose points a core of this radius does not pass between: half the diagonal of four
-// points, with an eighth to spare.
+// Returns the largest point spacing that a core of this radius cannot pass through: it passes when half the
+// diagonal of four points, 0.71 of the spacing, exceeds its radius. Leaves a margin of 15 %.
 double widest_spacing_mm(double core_radius_mm) {
   constexpr double kShareOfCore = 1.2;
   return kShareOfCore * core_radius_mm;
 }
 
-// Newton's step; if the energy is not convex, that of a convex one above it. If it would leave one of
-// the balls in which the tool's move may end, damping in proportion to the coupling's stiffness C keeps it in
-// both, so that force and torque fade together: u = so_far_T + step, with so_far_T the move since the tick's
-// start less the balls' middles, solves (H + mu C) u = H so_far_T - g, and mu is brought to where u lies on
-// the sphere, as in a trust region (More and Sorensen 1983).
+// Computes the Newton step; if the energy is not convex, that of a convex upper model. If the step would
+// leave one of the balls in which the tool's move may end, damping in proportion to the coupling's stiffness
+// C keeps it in both, so that force and torque fade together: u = so_far_T + step, with so_far_T the move
+// since the tick's start minus the balls' centres, solves (H + mu C) u = H so_far_T - g, with mu adjusted
+// until u is on the sphere, as in a trust-region method (More and Sorensen 1983).
 NewtonStep newton_step(const EnergySum& sum, const Coupling& coupling, const Vector6& so_far_T,
                        const MoveBound& bound) {
   Matrix6 H = sum.convex + sum.rest;
@@ -134,7 +136,7 @@ NewtonStep newton_step(const EnergySum& sum, const Coupling& coupling, const Vec
 
 }  // namespace
 
-// A pose and what was summed there.
+// A pose and its energy sums.
 struct BarrierShell::State {
   Pose X_WT;
   EnergySum sum;
@@ -185,7 +187,7 @@ Cores BarrierShell::cores() const {
   return Cores::within(tool_, settings_.rounding_mm, core_inset_mm_);
 }
 
-// Begins with cores inset so far that no point lies in them. Called in every tick until all bone about the
+// Starts with cores inset so far that no point is inside them. Called every tick until all bone around the
 // tool is known.
 void BarrierShell::begin_outside(const Pose& X_WD) {
   last_move_ = {};
@@ -207,7 +209,7 @@ void BarrierShell::begin_outside(const Pose& X_WD) {
 
 void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
   if (core_inset_mm_ == 0) return;
-  // No more than there is room for: in a hole too narrow for the tool they stay as small as it.
+  // Limited by the free gap: in a hole too narrow for the tool the cores stay small.
   const double room_mm = 0.2 * (nearest_mm - kMinGapShare * barrier_.width_mm);
   const double growth = std::clamp(room_mm, 0.0, kGrowth_mm_s * std::max(0.0, dt_s));
   core_inset_mm_ = std::max(0.0, core_inset_mm_ - growth);
@@ -232,7 +234,7 @@ BarrierShell::State BarrierShell::evaluate(const Pose& X_WT, const Pose& X_WD) {
   return state;
 }
 
-// Counts a rise of the stored energy since the last tick, at the device's pose of then.
+// Counts a rise of the stored energy since the last tick, both at the previous device pose.
 void BarrierShell::count_energy_rise(const State& state) {
   if (!has_energy_) return;
   const double now_Nmm = state.barrier_Nmm + coupling_.energy_Nmm(state.X_WT, X_WD_before_);
@@ -262,14 +264,14 @@ void BarrierShell::gather_for_next_move() {
           reach(last_move_.turn_rad, kExtraLeeway.turn_rad, kMinLeeway.turn_rad, kMaxLeeway.turn_rad)});
 }
 
-// Returns the share of a step for which the gathering gave leeway.
+// Returns the share of a step that the remaining leeway covers.
 double BarrierShell::share_with_leeway(const MoveSize& step) const {
   const double move = step.move_mm > leeway_left_.move_mm ? leeway_left_.move_mm / step.move_mm : 1;
   const double turn = step.turn_rad > leeway_left_.turn_rad ? leeway_left_.turn_rad / step.turn_rad : 1;
   return std::max(0.0, std::min(move, turn));
 }
 
-// Returns Newton's step, as much of it as is certified and may be released.
+// Returns the Newton step, limited to the share that is certified and may be released.
 NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   const ToolMove so_far = move_between(X_WT_, best.X_WT);
   const Vec3 moved = so_far.translation_mm - bound.middle.translation_mm;
@@ -280,8 +282,8 @@ NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   NewtonStep step = newton_step(best.sum, coupling_, so_far_T, bound);
   const MoveSize step_size = size_of(step.move_T);
   step.is_last = step_size.move_mm <= kConvergedStep_mm && step_size.turn_rad <= kConvergedStep_rad;
-  // Nothing is summed after it: back from the rim of a ball, where the damping is a little too much, it
-  // stays.
+  // No evaluation follows, so a last step that would raise the energy is dropped: slight overdamping may pull
+  // it back from a ball's surface.
   const Vector6 slope = best.sum.gradient + 0.5 * (best.sum.convex + best.sum.rest) * step.move_T;
   if (step.is_last && slope.dot(step.move_T) > 0) step.move_T.setZero();
   if (!step.is_last && share_with_leeway(step_size) < 1 && leeway_.move_mm < kMaxLeeway.move_mm) {

@@ -11,7 +11,7 @@ namespace {
 
 using Fields = std::vector<Field<Settings>>;
 
-// Within these a tool is held, and a tick's work is bounded (session/setting_ranges_test.cpp).
+// Ranges in which a tool is held and a tick's work is bounded (session/setting_ranges_test.cpp).
 constexpr NumberRange kStiffness{0.05, 200}, kTorsion{1, 1e5}, kSkin{0.05, 1}, kRounding{0.02, 0.3},
     kPressure{0.05, 100}, kSpacing{0.03, 0.5}, kReleaseTime{0.001, 1000}, kReleaseSpeed{0.1, 1e4},
     kReleaseTurn{0.001, 100};

@@ -7,7 +7,7 @@ namespace osteomill::barrier_shell {
 
 namespace {
 
-// Lower bounds on a length that is a divisor, and on a core's radius, mm.
+// Lower bounds on a length used as a divisor, and on a core's radius and length, mm.
 constexpr double kTiny_mm = 1e-9;
 constexpr double kMinCore_mm = 0.01;
 
@@ -47,7 +47,7 @@ CoreDistance distance_to_cylinder(const Cores& cores, const Vec3& point_T) {
   const Mat3 side_curvature = outer(around) / std::max(rho, kTiny_mm);
   if (beyond_end <= 0 && beyond_side >= beyond_end) return {beyond_side, radial, side_curvature};
   if (beyond_side <= 0) return {beyond_end, end, Mat3::Zero()};
-  // Beyond the rim.
+  // Nearest to the rim.
   const double distance = std::max(std::hypot(beyond_side, beyond_end), kTiny_mm);
   const double cosine = beyond_side / distance, sine = beyond_end / distance;
   const Vec3 across = cosine * end - sine * radial;

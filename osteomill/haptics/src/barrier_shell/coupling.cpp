@@ -8,7 +8,7 @@ namespace osteomill::barrier_shell {
 
 namespace {
 
-// Holds one spring's energy, force over stretch and stiffness at the stretch s.
+// Energy, force per stretch and stiffness of a spring at a stretch s.
 struct Spring {
   double energy;
   double per_stretch;  // force / s
@@ -21,7 +21,8 @@ Spring spring(double stiffness, double max, double stretch) {
   return {max * (stretch - 0.5 * bend), max / stretch, 0};
 }
 
-// The second derivative of a spring of length |s| by s, what lies across s times `across`.
+// Returns the Hessian of a spring's energy for a stretch vector s; its part perpendicular to s is scaled by
+// `across`.
 Mat3 hessian(const Spring& spring, const Vec3& s, double across) {
   const double length = s.norm();
   const Vec3 unit = length > 0 ? Vec3(s / length) : Vec3::Zero().eval();
@@ -51,7 +52,7 @@ EnergySum Coupling::sum(const Pose& X_WT, const Pose& X_WD) const noexcept {
   const Vec3 s = to_T * stretch.translation_mm, theta = to_T * stretch.rotation_rad;
   const Spring pull = spring(translational_N_per_mm, max_force_N, s.norm());
   const Spring twist = spring(torsional_Nmm_per_rad, max_torque_Nmm, theta.norm());
-  // How fast a turn across theta turns theta: (angle / 2) cot(angle / 2).
+  // Rate at which a rotation perpendicular to theta changes theta: (angle / 2) cot(angle / 2).
   const double half = 0.5 * theta.norm();
   const double across = half < 1e-4 ? 1 : half / std::tan(half);
   EnergySum sum;

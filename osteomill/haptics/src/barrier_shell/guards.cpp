@@ -8,13 +8,14 @@ namespace osteomill::barrier_shell {
 
 namespace {
 
-// Distance from the least one at which the guard is felt: as much beyond guard_mm as the burr may yield.
+// Range of the guard's barrier beyond the minimum distance, mm: from kYield_mm inside guard_mm to kYield_mm
+// outside.
 constexpr double kGuardWidth_mm = 2 * Guards::kYield_mm;
-// p0 of the skin times the default burr's cross-section: a burr is held as by a hole of its own shape.
+// p0 is the skin's times the default burr's cross-section, so a burr is held as by a hole of its own shape.
 constexpr Barrier kGuardBarrier{kGuardWidth_mm, 21};
-// A burr that begins nearer than this share of the width is pressed by more than any device's force.
+// Closer than this share of the width at the start, the guard would push with more than any device's force.
 constexpr double kHeldGapShare = 0.2;
-// Bound on the growth of an interpolated distance for each mm; it is at most the root of 3.
+// Upper bound on the slope of an interpolated distance, which is at most sqrt(3).
 constexpr double kSteepest = 2;
 
 }  // namespace
@@ -51,8 +52,8 @@ bool Guards::are_clear(const Vec3& burr_W, double move_mm) const noexcept {
   });
 }
 
-// Moves are so short that none leads through a guard from outside to outside. The distance is looked at where
-// the move ends, because it is not smooth everywhere.
+// Moves are too short to pass through a guard from outside to outside. Checks the distance at the move's end,
+// because it is not smooth everywhere.
 double Guards::share_kept(const Vec3& burr_W, const Vec3& move_W_mm) const noexcept {
   constexpr int kTries = 8;
   constexpr double kShorter = 0.5;
@@ -70,7 +71,7 @@ double Guards::share_kept(const Vec3& burr_W, const Vec3& move_W_mm) const noexc
   return share;
 }
 
-// The second derivative without the distance's own, which would let the tool slide a little faster round a
+// Omits the distance's own second derivative, which would let the tool slide slightly faster around a
 // structure.
 double Guards::add_to(EnergySum& sum, const Pose& X_WT) const noexcept {
   double energy_Nmm = 0;

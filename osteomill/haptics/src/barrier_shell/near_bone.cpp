@@ -10,7 +10,7 @@ namespace osteomill::barrier_shell {
 
 namespace {
 
-// Margin, mm, above the rounding error of a position near the tool.
+// Margin above the rounding error of a position near the tool, mm.
 constexpr double kClear_mm = 1e-4;
 
 constexpr std::size_t kBricks = 4096;
@@ -30,9 +30,8 @@ bool can_reach_cylinder(const GatherRegion& region, const Vec3& centre_T, double
   return z > -within && z < region.cores.cylinder_length_mm + within;
 }
 
-// Tells which nodes of the bricks' octree may hold points that come near the tool: can_reach_ball or
-// can_reach_cylinder of their spheres, of eight at a time in vector instructions, as every tick asks it of
-// hundreds.
+// Tests which children of an octree node may contain points near the tool: can_reach_ball or
+// can_reach_cylinder of their bounding spheres, eight at a time in SIMD, because every tick tests hundreds.
 class NodeOverlapTest {
  public:
   NodeOverlapTest(const SurfaceLattice& lattice, const ToolFromGrid& X_TG, const GatherRegion& region)
@@ -61,7 +60,7 @@ class NodeOverlapTest {
     const Eight within = near_mm + region_.per_lever * (r2.sqrt() + radius_mm);
     const Eight beside = region_.cores.cylinder_radius_mm + within;
     const Eight ends = (-z).max(z - region_.cores.cylinder_length_mm) - within;
-    // Negative if met.
+    // Negative if the sphere overlaps the region.
     const Eight gap = (rho2 - beside * beside).max(ends).min(r2 - ball_mm * ball_mm);
     unsigned met = 0;
     for (int below = 0; below < 8; ++below) met |= static_cast<unsigned>(gap[below] < 0) << below;
@@ -75,7 +74,7 @@ class NodeOverlapTest {
   const GatherRegion& region_;
   Vec3 first_T_;
   Mat3 half_brick_T_;
-  // From a node's middle to those of the eight below it, in half bricks of theirs.
+  // Offsets in T from a node's centre to those of its eight children, for children one brick wide.
   Eigen::Matrix<double, 8, 3> octants_T_;
 };
 
@@ -130,7 +129,7 @@ void NearBone::list_supporting(const MeasuredBone& measured, double within_mm,
                                BoneBricks& bricks) const noexcept {
   constexpr auto kNearest = static_cast<float>(Barrier::kNearestShare);
   const auto within = static_cast<float>(within_mm);
-  // The barrier's pressure except for a factor between 2 and 3, summed over points.
+  // Sums the barrier's pressure over points, without its factor p0 (3 - 2 x) / 3.
   const auto load_on = [&](const NearPoints& near, const MeasuredPoints& points, std::size_t first,
                            std::size_t end) {
     float load = 0;

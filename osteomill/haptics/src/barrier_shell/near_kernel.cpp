@@ -2,7 +2,7 @@
 
 #include <bit>
 
-// AVX3_DL and SSSE3 have nothing for us over their neighbours.
+// AVX3_DL and SSSE3 bring no gain over their neighbours.
 #define HWY_DISABLED_TARGETS \
   (HWY_AVX3_DL | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 // This file is compiled once for each target.
@@ -20,14 +20,14 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace lane_moves = osteomill::HWY_NAMESPACE;
 
-// Never hn::MulAdd: it rounds once if the processor can, and twice elsewhere.
+// Never uses hn::MulAdd, which rounds once with FMA and twice without.
 using D = hn::CappedTag<float, NearPoints::kLanes>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 constexpr D d;
 constexpr std::size_t kWidth = hn::MaxLanes(d);
 constexpr std::size_t kGroup = NearPoints::kLanes;
-// Lower bound on a length that is a divisor, mm.
+// Lower bound on a length used as a divisor, mm.
 constexpr float kTiny_mm = 1e-6f;
 
 template <typename Number>
@@ -89,7 +89,7 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
   }
 }
 
-// Returns the distance beyond the cylinder's nearer end, negative within.
+// Returns the distance beyond the cylinder's nearer end, negative inside.
 HWY_INLINE V beyond_end(V z, V length) {
   return hn::Max(hn::Neg(z), hn::Sub(z, length));
 }
@@ -128,7 +128,7 @@ struct Push {
   V energy, pressure, stiffness;
 };
 
-// Barrier::at, times the area.
+// Evaluates Barrier::at, times the area.
 struct BarrierLaw {
   float width, pressure;
 
@@ -190,7 +190,7 @@ void SumBall(const NearPoints& near, const Frame& moved, const Cores& cores, con
       hn::StoreU(distance, d, &measured.distance[n]);
       store_rows(out, measured.out_x, measured.out_y, measured.out_z, n);
       nearest = hn::Min(nearest, distance);
-      if (hn::AllFalse(d, hn::Lt(distance, law.region()))) continue;  // adds nothing, to the last bit
+      if (hn::AllFalse(d, hn::Lt(distance, law.region()))) continue;  // would add exactly zero
       const Push p = law.push(hn::LoadU(d, &near.area[n]), distance);
       touching += hn::CountTrue(d, hn::Gt(p.pressure, hn::Zero(d)));
       const V q = hn::Mul(p.pressure, inverse), m = hn::Add(p.stiffness, q);
@@ -245,7 +245,7 @@ void SumSide(const NearPoints& near, const Frame& moved, const Cores& cores, con
       store_rows(out, measured.out_x, measured.out_y, measured.out_z, n);
       nearest = hn::Min(nearest, distance);
       if (!hn::AllFalse(d, at_end)) list_at_end(measured, at_end, n);
-      if (hn::AllFalse(d, hn::Lt(distance, law.region()))) continue;  // adds nothing, to the last bit
+      if (hn::AllFalse(d, hn::Lt(distance, law.region()))) continue;  // would add exactly zero
       const Push p = law.push(hn::LoadU(d, &near.area[n]), distance);
       touching += hn::CountTrue(d, hn::Gt(p.pressure, hn::Zero(d)));
       const V pu = hn::Mul(p.pressure, out.x), pv = hn::Mul(p.pressure, out.y);
@@ -280,7 +280,7 @@ void SumSide(const NearPoints& near, const Frame& moved, const Cores& cores, con
   lanes.touching += static_cast<int>(touching);
 }
 
-// The greatest `use(n, outward)` over distance, of the points from n on.
+// Returns the largest `use(n, outward)` / distance, where `use` handles a vector of points starting at n.
 template <typename Use>
 HWY_INLINE float max_use(const MeasuredPoints& measured, float min_distance, const Use& use) {
   V max = hn::Zero(d);
@@ -299,7 +299,7 @@ float GreatestUseByBall(const MeasuredPoints& measured, const float (&delta)[3],
                  [&](std::size_t, const Vector& out) HWY_ATTR { return dot(out, move); });
 }
 
-// The move as delta (3) and omega (3), then |omega| |delta| and |omega|^2 / 2.
+// `move` holds delta (3), omega (3), |omega| |delta| and |omega|^2 / 2.
 float GreatestUseByCylinder(const MeasuredPoints& measured, const float (&move)[8], float min_distance) {
   return max_use(measured, min_distance, [&](std::size_t n, const Vector& out) HWY_ATTR {
     const V x = hn::LoadU(d, &measured.x[n]), y = hn::LoadU(d, &measured.y[n]),

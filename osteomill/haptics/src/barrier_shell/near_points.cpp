@@ -47,7 +47,7 @@ EnergySum side_sum(const Lanes<SideSum>& lanes) {
       if (row % 2 == column % 2) sum.rest(at[row], at[column]) = -both * q[power];
     }
   }
-  // Terms that turn the side's tangent about the axis: r x t = (-z u, -z v, rho), t = (-v, u, 0).
+  // Terms from rotating the side's tangent about the axis: r x t = (-z u, -z v, rho), t = (-v, u, 0).
   const double rho_uu = total(S::p_rho_uu), rho_uv = total(S::p_rho_uv), rho_vv = total(S::p_rho_vv);
   const double rho = rho_uu + rho_vv;
   const auto add = [&](int row, int column, double value) {
@@ -94,9 +94,9 @@ EnergySum ball_sum(const Lanes<BallSum>& lanes) {
 
 }  // namespace
 
-// Seen from the tool the point moves as exp(-t omega) (r - t delta): by v = -(delta + omega x r) at first,
-// and with the acceleration omega x (omega x r) + 2 omega x delta. So d' = n.v and d'' = v.C v + n.a, with n
-// and C the distance's derivatives; and E' = -p d', E'' = psi'' d'^2 - p d''.
+// In T the point moves as exp(-t omega) (r - t delta), with initial velocity v = -(delta + omega x r) and
+// acceleration a = omega x (omega x r) + 2 omega x delta. So d' = n.v and d'' = v.C v + n.a, where n and C
+// are the distance's derivatives, and E' = -p d', E'' = psi'' d'^2 - p d''.
 void add_point(EnergySum& sum, const Barrier::Value& push, const Vec3& point_T,
                const CoreDistance& distance) {
   sum.nearest_mm = std::min(sum.nearest_mm, distance.distance_mm);
@@ -106,7 +106,7 @@ void add_point(EnergySum& sum, const Barrier::Value& push, const Vec3& point_T,
   const Vec3& n = distance.outward_T;
   Vector6 along;
   along << n, point_T.cross(n);
-  Eigen::Matrix<double, 3, 6> motion;  // minus v, of delta and omega
+  Eigen::Matrix<double, 3, 6> motion;  // maps [delta; omega] to -v
   motion << Mat3::Identity(), -cross(point_T);
   sum.energy_Nmm += push.energy;
   sum.gradient += p * along;
@@ -158,7 +158,7 @@ void measure_cylinder(const NearPoints& near, const Frame& moved, const Cores& c
   Lanes<SideSum> lanes;
   sum_side(near, moved, cores, barrier, lanes, measured);
   measured.sum = side_sum(lanes);
-  // Their order must not depend on the width of the registers.
+  // The order must not depend on the register width.
   const std::span at_end(measured.at_end.data(), measured.at_end_count);
   std::sort(at_end.begin(), at_end.end());
   for (const std::uint32_t n : at_end) {

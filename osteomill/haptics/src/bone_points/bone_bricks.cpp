@@ -6,15 +6,15 @@ namespace osteomill {
 
 namespace {
 
-// Room for the bone near a tool with much to spare: of 200 000 to 800 000 points, 32 a chunk.
+// Capacity for the bone near a tool with a large margin: 200 000 to 800 000 points, 32 per chunk.
 constexpr std::size_t kSlots = 16384;
 constexpr std::size_t kFineChunks = 24576;
 constexpr std::size_t kCoarseChunks = 16384;
 // Distance from the tool, mm, within which bricks are not evicted.
 constexpr double kKeepDistance_mm = 2;
 
-// Cost of visiting a brick, in points built: of one that is skipped, and of each kDensitiesPerPoint densities
-// that are sampled.
+// Costs, in points built: skipping a brick, and classifying a node. Sampling kDensitiesPerPoint densities
+// costs as much as one point.
 constexpr int kSkipCost = 2;
 constexpr int kClassifyCost = 4;
 constexpr int kDensitiesPerPoint = 60;
@@ -33,8 +33,8 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, double tick_s)
   choose_point_instructions();
 }
 
-// Sets whether an unknown entry may hold surface, if this tick's budget allows it: an entry above the bricks
-// then gets a node, and a brick stays unknown until it is built.
+// Classifies an unknown entry, within this tick's budget. An entry above the bricks that may contain surface
+// gets a node; a brick stays unknown until it is built.
 void BoneBricks::classify(int level, const VoxelIndex& node, BrickTree::EntryIndex entry) {
   if (tree_.content(entry) != BrickTree::kUnknown || !queue_.has_build_budget()) return;
   queue_.spend_build_budget(kClassifyCost);
@@ -64,8 +64,8 @@ int BoneBricks::build_brick(const VoxelIndex& brick, BrickTree::EntryIndex entry
   return lattice_.densities_of_brick() / kDensitiesPerPoint;
 }
 
-// Bricks that are new come first: if the surface has moved on into another brick, it is found there before it
-// is taken from where it was.
+// Builds exposed bricks first: if the surface has moved into another brick, it must appear there before it
+// disappears from the old one.
 void BoneBricks::refresh(const VoxelBox& voxels, int others) noexcept {
   const VoxelBox bricks = lattice_.bricks_touched_by(voxels);
   for_each(bricks, [&](const VoxelIndex& brick) { others -= build_exposed(brick); });

@@ -1,6 +1,6 @@
 #include "bone_points/brick_kernel.h"
 
-// AVX3_DL and SSSE3 have nothing for us over their neighbours.
+// AVX3_DL and SSSE3 bring no gain over their neighbours.
 #define HWY_DISABLED_TARGETS \
   (HWY_AVX3_DL | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 // This file is compiled once for each target.
@@ -17,16 +17,16 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Never hn::MulAdd: it rounds once if the processor can, and twice elsewhere.
+// Never uses hn::MulAdd, which rounds once with FMA and twice without.
 using D = hn::CappedTag<float, CrossingRow::kNodes>;
 using V = hn::Vec<D>;
 constexpr D d;
 constexpr std::size_t kWidth = hn::MaxLanes(d);
 
-// Smallest share of a cell's face that a crossing stands for, and the share of one without a normal.
+// Smallest share of a cell's face that a crossing represents, and the share of a crossing without a normal.
 constexpr float kMinCosine = 0.02f;
 constexpr float kCosineWithoutNormal = 0.6f;
-// Normals that sum to less than this share of the area cancel each other; the point then has no normal.
+// If the normals' sum is shorter than this share of the area, they cancel, and the point has no normal.
 constexpr float kNoNormal = 1e-6f;
 
 HWY_INLINE V constant(float value) {
@@ -38,7 +38,7 @@ HWY_INLINE hn::Mask<D> lanes_of(unsigned bits) {
   return hn::LoadMaskBits(d, bytes);
 }
 
-// By name, not in arrays: GCC 12 keeps an array of vectors in memory.
+// Named members, because GCC 12 keeps an array of vectors in memory.
 struct V3 {
   V x, y, z;
 };
@@ -56,14 +56,14 @@ HWY_INLINE V& along(V3& v) {
   return kAxis == 0 ? v.x : kAxis == 1 ? v.y : v.z;
 }
 
-// Over crossings: area times place, area, and area times the surface's unit normal.
+// Sums over crossings: area times position, area, and area times unit normal.
 struct Sums {
   V3 position_mm;
   V area;
   V3 normal;
 };
 
-// Central differences at both ends, in proportion.
+// Returns the central differences at both ends of an edge, interpolated to the crossing.
 HWY_INLINE V difference(const float* here, const float* there, std::ptrdiff_t next, float per_step,
                         V fraction) {
   const V from = hn::Sub(hn::LoadU(d, here + next), hn::LoadU(d, here - next));
@@ -71,7 +71,7 @@ HWY_INLINE V difference(const float* here, const float* there, std::ptrdiff_t ne
   return hn::Mul(hn::Add(from, hn::Mul(fraction, hn::Sub(to, from))), constant(per_step));
 }
 
-// The crossings of edges along an axis from the nodes that begin at `node`.
+// Adds the crossings on edges along an axis that begin at `node` and the nodes after it.
 template <int kAxis>
 HWY_INLINE void add_crossings(const CrossingLattice& lattice, const CrossingRow& row, std::size_t node,
                               Sums& sums) {
@@ -122,7 +122,7 @@ HWY_INLINE void add_means_of(const Sums& sums, unsigned cells, PointRows& points
   points.count = n + hn::CountTrue(d, chosen);
 }
 
-// Stores the sums of every node of a row.
+// Sums for every node of a row.
 struct StoredSums {
   static constexpr int kSums = 7;
   alignas(64) float rows[kSums][CrossingRow::kMaxNodes] = {};
@@ -140,8 +140,7 @@ struct StoredSums {
     const auto row = [&](int n) HWY_ATTR { return hn::Load(d, &rows[n][node]); };
     return {{row(0), row(1), row(2)}, row(3), {row(4), row(5), row(6)}};
   }
-  // Sums the nodes of each cell, which follow one another, and stores the results at the beginning of the
-  // rows.
+  // Adds up the consecutive nodes of each cell and stores the results at the beginning of the rows.
   void sum_groups(std::size_t group) {
     for (auto& row : rows) {
       for (std::size_t cell = 0; cell * group < CrossingRow::kMaxNodes; ++cell) {
@@ -183,7 +182,7 @@ void AddMeans(const CrossingLattice& lattice, std::span<const CrossingRow> rows,
   }
 }
 
-// Calls `use(n, lanes)` for the points from n on, as many lanes at a time as there are.
+// Calls `use(n, lanes)` for each vector of points; `lanes` masks those that exist.
 template <typename Use>
 HWY_INLINE void for_each_lanes(std::size_t count, const Use& use) {
   for (std::size_t n = 0; n < count; n += kWidth) use(n, hn::FirstN(d, count - n));

@@ -10,7 +10,7 @@ namespace osteomill {
 
 namespace {
 
-// The points from `first` on, of `count`, and nothing if there are no more.
+// Copies the points from `first` to `count` and clears the remaining slots.
 void fill(PointChunk& chunk, const PointRows& points, std::size_t first, std::size_t count) {
   const auto copy = [&](const std::vector<float>& from, std::array<float, PointChunk::kSlots>& to) {
     std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(first), PointChunk::kSlots, to.begin());
@@ -53,7 +53,7 @@ std::uint32_t BrickPoints::take_chunk() {
   return taken;
 }
 
-// Lengthens or shortens the brick's list of chunks; shorter than wanted if the pool has run out.
+// Extends or shortens the brick's list of chunks; to fewer than `wanted` if the pool is exhausted.
 void BrickPoints::set_chunk_count(Brick& brick, std::size_t wanted) {
   std::uint32_t* link = &brick.first_chunk;
   for (std::size_t n = 0; n < wanted; ++n) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kNodes = 32768;
 constexpr std::size_t kSpareNodes = 4096;
-// Nodes that a tick scans for some to evict.
+// Nodes that a tick scans for eviction.
 constexpr int kScannedNodes = 512;
 
 }  // namespace

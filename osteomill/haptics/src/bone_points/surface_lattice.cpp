@@ -10,15 +10,15 @@ namespace osteomill {
 
 namespace {
 
-// Points are merged into one if their mean normal is longer than this: they nearly lie in a plane.
+// Points are merged if their mean normal is longer than this, so that they nearly lie in a plane.
 constexpr float kFlat = 0.98f;
 
-// Largest number of voxels that are sampled one by one if their ranges are too wide to tell, and of ranges
+// Largest number of voxels that are sampled individually if the block ranges are inconclusive, and of ranges
 // that are sampled in a large box.
 constexpr std::size_t kMaxSampledVoxels = 6 * 6 * 6;
 constexpr std::size_t kMaxSampledRanges = 5 * 5 * 5;
 
-// Accumulates whether some densities contain bone, and whether all are bone.
+// Accumulates whether any density is bone, and whether all are.
 struct Coverage {
   bool any_bone = false;
   bool all_bone = true;
@@ -38,7 +38,7 @@ int divide_down(int value, int divisor) {
   return value % divisor < 0 ? quotient - 1 : quotient;
 }
 
-// The weighted mean of points; the mean normal is the shorter the more the surface bends.
+// Area-weighted mean of points. The more the surface bends, the shorter the mean normal.
 class Mean {
  public:
   void add(const ShellPoint& point) {
@@ -101,8 +101,8 @@ float SurfaceLattice::density(const VoxelIndex& voxel) const {
   return volume_->grid().contains(voxel) ? volume_->grid()[voxel] : outside_;
 }
 
-// Returns the voxels on which the nodes at the ends of this brick's edges depend, and those of `more_nodes`
-// further nodes on every side; the box may reach beyond the grid.
+// Returns the voxels on which the nodes at the ends of the edges in `node` depend, plus those of `more_nodes`
+// further nodes on every side; the box may extend beyond the grid.
 VoxelBox SurfaceLattice::voxels_of(int level, const VoxelIndex& node, int more_nodes) const {
   const int n = brick_nodes_ << level;
   const auto& s = steps_per_voxel_;
@@ -114,7 +114,7 @@ VoxelBox SurfaceLattice::voxels_of(int level, const VoxelIndex& node, int more_n
           {last(node.i, 0), last(node.j, 1), last(node.k, 2)}};
 }
 
-// The weights of crossings depend on one more node all round.
+// Includes one more node all round, on which the weights of crossings depend.
 std::uint32_t SurfaceLattice::changes_of(const VoxelIndex& brick) const {
   return volume_->ranges().changes_in(voxels_of(0, brick, 1).intersected(volume_->geometry().all_voxels()));
 }
@@ -145,8 +145,8 @@ VoxelBox SurfaceLattice::bricks_touched_by(const VoxelBox& voxels) const {
   if (voxels.empty()) return voxels;
   const int n = brick_nodes_;
   const auto& s = steps_per_voxel_;
-  // A node reads voxels less than one away; a crossing's weight nodes from one below the edge's lower one to
-  // two above it; and the lowest edges of a brick begin one node below its own.
+  // A node depends on voxels less than one voxel away. A crossing's weight depends on nodes from one below
+  // the edge's lower node to two above it. The lowest edges of a brick begin one node below its own.
   const auto first_node = [&](int v, std::size_t axis) { return (v - 1) * s[axis] + 1; };
   const auto last_node = [&](int v, std::size_t axis) { return (v + 1) * s[axis] - 1; };
   const auto brick_of_edge = [&](int lower_node) { return divide_down(lower_node + 1, n); };
@@ -160,7 +160,7 @@ VoxelBox SurfaceLattice::bricks_touched_by(const VoxelBox& voxels) const {
           {last(voxels.last.i, 0), last(voxels.last.j, 1), last(voxels.last.k, 2)}};
 }
 
-// The scan itself if it can be, else what is put into the block.
+// Returns the scan itself if possible, else `block`, which it fills.
 SurfaceLattice::Nodes SurfaceLattice::nodes_of(const VoxelIndex& brick, Block& block) const {
   const DensityGrid& grid = volume_->grid();
   // The first node is one below the brick's, and gradients need one more.
@@ -193,8 +193,8 @@ void SurfaceLattice::copy_voxels(const VoxelIndex& first, Block& block) const {
   }
 }
 
-// Trilinear, one axis after the other. Every voxel has a weight of at least zero, so that a node's density
-// falls with its voxels'.
+// Trilinear, axis by axis. No voxel has a negative weight, so a node's density never rises when its voxels'
+// fall.
 void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) const {
   const int count = brick_nodes_ + 3;
   const auto& s = steps_per_voxel_;
@@ -262,7 +262,7 @@ SurfaceLattice::Occupancy SurfaceLattice::find_surface(const VoxelIndex& brick, 
   return occupancy;
 }
 
-// Returns the rows that are bone by the ranges of densities, if nodes are voxels.
+// Returns the rows that are solid bone by the ranges of densities, if nodes are voxels.
 SurfaceLattice::RowBits SurfaceLattice::find_solid_rows(const VoxelIndex& brick) const {
   RowBits rows{};
   const VoxelBox voxels = voxels_of(0, brick, 0);
@@ -295,8 +295,8 @@ SurfaceLattice::RowBits SurfaceLattice::find_solid_rows(const VoxelIndex& brick)
   return rows;
 }
 
-// In the rows that lines lie in. Memory is what reading them costs, each a cache line or two of its own: all
-// that have to be read are asked for at once.
+// Visits only rows that contain lines. Memory access dominates, with a cache line or two per row, so all rows
+// to be read are prefetched first.
 SurfaceLattice::Occupancy SurfaceLattice::find_bone(const Nodes& nodes, const RowBits& solid_rows,
                                                     RowBits& empty_rows, Rows& rows) const {
   const std::uint32_t whole = (2u << brick_nodes_) - 1;
@@ -340,7 +340,7 @@ std::uint32_t SurfaceLattice::cells_of(std::uint32_t nodes) const {
   return cells;
 }
 
-// Makes one point for each cell, a row of cells after the other.
+// Computes one point per cell, one row of cells after the other.
 void SurfaceLattice::mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const {
   const int side = brick_nodes_ / group_;
   CrossingLattice lattice = crossings_;
@@ -356,7 +356,7 @@ void SurfaceLattice::mean_crossings(const Nodes& nodes, const Rows& rows, BrickS
           std::uint32_t edges[3];
           if (!find_crossed(rows, j, k, edges)) continue;
           crossed |= edges[0] | edges[1] | edges[2];
-          // The brick's frame begins one node above its first.
+          // The row's first node is at -1 in the brick's frame.
           crossed_rows[count++] = {nodes.at(0, j, k), -1, j - 1, k - 1, {edges[0], edges[1], edges[2]}};
         }
       }

@@ -61,8 +61,7 @@ std::vector<Vec3> sphere_vertices(const MillingTool& tool, int count) {
     return {snub_cube.begin(), snub_cube.end()};
   }
   std::vector<Vec3> vertices = spiral_directions(count);
-  // By then hardly anything moves, whatever the count: the push on a place that is off grows with the power
-  // 3/2 of it.
+  // Converged by then for any count: the push on a displaced vertex grows with count^1.5.
   constexpr int kRounds = 200;
   const double step = 2 / std::pow(count, 1.5);
   std::vector<Vec3> pushes(vertices.size());

@@ -14,8 +14,8 @@ constexpr double kMarginNodes = 2;
 constexpr double kMaxNodes = 16e6;
 constexpr double kSuitableNodes = 2e6;
 
-// Returns how many cells the box with its margin has along each axis, as a double: it may be beyond int's
-// range.
+// Returns the number of cells of the box with its margin along each axis, as doubles, because it may exceed
+// an int.
 Vec3 cells_of(const ToolBox& tool_box, double spacing_mm) {
   const Vec3 size_mm = tool_box.max_mm - tool_box.min_mm;
   return (size_mm / spacing_mm).array().ceil() + 2 * kMarginNodes;
@@ -81,7 +81,7 @@ std::optional<ToolDistance> SampledDistanceField::at(const Vec3& point_T) const 
   }
   const Vec3 gradient(sum[1], sum[2], sum[3]);
   const double length = gradient.norm();
-  // Opposite gradients may cancel on the axis, for which tool_distance has no particular direction either.
+  // Opposite gradients may cancel on the axis, on which tool_distance gives an arbitrary direction too.
   return ToolDistance{sum[0], length > 1e-6 ? Vec3(gradient / length) : Vec3(-Vec3::UnitZ())};
 }
 

@@ -26,7 +26,7 @@ std::optional<WalkHit> most_active_vertex(const Volume& volume, std::span<const 
 
 constexpr int kSubsteps = 4;
 
-// A quarter of the vertices' spacing along b; nothing if b has no direction.
+// Returns a quarter of the vertex spacing along b; zero if b has no direction.
 Vec3 substep_along(const Vec3& b, std::span<const Vec3> vertices_T) {
   const double length = b.norm();
   if (vertices_T.size() < 2 || !(length > 0.0) || !std::isfinite(length)) return Vec3::Zero();
@@ -65,7 +65,7 @@ ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T,
   bool in_run = false;
   for (const Vec3& vertex_T : vertices_T) {
     const Vec3 vertex_W = X_WT * vertex_T;
-    // b points down the shaft, so that the farthest sub-step comes first on the way up.
+    // b points down the shaft, so on the way up the farthest sub-step comes first.
     for (int n = kSubsteps - 1; n >= 0; --n) {
       const Vec3 point_W = vertex_W + n * substep;
       const double density = density_at(volume.grid(), point_W);

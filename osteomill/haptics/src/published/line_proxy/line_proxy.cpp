@@ -14,10 +14,10 @@ namespace osteomill::line_proxy {
 
 namespace {
 
-// How far the surface is looked for if a tick finds the tip deep in bone without having seen it go in
-// (switched on there, or moved there at once).
+// Search distance for the surface if the tip is already deep in bone in the first tick that finds it there
+// (switched on there, or jumped there).
 constexpr double kExitReach_mm = 5.0;
-// Beyond this a length in mm or a force in N is no longer a number to go on with.
+// Lengths in mm and forces in N beyond this count as not finite.
 constexpr double kMaxNumber = 1e12;
 // NUMBER_OF_TRANSLATION_STEPS and NUMBER_OF_ROTATION_STEPS of (3) and (4).
 constexpr WalkSteps kWalk{10, 10};
@@ -27,7 +27,7 @@ constexpr WalkSteps kWalk{10, 10};
 std::vector<std::string> LineProxy::setting_warnings(const MillingTool&, const GridGeometry&) const {
   std::vector<std::string> warnings;
   add_stiffness_warning(warnings, "line-proxy: a stiffness", settings_.stiffness_N_per_mm);
-  // A tick in which the shaft first touches looks at all vertices in each step of the walk.
+  // A tick in which the shaft first touches evaluates all vertices in each step of the walk.
   add_reads_warning(warnings, "line-proxy: this number of vertices",
                     (kWalk.translation + kWalk.rotation) * settings_.vertices);
   return warnings;
@@ -98,8 +98,8 @@ std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
   return hit->intersection_W();
 }
 
-// Collision at t-1 already. The point-proxy rule takes IP from where it was toward the densest point; nothing
-// if the shaft is free.
+// Collision at t-1 already: moves IP by the point-proxy rule towards the densest point. Returns nothing if
+// the shaft is free.
 std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) const {
   const Volume& volume = *inputs_.volume;
   const ShaftProbe probe = densest_point(volume, shaft_vertices(), X_WL, *state_.intersection_W);
@@ -110,14 +110,15 @@ std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) const {
 void LineProxy::turn_reaction(const Pose& X_WL) {
   state_.reaction_N.setZero();
   if (!state_.intersection_W) return;
-  // The point as far up the device's shaft as IP is, and g, the error of orientation alone.
+  // The point on the device's shaft at the same distance from the tip as IP, and g, the error of orientation
+  // alone.
   state_.arm_W = *state_.intersection_W - X_WL.position_mm;                             // eq. 7
   const Vec3 probe_W = state_.arm_W.norm() * shaft_direction(X_WL) + X_WL.position_mm;  // eq. 8
   const Vec3 g = *state_.intersection_W - probe_W;                                      // eq. 9
   state_.reaction_N = settings_.stiffness_N_per_mm * g;                                 // eq. 10
 }
 
-// A burr's radius out from the tip's proxy, the shaft along (13).
+// Offsets the tip by the burr's radius from its proxy, and aligns the shaft with (13).
 Pose LineProxy::drawn_tool(const Pose& X_WL) const {
   const Volume& volume = *inputs_.volume;
   Pose X_WT = X_WL;
@@ -135,8 +136,8 @@ Pose LineProxy::drawn_tool(const Pose& X_WL) const {
   return X_WT;
 }
 
-// Eq. 1 can divide by zero. The session replaces the wrench, which is then not finite, by zero; the state is
-// dropped so that the next tick recovers.
+// Eq. 1 can divide by zero. The session replaces the resulting wrench by zero; dropping the state lets the
+// next tick recover.
 void LineProxy::reset_if_not_finite() {
   const auto is_usable = [](const Vec3& vector) { return vector.norm() < kMaxNumber; };
   if (state_.intersection_W && !is_usable(*state_.intersection_W)) state_.intersection_W.reset();

@@ -10,17 +10,17 @@ namespace osteomill::line_proxy {
 namespace {
 
 constexpr int kSlides = 8;
-// Points on the isosurface are known to within the tolerance of bisect_crossing (1e-6 mm).
+// Points on the isosurface are accurate to the tolerance of bisect_crossing (1e-6 mm).
 constexpr double kTouching_mm = 4e-6;
 constexpr double kAtRest_mm = 1e-5;
-// From a point to the eight about it whose gradients make its normal.
+// Distance from a point to the eight gradient samples of its normal.
 constexpr double kSpread_voxels = 1.25;
 
 double voxel_mm(const Volume& volume) {
   return volume.geometry().spacing_mm.minCoeff();
 }
 
-// Returns the point at which the ray from a point in bone along the unit vector leaves bone, sampled every
+// Returns the point at which a ray from a point in bone along a unit vector leaves the bone, sampled every
 // `step_mm` up to `reach_mm`.
 std::optional<Vec3> exit_along(const Volume& volume, const Vec3& point_W, const Vec3& out_W, double step_mm,
                                double reach_mm) {
@@ -33,15 +33,15 @@ std::optional<Vec3> exit_along(const Volume& volume, const Vec3& point_W, const 
   return std::nullopt;
 }
 
-// A point that is in bone moved out along the surface's normal, two voxels at most.
+// Moves a point in bone out along the surface normal, at most two voxels.
 std::optional<Vec3> raised_out(const Volume& volume, const Vec3& point_W) {
   const auto normal = surface_normal(volume, point_W);
   if (!normal) return std::nullopt;
   return exit_along(volume, point_W, *normal, 0.25 * voxel_mm(volume), 2 * voxel_mm(volume));
 }
 
-// Slides along the tangent and back to the isosurface. If the surface falls away by more than 45 degrees the
-// point is left in the air, for the next march; if it rises by more than that the slide ends at the wall.
+// Slides along the tangent and back to the isosurface. If the surface falls away by more than 45 degrees,
+// leaves the point in free space for the next march; if it rises by more than that, stops at the wall.
 Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const Vec3& normal) {
   const Vec3 aside = proxy_W + tangent;
   const double reach_mm = tangent.norm() + kTouching_mm;
@@ -53,7 +53,7 @@ Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const 
   return bisect_crossing(volume, is_bone_at(volume, above) ? proxy_W : above, aside);
 }
 
-// Straight toward the probe until bone is in the way.
+// Moves straight toward the probe until bone blocks the way.
 Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
   const Vec3 path = probe_W - proxy_W;
   const double distance = path.norm();
@@ -69,12 +69,12 @@ std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, doub
   if (!is_bone_at(volume, point_W)) return point_W;
   std::optional<Vec3> exit;
   for (int n = 0; n < 27; ++n) {
-    if (n == 13) continue;  // no direction at all
+    if (n == 13) continue;  // the zero vector
     const Vec3 direction = Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1).normalized();
     const auto found = exit_along(volume, point_W, direction, 0.5 * voxel_mm(volume), reach_mm);
     if (!found) continue;
     exit = found;
-    // Each found exit shortens the reach of the rest.
+    // Each exit found shortens the reach of the remaining directions.
     reach_mm = (*exit - point_W).norm();
   }
   return exit;
@@ -86,7 +86,7 @@ std::optional<Vec3> surface_normal(const Volume& volume, const Vec3& point_W) {
   Vec3 gradient = Vec3::Zero();
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 sides(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
-    // Laid out along the grid's axes, so that a turned scan gives the turned normal.
+    // Offset along the grid's axes, so that the normal rotates with the scan.
     const Vec3 aside = geometry.direction * geometry.spacing_mm.cwiseProduct(reach * sides);
     gradient += density_gradient(volume.grid(), point_W + aside);
   }

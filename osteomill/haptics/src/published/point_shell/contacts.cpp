@@ -9,8 +9,8 @@ namespace osteomill::point_shell {
 
 namespace {
 
-// Returns whether one of the six face directions of the two boxes separates them. The nine directions across
-// pairs of edges would part a few more boxes; all that costs is a look at their points.
+// Returns whether one of the six face normals of the two boxes separates them. Omits the nine axes across
+// pairs of edges: they would separate few more boxes, and a miss costs only testing the box's points.
 bool is_apart(const ToolBox& tool_box, const VoxelShell::NodeBox& node, const ToolFromGrid& X_TG) {
   const Vec3 tool_half = 0.5 * (tool_box.max_mm - tool_box.min_mm);
   const Vec3 between = X_TG * node.middle_G - 0.5 * (tool_box.max_mm + tool_box.min_mm);
@@ -21,7 +21,7 @@ bool is_apart(const ToolBox& tool_box, const VoxelShell::NodeBox& node, const To
   return ((X_TG.turn.transpose() * between).cwiseAbs().array() > along_node.array()).any();
 }
 
-// Returns the sum in the axes of an outer frame; `R` has this frame's axes in it.
+// Returns the sum in the axes of an outer frame; `R` rotates into it.
 EnergySum in_outer(const Mat3& R, const EnergySum& sum) {
   const auto turned = [&](const Mat3& K) -> Mat3 { return R * K * R.transpose(); };
   EnergySum outer;

@@ -10,8 +10,8 @@ namespace osteomill::point_shell {
 
 namespace {
 
-// The burr's force on the bone after a move, by the derivatives from before it. A contact only pushes: if the
-// move is predicted to end in a pull, the burr has left.
+// Predicts the burr's force on the bone after a move from the derivatives before it. A contact only pushes:
+// if the prediction is a pull, the burr has left and the force is zero.
 Vec3 burr_force_after(const EnergySum& burr, const ToolMove& move) {
   const Vec3 before = -burr.gradient.head<3>();
   const Vec3 force = before - burr.convex.topLeftCorner<3, 3>() * move.translation_mm -
@@ -24,8 +24,8 @@ Vec3 burr_force_after(const EnergySum& burr, const ToolMove& move) {
 double contact_stiffness_N_per_mm3(const MillingTool& tool) {
   constexpr double kMaxForce_N = 20;
   const double r = tool.burr_radius_mm;
-  // On a plane the burr's penalty is kA pi (r - d) d^2, which peaks at d = 2r/3; half as much again is kept
-  // back.
+  // On a plane the burr's penalty force is kA pi (r - d) d^2, which peaks at d = 2r/3; the factor 1.5 is a
+  // margin.
   return 1.5 * kMaxForce_N * 27 / (4 * std::numbers::pi * r * r * r);
 }
 
@@ -38,14 +38,14 @@ std::vector<std::string> PointShell::setting_warnings(const MillingTool& tool,
   if (settings_.damping_time_s > kMaxTime_s) {
     std::ostringstream line;
     line << "point-shell: a damping-time of " << settings_.damping_time_s
-         << " s lets the force of a hand that stops fade; up to " << kMaxTime_s << " s it stays";
+         << " s makes the force fade when the hand stops; use " << kMaxTime_s << " s or less";
     warnings.push_back(line.str());
   }
   const double apart_mm = settings_.scale * scan.spacing_mm.maxCoeff();
   if (apart_mm > tool.burr_radius_mm) {
     std::ostringstream line;
     line << "point-shell: at a scale of " << settings_.scale << " points lie " << apart_mm
-         << " mm apart, more than the burr's radius of " << tool.burr_radius_mm << " mm: it passes between";
+         << " mm apart, more than the burr's radius of " << tool.burr_radius_mm << " mm: it slips between";
     warnings.push_back(line.str());
   }
   return warnings;

@@ -16,18 +16,18 @@ Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const P
 
 ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
                         const ToolMove& stretch_before, const EnergySum& contacts) noexcept {
-  // F_net and T_net at X_WT.
+  // Net force and torque at X_WT.
   const Wrench pull = wrench_on_hand(coupling, X_WT, X_WD, stretch_before);
   Vector6 net;
   net << -contacts.gradient.head<3>() - pull.force_N, -contacts.gradient.tail<3>() - pull.torque_Nmm;
   // Minus their derivatives. The coupling's torque is linear in the rotation vector between tool and device;
-  // that the vectors of two turns do not simply add is left out (its part is half the angle between tool and
+  // neglects that rotation vectors do not simply add (a relative error of half the angle between tool and
   // device).
   Matrix6 stiffness = contacts.convex;
   const double damped = 1 + coupling.damping_ticks;
   stiffness.topLeftCorner<3, 3>().diagonal().array() += damped * coupling.translational_N_per_mm;
   stiffness.bottomRightCorner<3, 3>().diagonal().array() += damped * coupling.torsional_Nmm_per_rad;
-  // Symmetric and positive definite: the contacts add squares only.
+  // Symmetric and positive definite: the contacts add only squares.
   const Vector6 move = stiffness.ldlt().solve(net);
   return {move.head<3>(), move.tail<3>()};
 }

@@ -12,8 +12,8 @@ namespace osteomill::point_shell {
 
 namespace {
 
-// Room for the surface that milling lays bare: as much again as there is, and a fixed spare (32 points a
-// chunk).
+// Spare capacity for surface that milling exposes: as much again as the initial surface, plus this (32 points
+// per chunk).
 constexpr std::size_t kSpareChunks = 8192;
 constexpr int kSide = VoxelShell::kBrickNodes;
 
@@ -75,7 +75,8 @@ void VoxelShell::refresh(const VoxelBox& voxels) {
            [&](const VoxelIndex& brick) { refresh_brick(brick); });
 }
 
-// Bit n: whether node 8 * `byte` + n of row j of slice k is bone.
+// Returns the bone bits of nodes 8 * `byte` to 8 * `byte` + 7 of row j of slice k, the first in the lowest
+// bit.
 std::uint8_t VoxelShell::bone_byte(int byte, int j, int k) const {
   const int first = 8 * byte;
   const int count = std::min(8, geometry_.dims[0] - first);
@@ -94,7 +95,7 @@ std::uint8_t VoxelShell::bone_byte(int byte, int j, int k) const {
   return static_cast<std::uint8_t>(bits);
 }
 
-// Densities only fall: what was not bone needs no second look.
+// Densities only fall, so bytes without bone are skipped.
 void VoxelShell::lower_bone(const VoxelBox& nodes) {
   for (int k = nodes.first.k; k <= nodes.last.k; ++k) {
     for (int j = nodes.first.j; j <= nodes.last.j; ++j) {
@@ -106,10 +107,10 @@ void VoxelShell::lower_bone(const VoxelBox& nodes) {
   }
 }
 
-// The nodes whose density depends on voxels in `voxels`.
+// Returns the nodes whose density depends on voxels in `voxels`.
 VoxelBox VoxelShell::nodes_touched_by(const VoxelBox& voxels) const {
   if (voxels.empty()) return voxels;
-  // A node lies (stride - 1) / 2 voxels into its stride and reads the voxels on both sides of it.
+  // A node is (stride - 1) / 2 voxels into its stride and reads the voxels on both sides.
   const int s = stride_, before = s / 2, after = (s - 1) / 2;
   const auto first = [&](int v) { return v < before ? 0 : (v - before) / s; };
   const auto last = [&](int v) { return s == 1 ? v : (v < after ? 0 : (v - after) / s + 1); };

@@ -22,12 +22,12 @@ std::vector<std::string> SurfacePoints::setting_warnings(const MillingTool& tool
   constexpr double kMinForce_N = 1;
   std::vector<std::string> warnings;
   add_stiffness_warning(warnings, "surface-points: a stiffness", settings_.stiffness_N_per_mm);
-  // The sum over half a ball's vertices, each half as far from the surface as from the centre.
+  // Sums over half the sphere's vertices, each half as far from the surface as from the centre.
   const double max_N = settings_.stiffness_N_per_mm * tool.burr_radius_mm / 8;
   if (max_N < kMinForce_N) {
     std::ostringstream line;
-    line << "surface-points: a stiffness of " << settings_.stiffness_N_per_mm << " N/mm carries about "
-         << max_N << " N on a burr of " << tool.burr_radius_mm << " mm, beyond which it falls through";
+    line << "surface-points: a stiffness of " << settings_.stiffness_N_per_mm << " N/mm holds about " << max_N
+         << " N on a burr of " << tool.burr_radius_mm << " mm; beyond that it falls through";
     warnings.push_back(line.str());
   }
   add_reads_warning(warnings, "surface-points: this number of slices and vertices",
@@ -69,7 +69,7 @@ void SurfacePoints::update(VertexRing& ring, const Pose& X_WD) const {
     if (!reach.isZero(0)) ++ring.contacts;
     reach_mm += reach;
   }
-  // (17), (19): a centre in bone keeps the force of the step before.
+  // (17), (19): a centre in bone keeps the force of the previous step.
   if (is_bone_at(*volume_, centre_W)) return;
   // (14), (16), (18)
   ring.force_W_N =
