@@ -53,7 +53,7 @@ TEST(MakeAlgorithm, WhatTheUserSaysWins) {
   }
 }
 
-// The shaft's end first against a sheet two voxels thick, with a device that goes 5 mm past it.
+// Pushes the shaft's end first against a sheet two voxels thick; the device moves 5 mm past it.
 TEST(BarrierShell, HoldsTheShaftsEndAtAnySpeed) {
   constexpr double kTick_s = 1e-3;
   constexpr double kSheetTop_mm = 0.25;
@@ -113,7 +113,7 @@ TEST(MakeAlgorithm, EachCountsItsSamplePoints) {
   };
   EXPECT_EQ(count("line-proxy"), 51);
   EXPECT_EQ(count("surface-points"), 24 + 20 * 8);
-  // About the ball's area over the area of a voxel's face; the shell is some way inside, and staircased.
+  // About the ball's area over the area of a voxel's face; the shell lies slightly inside, and is staircased.
   const double faces = 4 * 3.14159 * 2.0 * 2.0 / (0.25 * 0.25);
   EXPECT_NEAR(count("point-shell"), faces, 0.4 * faces);
 }

@@ -63,7 +63,7 @@ HapticStep pressed(const Volume& bone, const Vec3& normal, double offset_mm) {
   return step;
 }
 
-// Densities that go from air to bone within two voxels, within one and, as those of a label map, at once.
+// Densities rise from air to bone within two voxels, within one, or, as in a label map, in one step.
 TEST(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
   const auto force_N = [&](const Shape& shape, const Vec3& normal, double offset_mm, double edge_voxels) {
     const Volume bone = shape_volume(
@@ -88,7 +88,7 @@ TEST(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
   }
 }
 
-// More bone about the tool than a tick makes points of, and a hand that does not wait: the tool waits for it.
+// The bone around the tool has more points than a tick can build, and the hand does not wait: the tool does.
 TEST(FeltShape, AToolThatBeginsInAFineHoleNeverLeavesIt) {
   constexpr double kHole_mm = 1.6;
   const MillingTool tool;

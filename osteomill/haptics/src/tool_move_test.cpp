@@ -31,8 +31,8 @@ TEST(ToolMove, AMoveIsCutShortByOneFactor) {
   EXPECT_EQ(moved_within({{}, 10, 1}, start, target), target);
 }
 
-// A point of the tool on a surface without friction, at a lever, with the device pressing further: the two
-// springs let the tool follow by a known part of the device's move, which needs no release.
+// A point of the tool on a frictionless surface, at a lever arm, with the device pressing further: the two
+// springs let the tool follow a known part of the device's move, which needs no release.
 TEST(ToolMove, WhereASurfaceLeadsAPressedToolLiesWithinTheBound) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -45,7 +45,7 @@ TEST(ToolMove, WhereASurfaceLeadsAPressedToolLiesWithinTheBound) {
     if (normal.dot(D) > 0) D = -D;
     if (about.dot(turn) > 0) turn = -turn;
     const double compliance = 1 / K + about.squaredNorm() / K_r;
-    // The push that the last tick left, and how much it grows.
+    // The push that the last tick left, and its increase.
     const double push_N = std::abs(unit(random));
     const double grows_N = -(normal.dot(D) + about.dot(turn)) / compliance;
     const Pose device;
@@ -66,14 +66,14 @@ TEST(ToolMove, ADeviceThatStandsReleasesAtASpeedAndAShareHoweverItMovedBefore) {
   const double may_mm = 3e-3 / 0.1 + 15e-3, may_rad = 0.4e-3 / 0.1 + 0.05e-3;
   EXPECT_NEAR(share_within(bound, {{-3, 0, 0}, Vec3::Zero()}), may_mm / 3, 1e-12);
   EXPECT_NEAR(share_within(bound, {Vec3::Zero(), {0, -0.4, 0}}), may_rad / 0.4, 1e-12);
-  // Pushed away, by bone that does not move, at the speed alone.
+  // Away from the device, only at the release speed, because the bone does not move.
   EXPECT_NEAR(share_within(bound, {{3, 0, 0}, Vec3::Zero()}), 15e-3 / 3, 1e-12);
-  // Sideways no faster: force turns, as it falls, at a speed.
+  // No faster sideways: a falling force may change its direction only at a limited speed.
   EXPECT_LT(share_within(bound, {{0, 0.1, 0}, Vec3::Zero()}), 0.5);
   EXPECT_EQ(share_within(bound, {}), 1);
 }
 
-// Standing still always lies within, and a tool that goes along with the device does.
+// Standing still is always within the bound, and so is moving with the device.
 TEST(ToolMove, TheToolMayStandStillAndGoAlong) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(-1, 1);

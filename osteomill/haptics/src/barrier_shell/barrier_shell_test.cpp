@@ -21,7 +21,7 @@ using testing_support::uniform;
 
 constexpr double kTick_s = 1e-3;
 
-// Moves the device there in steps of 0.02 mm, then waits; the last step.
+// Moves the device in steps of 0.02 mm, then waits; returns the last step.
 HapticStep approach(BarrierShell& algorithm, const Vec3& from, const Vec3& to, const Quat& orientation) {
   const int ticks = std::max(1, static_cast<int>((to - from).norm() / 0.02));
   for (int n = 0; n < ticks; ++n) {
@@ -59,17 +59,17 @@ TEST(BarrierShell, OnAPlaneTheForceIsAlongTheNormal) {
   const HapticStep step = approach(algorithm, 3 * normal, (tool.burr_radius_mm - kDepth_mm) * normal,
                                    smallest_rotation(Vec3::UnitZ(), normal));
   const double along_N = step.wrench.force_N.dot(normal);
-  // The coupling's spring gives, and the skin's outer side lies a little outside the tool.
+  // The coupling's spring yields, and the skin extends slightly beyond the tool.
   EXPECT_GT(along_N, 0.85 * 2 * kDepth_mm);
   EXPECT_LT(along_N, 1.1 * 2 * kDepth_mm);
   EXPECT_LT((step.wrench.force_N - along_N * normal).norm(), 0.003 * along_N);
-  // Bone and hand hold the tool between them.
+  // The forces of bone and hand balance.
   EXPECT_LT((step.burr_force_W_N + along_N * normal).norm(), 0.01 * along_N);
   EXPECT_EQ(algorithm.counts().energy_rises, 0u);
 }
 
-// The pressure's integral over a ball's lower half in a bowl of its own shape, `down_mm` below the bowl's
-// middle, along its axis.
+// Returns the pressure integrated over a ball's lower half in a bowl of its own shape, along its axis, with
+// its centre `down_mm` below the bowl's.
 double bowl_force_N(double radius_mm, double rounding_mm, const Barrier& skin, double down_mm) {
   constexpr int kRings = 2000;
   double force_N = 0;
@@ -95,7 +95,7 @@ TEST(BarrierShell, ABurrOfAnySizeRestsInItsOwnHoleWhereItIsDrawn) {
     const HapticStep step = approach(algorithm, {0, 0, 2 * radius_mm}, {0, 0, -1.5 / 2}, Quat::Identity());
     const double down_mm = -step.X_WT.position_mm.z();
     EXPECT_NEAR(down_mm, 0, 0.03) << radius_mm;
-    // Against the energy's own integral.
+    // Compares with the integrated pressure.
     const double rounding_mm = inset_within(tool, settings.rounding_mm);
     const Barrier skin{settings.skin_width_mm * rounding_mm / settings.rounding_mm,
                        settings.pressure_N_per_mm2 * 1.5 * 1.5 / (radius_mm * radius_mm)};
@@ -153,7 +153,7 @@ TEST(BarrierShell, TheShaftOnAnEdgeTurnsByForceTimesLever) {
   }
 }
 
-// Returns the points at which the density passes the isovalue between two voxels, independently of the
+// Returns the points at which the density crosses the isovalue between two voxels, independently of the
 // algorithm.
 std::vector<Vec3> surface_points(const Volume& volume) {
   std::vector<Vec3> points;
@@ -189,7 +189,7 @@ double deepest_mm(const std::vector<Vec3>& surface, const MillingTool& tool, con
   return -nearest;
 }
 
-// The device goes on through, at up to 300 mm/s, until the coupling pulls with all that it has.
+// Pushes the device on through the bone, at up to 300 mm/s, until the coupling saturates.
 double deepest_of_push(BarrierShell& algorithm, const std::vector<Vec3>& surface, const MillingTool& tool,
                        Pose X_WD, const Vec3& direction, double speed_mm_s, double way_mm) {
   algorithm.reset();
@@ -247,12 +247,12 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
   for (int n = 0; n < 300; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
     const Quat orientation = quaternion_from_rotation_vector(3 * random_vector(bits));
-    // From where the tool is clear of the bone in any pose.
+    // Starts clear of the bone in any orientation.
     const Pose from{-31 * direction + 2 * random_vector(bits), orientation};
     const double speed_mm_s = 160 + 140 * uniform(bits, -1, 1);
     EXPECT_LT(deepest_of_push(algorithm, surface, tool, from, direction, speed_mm_s, 38), 0.3) << n;
   }
-  // Only the device adds energy while the bone does not change.
+  // While the bone does not change, only the device adds energy.
   EXPECT_EQ(algorithm.counts().energy_rises, 0u) << algorithm.counts().worst_rise_Nmm;
   EXPECT_GT(algorithm.counts().nearest_share, 0);
 }
@@ -280,7 +280,7 @@ TEST(BarrierShell, AToolThatBeginsInsideBoneIsCarriedOutAndThenHeld) {
   EXPECT_GT(held.X_WT.position_mm.z(), 1.3);
 }
 
-// Another algorithm left the tool a little in the bone, the device is far in.
+// Another algorithm left the tool slightly in the bone; the device is far inside.
 TEST(BarrierShell, AHandOverInsideAWallIsHeldAndTheWrenchRamps) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
@@ -312,7 +312,7 @@ TEST(BarrierShell, ATickOfNoLengthReleasesNothing) {
   const Vec3 held_N = approach(algorithm, {0, 0, 5}, X_WD.position_mm, X_WD.orientation).wrench.force_N;
   EXPECT_GT(held_N.z(), 1);
   EXPECT_LT((algorithm.step(X_WD, 0).wrench.force_N - held_N).norm(), 1e-3);
-  // Far beyond what a tick may release, and at a turn.
+  // Jumps far beyond what a tick may release, and rotates.
   algorithm.step({{3, 0, 4}, Quat::Identity()}, 0);
   for (int n = 0; n < 3; ++n) {
     const HapticStep still = algorithm.step({{3, 0, 4}, Quat::Identity()}, 0);
@@ -334,13 +334,13 @@ TEST(BarrierShell, ADeviceThatJumpsAcrossBoneIsHeldAndTheWrenchRamps) {
   for (int n = 0; n < 600; ++n) {
     const HapticStep step = algorithm.step({{0, 0, -45}, Quat::Identity()}, kTick_s);
     EXPECT_LT((step.wrench.force_N - before).norm(), 0.3) << n;
-    // Nor is bone paid for at once with what the hand does not feel yet.
+    // Milling must not yet use the full force, which the hand does not feel.
     if (n < 50) {
       EXPECT_LT(step.burr_force_W_N.norm(), step.wrench.force_N.norm() + 0.3) << n;
     }
     before = step.wrench.force_N;
     ASSERT_GT(distance_to_ball({1.3, 0.8, 25}, -step.X_WT.position_mm).distance_mm, 0);
-    // Held on this side, or led round it; never within.
+    // Held on this side or guided around it; never inside.
     EXPECT_GT(step.X_WT.position_mm.norm(), 5.2);
   }
 }
@@ -369,7 +369,7 @@ TEST(BarrierShell, TheSameInputGivesTheSameBitsAlsoAfterAReset) {
   EXPECT_EQ(first, run(one));
 }
 
-// Bone is taken from under a pressed burr at random, in islands too: it never lets go at once, and follows.
+// Removes bone at random under a pressed burr, in islands too: the burr never drops suddenly, and follows.
 TEST(BarrierShell, ABurrPressedOnBoneThatIsMilledIsNeverLetGo) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.1),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));

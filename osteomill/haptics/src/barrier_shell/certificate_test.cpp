@@ -26,8 +26,8 @@ Pose after(const Pose& X_WT, const Vector6& move, double t) {
                {X_WT.orientation * Vec3(t * move.head<3>()), X_WT.orientation * Vec3(t * move.tail<3>())});
 }
 
-// A million random cores, points and moves, small and large: all along the way the point is at least as far
-// from the core as the certificate says, and after the certified share it keeps its tenth.
+// For a million random cores, points and moves, small and large: everywhere on the path the point is at least
+// as far from the core as certified, and after the certified share it keeps a tenth of its distance.
 TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
   std::mt19937 bits(7);
   const Pose X_WT{{0.3, -0.2, 0.7}, quaternion_from_rotation_vector({0.4, 1.1, -0.3})};
@@ -59,8 +59,8 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
   EXPECT_GE(min_kept, kDistanceKept - 1e-6);
 }
 
-// A point that slides along a core uses up none of its distance, however near it is; one that moves straight
-// at it uses up exactly its way.
+// A point that slides along a core uses up none of its distance, however near; one that moves straight
+// towards it uses up exactly the length of its path.
 TEST(Certificate, IsTightForSliding) {
   const Cores cores{1.3, 0.8, 24.8};
   const Vec3 beside_ball(0, 0, -1.3001), beside_shaft(0.8001, 0, 12);

@@ -34,7 +34,7 @@ TEST(Barrier, IsNothingBeyondItsWidthAndBeginsWithoutAKink) {
   EXPECT_GT(kBarrier.at(1e-9).pressure, 1e5);
 }
 
-// Along the path x + R t delta, R exp(t omega).
+// Checks the derivatives along the path x + R t delta, R exp(t omega).
 template <typename Energy>
 void expect_derivatives(const Pose& X_WT, const EnergySum& sum, const Energy& energy, std::mt19937& bits,
                         double step, double tolerance) {
@@ -99,7 +99,7 @@ TEST(Coupling, DerivativesAreThoseOfTheEnergyAlsoBeyondItsMostForce) {
     const Wrench wrench = coupling.wrench_on_hand(X_WT, X_WD);
     EXPECT_LE(wrench.force_N.norm(), 20 * (1 + 1e-12));
     EXPECT_LE(wrench.torque_Nmm.norm(), 500 * (1 + 1e-12));
-    // The hand is pushed by what the energy would do to the tool's other end.
+    // The wrench on the hand is the energy's gradient with respect to tool motion.
     EXPECT_NEAR(
         (wrench.force_N - X_WT.orientation * Vec3(coupling.sum(X_WT, X_WD).gradient.head<3>())).norm(), 0,
         1e-9);

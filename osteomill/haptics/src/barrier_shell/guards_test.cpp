@@ -23,7 +23,7 @@ using testing_support::uniform;
 
 constexpr double kStep_s = 1e-3;
 
-// A structure of voxels like a nerve that bends, and the distance from its cubes by a search of all of them.
+// A bent structure of voxels, like a nerve; the distance from its cubes is found by searching all of them.
 struct Nerve {
   GridGeometry scan = testing_support::centred_cube(60, 0.25);
   VoxelSet voxels{VoxelBox{{10, 10, 10}, {50, 50, 50}}};
@@ -50,7 +50,7 @@ struct Nerve {
   }
 };
 
-// Bone far below, with structures above it.
+// Bone far below the structures.
 std::unique_ptr<Volume> with_structures(NoGoDistances structures, double bone_below_mm = -6.5) {
   auto volume = std::make_unique<Volume>(testing_support::shape_volume(
       testing_support::centred_cube(60, 0.25), testing_support::plane({0, 0, bone_below_mm}, Vec3::UnitZ())));
@@ -92,8 +92,8 @@ TEST(Guards, KeepEveryOneOfTenThousandPushesOffByTheirDistanceLessATwentieth) {
       BarrierShell algorithm{Settings{}};
       algorithm.prepare({volume.get(), tool_of(burr_mm)});
       for (int push = 0; push < 100; ++push) {
-        // From anywhere outside the guard, at up to 300 mm/s, to a place beyond or beside the structure; so
-        // far that the coupling gives up to 20 N.
+        // From anywhere outside the guard, at up to 300 mm/s, to a target beyond or beside the structure, far
+        // enough for the coupling to reach 20 N.
         const Vec3 out = random_vector(random).normalized();
         Vec3 from_W = 9 * out;
         while (kind.distance_mm(from_W) > burr_mm + guard_mm + 0.3) from_W -= 0.1 * out;
@@ -131,7 +131,7 @@ TEST(Guards, GiveNoEnergyOnAClosedPathBeyondWhatSamplingLends) {
     BarrierShell algorithm{settings};
     algorithm.prepare({volume.get(), tool_of(1)});
     for (int loop = 0; loop < 20; ++loop) {
-      // Round through the structure and back to where it began, in free space.
+      // A loop through the structure and back to its start, in free space.
       Vec3 begin_W = 7 * random_vector(random).normalized();
       begin_W.z() = std::abs(begin_W.z());
       std::vector<Vec3> corners{begin_W};

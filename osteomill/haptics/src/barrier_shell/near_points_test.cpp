@@ -18,7 +18,7 @@ using testing_support::ForcedInstructionSet;
 using testing_support::instruction_sets_here;
 using testing_support::uniform;
 
-// Points all about the tool, also beyond the shaft's end and below the burr, none of them in a core.
+// Points all around the tool, also beyond the shaft's end and below the burr, none of them in a core.
 std::vector<ShellPoint> random_points(const Cores& cores, std::mt19937& bits) {
   std::vector<ShellPoint> points;
   while (points.size() < 700) {
@@ -58,7 +58,7 @@ bool same_bits(const EnergySum& a, const EnergySum& b) {
 }
 
 void expect_near(const EnergySum& a, const EnergySum& b) {
-  constexpr double kRelative = 2e-4;  // single precision, near the core a steep barrier
+  constexpr double kRelative = 2e-4;  // single precision, and a steep barrier near the core
   EXPECT_EQ(a.touching, b.touching);
   EXPECT_NEAR(a.nearest_mm, b.nearest_mm, 1e-5);
   EXPECT_NEAR(a.energy_Nmm, b.energy_Nmm, kRelative * b.energy_Nmm);

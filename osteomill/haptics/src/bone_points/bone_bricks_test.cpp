@@ -14,7 +14,7 @@
 namespace osteomill {
 namespace {
 
-// Meets the nodes whose spheres come within a distance of a place.
+// Selects the nodes whose bounding spheres come within a distance of a point.
 auto near(const SurfaceLattice& lattice, const Vec3& place_G, double within_mm) {
   return [&lattice, place_G, within_mm](int level, const VoxelIndex& node) {
     unsigned met = 0;
@@ -33,8 +33,8 @@ void make_all(BoneBricks& bricks) {
   for_each_point(bricks, [](const Vec3&, double) {});
 }
 
-// Bricks that the sweep updates over several ticks hold in the end the same points as newly built bricks;
-// meanwhile no part of the old surface is missing before the new one is there.
+// Bricks updated over several ticks end with the same points as newly built ones; meanwhile no part of the
+// old surface disappears before the new one is there.
 TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
   for (const double voxel_mm : {0.06, 0.125, 0.4}) {
     Volume volume =
@@ -69,7 +69,7 @@ TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
   }
 }
 
-// Lowers densities at random: here a little, there to nothing, in boxes such as a burr's.
+// Lowers densities at random, slightly or to zero, in boxes the size of a burr's.
 VoxelBox mill_at_random(Volume& volume, std::mt19937& bits) {
   const auto& dims = volume.geometry().dims;
   const VoxelIndex first{static_cast<int>(bits() % static_cast<unsigned>(dims[0])),
@@ -87,8 +87,8 @@ VoxelBox mill_at_random(Volume& volume, std::mt19937& bits) {
   return changed;
 }
 
-// Densities fall anywhere, also while earlier changes still wait: in the end all bricks are as if newly
-// built, and meanwhile every point is finite.
+// Densities fall anywhere, also while earlier changes are pending: in the end all bricks equal newly built
+// ones, and meanwhile every point is finite.
 TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
   GridGeometry geometry = testing_support::centred_cube(36, 0.2);
   geometry.spacing_mm = {0.2, 0.25, 0.3};
@@ -116,7 +116,7 @@ TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
   }
 }
 
-// The surface falls everywhere in every tick, faster than the others have their turns.
+// The surface falls everywhere in every tick, faster than the other bricks take their turns.
 TEST(BoneBricks, ThoseThatSupportTheToolAreBroughtUpToDateWithinAFewTicks) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(90, 0.13),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
@@ -150,7 +150,7 @@ TEST(BoneBricks, ThoseThatSupportTheToolAreBroughtUpToDateWithinAFewTicks) {
     BoneBricks anew(volume, 0.13);
     as_made_anew.push_back(heights(anew));
   }
-  // Every brick's height must be that of one of the last ticks.
+  // Every brick's height must match that of one of the last ticks.
   const std::vector<float> now = heights(kept);
   ASSERT_EQ(now.size(), as_made_anew.back().size());
   for (std::size_t n = 0; n < now.size(); ++n) {
@@ -161,7 +161,7 @@ TEST(BoneBricks, ThoseThatSupportTheToolAreBroughtUpToDateWithinAFewTicks) {
   }
 }
 
-// And says so as long as some are missing.
+// Returns false as long as bricks are missing.
 TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(150, 0.13),
                                                       testing_support::ball(Vec3::Zero(), 8));
@@ -196,7 +196,7 @@ TEST(BoneBricks, ACopyGoesOnByItself) {
   EXPECT_EQ(kept.fine().total(), points);
 }
 
-// Bone in every brick of a scan, all asked for at once.
+// Requests at once all bricks of a scan that has bone in every brick.
 TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
   const Volume volume =
       testing_support::shape_volume(testing_support::centred_cube(224, 0.13), [](const Vec3& p) {
@@ -218,7 +218,7 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
   EXPECT_GT(made_about(last_G, 6), 100u);
 }
 
-// Bone a metre wide: what was seen is forgotten in time, and there again when the tool is.
+// In bone a metre wide, bricks are evicted in time and rebuilt when the tool returns.
 TEST(BoneBricks, NeitherTimeNorRoomGrowsWithTheScan) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(11, 100.0),
                                                       testing_support::plane({0, 0, 10}, {0, 0, 1}));

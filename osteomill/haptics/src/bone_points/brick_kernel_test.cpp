@@ -23,7 +23,7 @@ using testing_support::uniform;
 constexpr float kIsovalue = 0.4f;
 constexpr int kSide = 24;
 
-// The lines of a row of cells in a block of random densities, and the edges from them that are crossed.
+// The lines of a row of cells in a block of random densities, and the crossed edges that begin at them.
 struct Scene {
   int group;
   std::vector<float> block;
@@ -64,10 +64,10 @@ struct Scene {
   }
 };
 
-// Sums over crossings: area times place, area, area times normal.
+// Sums over crossings: area times position, area, area times normal.
 using Sums = std::array<double, 7>;
 
-// Adds the crossings in double precision, one after the other.
+// Adds the crossings in double precision, one by one.
 void add_plain(const CrossingLattice& lattice, const CrossingRow& row, std::size_t node, Sums& sums) {
   const auto& [next, isovalue, step, per_step, face] = lattice;
   for (int axis = 0; axis < 3; ++axis) {
@@ -133,7 +133,7 @@ TEST(BrickKernel, EveryInstructionSetGivesTheSameBitsAndThePlainMeans) {
   }
 }
 
-// Densities that go up and down again from node to node: no gradient says how the surface lies.
+// Densities alternate from node to node, so that no gradient gives the surface's orientation.
 TEST(BrickKernel, WithoutANormalACrossingStillHasAnArea) {
   std::vector<float> block(kSide * kSide * 5);
   for (std::size_t n = 0; n < block.size(); ++n) block[n] = static_cast<float>(n % 2);

@@ -5,8 +5,7 @@
 namespace osteomill {
 namespace {
 
-// A grid of single voxels asks for more points than there is room for only if the pool is too small; then
-// points are dropped, counted, and taken in again once there is room.
+// An exhausted pool drops points and counts them; they are stored again once there is space.
 TEST(BrickPoints, APoolThatRunsOutDropsPointsAndSaysSo) {
   BrickPoints pool(2, 2);
   const ShellPoint one{1, 2, 3, 4};

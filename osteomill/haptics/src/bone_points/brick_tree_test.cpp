@@ -11,7 +11,7 @@ BrickTree::EightBits everywhere(int, const VoxelIndex&) {
   return 0xff;
 }
 
-// Gives every place above the bricks a node.
+// Gives every entry above the bricks a node.
 void open_all(BrickTree& tree) {
   tree.visit(everywhere, [&](int level, const VoxelIndex&, BrickTree::EntryIndex entry) {
     if (level > 0) tree.add_node(entry);

@@ -33,7 +33,8 @@ BallFigures figures(const BrickPoints& points, BoneBricks& bricks, double radius
   return f;
 }
 
-// At every resolution about as many points, on the ball, that add up to its area.
+// At every resolution there are about as many points; they lie on the ball, and their areas add up to its
+// area.
 TEST(SurfaceLattice, PointsCoverABallAtAnyVoxelSize) {
   constexpr double kRadius_mm = 3;
   const double area_mm2 = 4 * std::numbers::pi * kRadius_mm * kRadius_mm;
@@ -60,7 +61,7 @@ double area_of(BoneBricks& bricks) {
   return area_mm2;
 }
 
-// So that the cost of a tick does not grow with the square of how fine a scan is.
+// Otherwise the cost of a tick would grow with the square of a scan's resolution.
 TEST(SurfaceLattice, AFineScanHasNoMorePointsThanACoarseOne) {
   constexpr double kRadius_mm = 1.5;
   std::size_t coarse_points = 0;
@@ -91,7 +92,7 @@ TEST(SurfaceLattice, TheAreaOfAPlaneDoesNotDependOnItsSlopeOrOnUnevenSpacing) {
         area += share;
         worst = std::max(worst, std::abs(normal.normalized().dot(position - through)));
       });
-      // The disc's rim runs through cells.
+      // The disc's rim cuts through cells.
       EXPECT_NEAR(area / (4 * std::numbers::pi), 1, spacing_mm < 0.2 ? 0.04 : 0.07)
           << normal.transpose() << ", " << spacing_mm;
       EXPECT_LT(worst, 0.004);
@@ -99,7 +100,7 @@ TEST(SurfaceLattice, TheAreaOfAPlaneDoesNotDependOnItsSlopeOrOnUnevenSpacing) {
   }
 }
 
-// A rod of bone no wider than the points lie apart is seen from all sides, at whatever place and slope.
+// A rod of bone no wider than the point spacing is found from all sides, at any position and slope.
 TEST(SurfaceLattice, AThinRodIsNotMissedInAFineScan) {
   for (const double voxel_mm : {0.031, 0.0195}) {
     for (const Vec3& along : {Vec3(0, 0, 1), Vec3(1, 2, 3), Vec3(-1, 0.1, 0.05)}) {
@@ -109,7 +110,7 @@ TEST(SurfaceLattice, AThinRodIsNotMissedInAFineScan) {
         const Volume volume = testing_support::shape_volume(
             testing_support::centred_cube(static_cast<int>(1.5 / voxel_mm), voxel_mm), rod);
         BoneBricks bricks(volume, 0.13);
-        // In the middle, over a length that any cell's mean must lie in.
+        // In the middle, in sections long enough to contain the mean of at least one cell.
         std::array<int, 4> seen{};
         for_each_point(bricks, [&](const Vec3& position, double) {
           const double at = axis.dot(position - through) / 0.22 + 2;
@@ -121,7 +122,7 @@ TEST(SurfaceLattice, AThinRodIsNotMissedInAFineScan) {
   }
 }
 
-// Densities at the scan's border are copied before they are sampled, all others are not.
+// Only densities at the scan's border are copied before they are sampled.
 TEST(SurfaceLattice, APointNearTheBorderIsFoundAsAnyOther) {
   for (const double voxel_mm : {0.125, 0.0625, 0.031}) {
     const auto slope = testing_support::plane({0.03, 0.1, -0.04}, {0.2, 0.1, 1});
@@ -155,7 +156,7 @@ TEST(SurfaceLattice, APointNearTheBorderIsFoundAsAnyOther) {
   }
 }
 
-// A block of bone that fills the grid has its surface at the border; one with a cut plane at the plane too.
+// A block of bone that fills the grid has a surface at the border, and one cut by a plane also at the plane.
 TEST(SurfaceLattice, TheGridsBorderIsASurface) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(21, 0.1),
                                                       testing_support::plane({0, 0, 0.45}, {0, 0, 1}));

@@ -31,7 +31,7 @@ TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATic
     queue.update_supporting_in_turns([&](std::uint32_t) { return cost; },
                                      [&](std::uint32_t slot) { ++turns[slot]; });
   };
-  // One that bears nearly all, and has all turns.
+  // A brick that bears nearly all of the load is updated at every call.
   queue.add_supporting(8, 1);
   take(UpdateQueue::kSupportingPointsPerMs / 16);
   EXPECT_EQ(turns, std::vector<int>(9, 1));
@@ -41,7 +41,7 @@ TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATic
     EXPECT_GE(queue.size(), 5u);
   }
   EXPECT_EQ(turns, std::vector<int>({2, 2, 2, 2, 2, 2, 2, 2, 4}));
-  // One that costs more than a tick may has turns like the others.
+  // A brick that costs more than a tick's budget takes turns like the others.
   const int dear = UpdateQueue::kSupportingPointsPerMs + 1;
   const int before = turns[8];
   for (int tick = 0; tick < 4; ++tick) take(dear);
@@ -55,7 +55,7 @@ TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATic
 TEST(UpdateQueue, IfThoseThatBearCostMoreThanATickDoesThoseThatBearMostHaveAllTurns) {
   UpdateQueue queue;
   std::vector<int> turns(8);
-  // Loads of 1, 2, 4, ... of 255, each brick a third of a tick's points.
+  // Loads of 1, 2, 4, ... of 255 in total; each brick costs a third of a tick's points.
   for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot, static_cast<float>(1 << slot));
   constexpr int kTicks = 12;
   for (int tick = 0; tick < kTicks; ++tick) {
@@ -73,7 +73,7 @@ TEST(UpdateQueue, AShorterTickDoesAsMuchLess) {
     queue.update_supporting_in_turns([](std::uint32_t) { return UpdateQueue::kSupportingPointsPerMs / 8; },
                                      [&](std::uint32_t) { ++uses; });
   }
-  // Eight bricks, which a tick of 1 ms would all update, in four turns.
+  // Eight bricks take four turns; a tick of 1 ms would update them all.
   EXPECT_EQ(uses, 2 * 8);
   queue.begin_tick();
   queue.spend_build_budget(UpdateQueue::kBuiltPointsPerMs / 4);

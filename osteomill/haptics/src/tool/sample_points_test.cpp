@@ -46,7 +46,8 @@ TEST(SphereVertices, AreSpreadAsWidelyAs24PointsCanBe) {
   EXPECT_TRUE(std::equal(vertices.begin(), vertices.end(), snub_cube.begin(), snub_cube.end()));
 }
 
-// The platonic solids of triangles are known to be the answers for their numbers (Thomson's problem).
+// Platonic solids with triangular faces are the known solutions of Thomson's problem for their numbers of
+// points.
 TEST(SphereVertices, OfOtherNumbersSpreadOut) {
   EXPECT_NEAR(min_angle_deg(sphere_vertices(kTool, 4)), 109.4712, 0.01);
   EXPECT_NEAR(min_angle_deg(sphere_vertices(kTool, 6)), 90, 0.1);
@@ -68,7 +69,7 @@ TEST(SphereVertices, OfOtherNumbersSpreadOut) {
   EXPECT_THROW(sphere_vertices(kTool, 0), std::invalid_argument);
 }
 
-// Balanced: no direction is favoured to first or second order.
+// Balanced: the first and second moments favour no direction.
 TEST(SphereVertices, HaveTheMomentsOfASphere) {
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();

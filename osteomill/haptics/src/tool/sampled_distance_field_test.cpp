@@ -15,8 +15,8 @@ using testing_support::uniform;
 
 const MillingTool kTool{1.5, 1.0, 25.0};
 
-// Points of the depths at which contact happens, away from the tool's creases (the seam of burr and shaft,
-// the rim of the flat end, the axis), at which interpolation cannot follow the kink.
+// Points at contact depths, away from the tool's creases (the seam of burr and shaft, the rim of the flat
+// end, the axis), which interpolation cannot follow.
 bool is_smooth_near(const Vec3& point, double reach_mm) {
   const double distance = tool_distance(kTool, point).distance_mm;
   if (std::abs(distance) > 0.6) return false;

@@ -19,7 +19,7 @@ TEST(ToolDistance, KnownPoints) {
   EXPECT_DOUBLE_EQ(tool_distance(kTool, {4, 0, 29}).distance_mm, 5.0);
 }
 
-// The distance to a surface changes by one for every mm along its gradient, and by no more anywhere.
+// The distance changes by 1 mm per mm along its gradient, and no faster in any direction.
 TEST(ToolDistance, TheDirectionIsTheGradient) {
   for (int n = 0; n < 500; ++n) {
     const Vec3 point = Vec3(3, 3, 14).cwiseProduct(Vec3::Random()) + Vec3(0, 0, 12);

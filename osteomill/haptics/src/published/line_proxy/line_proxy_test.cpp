@@ -27,7 +27,7 @@ LineProxy prepared(const Settings& settings, const Volume& volume) {
   return algorithm;
 }
 
-// Returns settings with the stiffness for which the numbers here are.
+// Returns settings with the stiffness that the expected values assume.
 Settings soft() {
   Settings settings;
   settings.stiffness_N_per_mm = 2;
@@ -38,12 +38,12 @@ LineProxy prepared(const Volume& volume) {
   return prepared(soft(), volume);
 }
 
-// A tool that stands with its shaft along `shaft`.
+// Returns the pose of a tool whose shaft points along `shaft`.
 Pose standing(const Vec3& tip_W, const Vec3& shaft) {
   return {tip_W, smallest_rotation(Vec3::UnitZ(), shaft)};
 }
 
-// Moves the device straight from one place to another in `ticks` ticks, holds it as long again, and returns
+// Moves the device straight from one point to another in `ticks` ticks, holds it equally long, and returns
 // the last step.
 HapticStep push(LineProxy& algorithm, const Pose& from, const Vec3& to_W, int ticks) {
   HapticStep step;
@@ -140,7 +140,7 @@ TEST(LineProxy, SlidingOnAPlaneIsFreeOfFriction) {
   }
 }
 
-// Bone is lowered under the tip's proxy bit by bit, as milling does: the proxy goes down with the surface.
+// Lowers bone under the tip's proxy bit by bit, as milling does: the proxy goes down with the surface.
 TEST(LineProxy, TheProxyFollowsMilledBoneDown) {
   Volume bone = shape_volume(centred_cube(40, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   LineProxy algorithm = prepared(bone);
@@ -164,14 +164,14 @@ TEST(LineProxy, TheProxyFollowsMilledBoneDown) {
     EXPECT_GE(step.burr_force_W_N.norm(), force_before_N - 0.15);
     force_before_N = step.burr_force_W_N.norm();
   }
-  // The proxy is still on its way down the last 0.05 mm.
+  // The proxy has yet to follow the last 0.05 mm.
   HapticStep settled;
   for (int n = 0; n < 5; ++n) settled = algorithm.step(standing(tip, {0, 0, 1}), kTick_s);
   EXPECT_NEAR(-settled.burr_force_W_N.z(), 2.0 * (1.5 - 1.0), 0.01);
 }
 
-// A block whose upper edge runs along y through (0, y, 4); the shaft leans away from it upwards, so that it
-// meets the edge from the side there and nowhere else.
+// A block whose upper edge runs along y through (0, y, 4). The shaft leans away from it upwards, so that it
+// touches the edge only, from the side.
 Volume block_with_edge() {
   return shape_volume(centred_cube(64, 0.25), [](const Vec3& p) { return std::max(-p.x(), 4.0 - p.z()); });
 }
@@ -194,7 +194,7 @@ TEST(LineProxy, TheShaftMeetsAnEdgeAtTheEdge) {
   EXPECT_NEAR(step.intersection_W->z(), 4.0, 0.35);
 }
 
-// The far half of the shaft, lowered flat on the bone below z = 0.
+// Lowers the far half of the shaft flat onto the bone below z = 0.
 TEST(LineProxy, AStepTellsTheIntersectionPoint) {
   const Volume bone =
       shape_volume(centred_cube(64, 0.25), [](const Vec3& p) { return std::max(p.z(), p.x()); });
@@ -244,7 +244,7 @@ TEST(LineProxy, TheSameInputTwiceGivesTheSameBits) {
   const Volume bone = block_with_edge();
   LineProxy once = prepared(bone);
   LineProxy twice = prepared(bone);
-  // Something else first, forgotten by the reset.
+  // Starts with other motion, which the reset must forget.
   push(twice, leaning(0), leaning(6).position_mm, 50);
   twice.reset();
   for (int n = 0; n < 600; ++n) {
@@ -258,8 +258,8 @@ TEST(LineProxy, TheSameInputTwiceGivesTheSameBits) {
   }
 }
 
-// The vertices are in bone before the walk begins (the session starts there) and move along the edge, so that
-// their densities hardly change and eq. 1 divides by almost nothing.
+// The session starts with the vertices in bone; they move along the edge, so that their densities hardly
+// change and eq. 1 divides by almost zero.
 TEST(LineProxy, AStartInsideKicks) {
   const Volume bone = block_with_edge();
   LineProxy algorithm = prepared(bone);
@@ -293,7 +293,7 @@ TEST(LineProxy, WhatIsNotFiniteIsForgottenAtOnce) {
   EXPECT_LT(back.wrench.torque_Nmm.y(), -5.0);
 }
 
-// Between two ticks that came at once: no time has passed, and everything is finite.
+// Two ticks at the same instant: no time passes, and everything is finite.
 TEST(LineProxy, ATickOfNoLengthGivesNumbers) {
   const Volume bone = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   LineProxy algorithm = prepared(bone);
@@ -306,7 +306,7 @@ TEST(LineProxy, ATickOfNoLengthGivesNumbers) {
   }
 }
 
-// Along a line of the grid, onto a pole that lies on it.
+// Along a grid line, onto a pole on that line.
 TEST(LineProxy, ABallIsPressedStraightDownOnItsTop) {
   const Volume bone = shape_volume(centred_cube(49, 0.25), ball(Vec3::Zero(), 5.0));
   LineProxy algorithm = prepared(bone);

@@ -20,8 +20,8 @@ using testing_support::shape_volume;
 const std::vector<Vec3> kShaft{{0, 0, 1}, {0, 0, 2}, {0, 0, 3}, {0, 0, 4}};
 
 TEST(ShaftProbe, TheDeepestOfAnEdgeIsTheDensest) {
-  // The axis runs past the middle of a small ball, which is densest nearest to it: 2.75 up the shaft, between
-  // two vertices but on a sub-step of the one at 3.
+  // The axis passes the centre of a small ball, whose density is highest nearest to it: 2.75 up the shaft,
+  // between two vertices but on a sub-step of the one at 3.
   const Volume bone = shape_volume(centred_cube(48, 0.25), ball(Vec3(0, 0.9, 2.75), 1.0), 4.0);
   const ShaftProbe probe = densest_point(bone, kShaft, Pose{}, Vec3(0, 0, 3));
   EXPECT_LT((probe.point_W - Vec3(0, 0, 2.75)).norm(), 1e-9);
@@ -29,7 +29,7 @@ TEST(ShaftProbe, TheDeepestOfAnEdgeIsTheDensest) {
 }
 
 TEST(ShaftProbe, AmongEquallyDensePointsItIsTheMiddleOfTheRun) {
-  // Saturated from z = 1.5 on: of the sub-steps of a quarter, from 1.5 to 4.
+  // Saturated from z = 1.5 up: the sub-steps of a quarter from 1.5 to 4 are equally dense.
   const Volume bone = shape_volume(centred_cube(48, 0.25), plane(Vec3(0, 0, 1.125), -Vec3::UnitZ()));
   const ShaftProbe probe = densest_point(bone, kShaft, Pose{}, Vec3(0, 0, 3));
   EXPECT_NEAR(probe.point_W.z(), 2.75, 1e-9);

@@ -13,7 +13,7 @@ using testing_support::centred_cube;
 using testing_support::plane;
 using testing_support::shape_volume;
 
-// Bone beyond x = 1, a shaft of five vertices along z.
+// Bone beyond x = 1; a shaft of five vertices along z.
 class WalkTest : public ::testing::Test {
  protected:
   Pose tilted(double angle_rad, double x) const {
@@ -31,7 +31,7 @@ TEST_F(WalkTest, NoCollisionOnTheWayIsNone) {
   EXPECT_FALSE(walk(tilted(0, -1), tilted(0, 0.9)));
 }
 
-// Translated from x = 0 to 1.6 in steps of 0.4: the third step, from 0.8 to 1.2, collides half way.
+// Translated from x = 0 to 1.6 in steps of 0.4: the third step, from 0.8 to 1.2, collides halfway.
 TEST_F(WalkTest, ATranslationStopsAtTheFirstCollidingStep) {
   const auto hit = walk(tilted(0, 0), tilted(0, 1.6));
   ASSERT_TRUE(hit);
@@ -41,7 +41,7 @@ TEST_F(WalkTest, ATranslationStopsAtTheFirstCollidingStep) {
   EXPECT_NEAR(hit->intersection_W().x(), 1.0, 1e-6);
 }
 
-// Leaning over about the tip, the far end arrives first.
+// When the shaft tilts about the tip, its far end arrives first.
 TEST_F(WalkTest, ARotationIsWalkedAfterTheTranslation) {
   const Pose from = tilted(0, 0.2);
   const Pose to = tilted(std::asin(0.25), 0.2);  // the far end reaches x = 1.2, the vertex before it 0.95

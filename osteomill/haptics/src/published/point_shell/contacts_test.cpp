@@ -44,7 +44,7 @@ SampledDistanceField sampled(const MillingTool& tool) {
   return SampledDistanceField(tool, SampledDistanceField::suitable_spacing_mm(tool));
 }
 
-// The slow plain answers: every point of the shell.
+// Brute-force reference: tests every point of the shell.
 ToolContacts contacts_by_brute_force(const VoxelShell& shell, const SampledDistanceField& field,
                                      const Pose& X_WT) {
   ToolContacts contacts;
@@ -101,14 +101,14 @@ TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
   }
 }
 
-// Force along the normal over kA pi (r - d) d^2, least and greatest of a slide over a plane.
+// Force along the normal over kA pi (r - d) d^2: minimum and maximum while sliding over a plane.
 struct PlaneRatios {
   double min = 1e9;
   double max = 0;
   double sideways = 0;
 };
 
-// `contacts(volume)` makes what gives the contacts at a pose.
+// `contacts(volume)` returns a function from a pose to its contacts.
 template <typename Contacts>
 PlaneRatios slide_over_plane(const Contacts& contacts, const Vec3& normal, double depth_mm,
                              double edge_voxels) {
@@ -139,8 +139,7 @@ auto voxel_centres(int scale) {
 const std::vector<Vec3> kNormals{{0, 0, 1},     {1, 0, 0},  {1, 1, 0},      {1, 1, 1},         {1, 2, 3},
                                  {0.05, 0, -1}, {3, -2, 1}, {-0.4, 0.9, 2}, {0.37, 0.61, -0.2}};
 
-// With the paper's method centres lie inside the bone, by half a voxel and more, and are fewer where it
-// slopes.
+// With the paper's method the centres lie half a voxel and more inside the bone, and are sparser on slopes.
 TEST(PlaneContact, PaperIsTooSoftByASlopeDependentPart) {
   const PlaneRatios straight = slide_over_plane(voxel_centres(1), {0, 0, 1}, 0.25, 2);
   EXPECT_NEAR(straight.min, 0.78, 0.04);
@@ -152,9 +151,8 @@ TEST(PlaneContact, PaperIsTooSoftByASlopeDependentPart) {
   EXPECT_LT(coarse.min, 0.02);
 }
 
-// Two spheres: the depth at an angle t off the line of centres integrates to
-// kA * integral over the cap of the bone ball of (r - |p - c|) cos(turn), done here numerically on a fine
-// grid.
+// Force between two spheres: kA times the integral of (r - |p - c|) cos(turn) over the cap of the bone ball,
+// where p is at an angle t off the line of centres. Integrated numerically on a fine grid.
 double ball_force(double bone_radius, double burr_radius, double between) {
   double sum = 0;
   const int steps = 4000;
@@ -185,7 +183,7 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
   }
 }
 
-// One point, by itself: the derivative of its depth in the tool is n . dx + (r x n) . dw.
+// For a single point, the derivative of its depth in the tool is n . dx + (r x n) . dw.
 TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
   std::mt19937 bits(21);
   int tested = 0;
@@ -212,8 +210,8 @@ TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
   EXPECT_GT(tested, 30);
 }
 
-// The whole sum against differences of the force. On the burr the term left out has a closed form: for a
-// point at the distance s from the centre, k depth / s (1 - n n^T) adds to the derivative of the force.
+// Compares the derivative of the whole sum with differences of the force. On the burr the omitted term has a
+// closed form: a point at distance s from the centre adds k depth / s (1 - n n^T) to the force's derivative.
 TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
   const Volume volume = shape_volume(centred_cube(64, 0.125), ball({0, 0, -2.5}, 3));
   const VoxelShell shell(volume, 1);

@@ -25,7 +25,7 @@ using testing_support::shape_volume;
 const MillingTool kTool{1.5, 1.0, 25.0};
 constexpr double kTick_s = 1e-3;
 
-// Coupled as the numbers here are for.
+// Returns settings with the coupling that the expected values assume.
 Settings full_resolution() {
   Settings settings;
   settings.scale = 1;
@@ -59,7 +59,8 @@ TEST(PointShell, InFreeSpaceTheToolIsTheDeviceAndTheWrenchExactlyZero) {
   }
 }
 
-// The shaft alone on the edge of a wall at the lever L: the torque is the force's, about the burr's centre.
+// The shaft alone on the edge of a wall at the lever arm L: the torque is that of the force about the burr's
+// centre.
 TEST(PointShell, TheShaftOnAnEdgePushesAndTurnsTheHand) {
   const auto edge = [](const Vec3& p) { return std::max(p.x(), p.z()); };  // bone where x < 0 and z < 0
   const Volume volume = shape_volume(centred_cube(60, 0.15), edge);
@@ -67,7 +68,7 @@ TEST(PointShell, TheShaftOnAnEdgePushesAndTurnsTheHand) {
   algorithm.prepare({&volume, kTool});
   constexpr double kLever = 12.0;
   HapticStep step;
-  // The burr hangs free at x = 12; from there the shaft runs back over the edge, and rises.
+  // The burr hangs free at x = 12; from there the shaft runs back over the edge and rises.
   const Quat along = smallest_rotation(Vec3::UnitZ(), -Vec3::UnitX());
   const Quat tilted = quaternion_from_rotation_vector({0, 0.25, 0}) * along;
   const Vec3 shaft = tilted * Vec3::UnitZ();

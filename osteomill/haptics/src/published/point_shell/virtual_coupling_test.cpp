@@ -15,7 +15,7 @@ TEST(VirtualCoupling, WithoutContactTheMoveLeadsToTheDevice) {
   EXPECT_LT(rotation_vector(after.orientation * X_WD.orientation.conjugate()).norm(), 1e-12);
 }
 
-// One point under the burr: two springs in series between the device and the bone.
+// One point under the burr makes two springs in series between the device and the bone.
 TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
   const Pose X_WT{{0, 0, 0}, Quat::Identity()};
   const Pose X_WD{{0, 0, -0.7}, Quat::Identity()};
@@ -23,8 +23,7 @@ TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
   EnergySum contacts;
   add_contact(contacts, kPoint * kDepth, kPoint, {0, 0, -1}, {0, 0, -1.4});
   const ToolMove move = balancing_move(kCoupling, X_WT, X_WD, {}, contacts);
-  // The point is free of load 0.1 above: the device is 0.8 below that, and pushes with 2 * 8 / (2 + 8) * 0.8
-  // N.
+  // The point is unloaded 0.1 above: the device is 0.8 below that, and pushes with 2 * 8 / (2 + 8) * 0.8 N.
   constexpr double kForce = 2.0 * 8.0 / 10.0 * 0.8;
   EXPECT_NEAR(move.translation_mm.z(), -0.7 + kForce / 2.0, 1e-12);
   EXPECT_LT(move.rotation_rad.norm(), 1e-15);
@@ -33,7 +32,7 @@ TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
   EXPECT_LT(wrench.torque_Nmm.norm(), 1e-12);
 }
 
-// One point on the shaft at the lever L: the point sees the coupling's two springs in series, 1/k + L^2/k_r.
+// One point on the shaft at the lever arm L sees the coupling's two springs in series, 1/k + L^2/k_r.
 TEST(VirtualCoupling, OnePointAtALeverSharesBetweenForceAndTorque) {
   constexpr double kPoint = 50.0, kDepth = 0.02, kLever = 12.0;
   EnergySum contacts;
@@ -46,8 +45,8 @@ TEST(VirtualCoupling, OnePointAtALeverSharesBetweenForceAndTorque) {
   EXPECT_NEAR(wrench.torque_Nmm.y(), kLever * force, 1e-9);
 }
 
-// A spring of 2 N/mm and a damper of 3 ticks of it: at a stretch of 0.5 mm that grew by 0.1 in the tick they
-// give 2 (0.5 + 3 * 0.1) N; and what the move balances counts the damper for itself too.
+// A spring of 2 N/mm with a damper of 3 ticks: a stretch of 0.5 mm that grew by 0.1 mm in the tick gives 2
+// (0.5 + 3 * 0.1) N. The balancing move takes the damper into account too.
 TEST(VirtualCoupling, TheDamperCountsTheStretchAsIfItWentOn) {
   constexpr VirtualCoupling kDamped{2.0, 1000.0, 3};
   const ToolMove before{{0, 0, 0.4}, {0.01, 0, 0}};

@@ -111,7 +111,7 @@ TEST(VoxelShell, OnAnEvenScaleTheCoarseCentreLiesBetweenVoxels) {
   }
 }
 
-// Lowers densities at random: here a little, there to nothing, in boxes such as a burr's.
+// Lowers densities at random, slightly or to zero, in boxes the size of a burr's.
 void mill_at_random(Volume& volume, std::mt19937& bits, VoxelBox& changed) {
   const auto& dims = volume.geometry().dims;
   VoxelIndex first{static_cast<int>(bits() % static_cast<unsigned>(dims[0])),

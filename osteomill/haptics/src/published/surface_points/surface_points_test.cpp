@@ -27,8 +27,8 @@ SurfacePoints prepared(const Volume& volume, const Settings& settings) {
   return algorithm;
 }
 
-// Bone below z = 0, its density falling linearly from 5000 at z = -5 to -5000 at z = +5 about the isovalue 0:
-// the paper's interpolation is exact in it.
+// Bone below z = 0; its density falls linearly from 5000 at z = -5 to -5000 at z = +5 about the isovalue 0,
+// so that the paper's interpolation is exact.
 Volume linear_plane() {
   const GridGeometry geometry = centred_cube(41, 0.25);
   std::vector<float> densities;
@@ -40,7 +40,7 @@ Volume linear_plane() {
   return Volume(DensityGrid(geometry, densities), 0.0);
 }
 
-// A burr may be as large as all of the shaft is long.
+// A burr may be large enough to enclose the whole shaft.
 TEST(SurfacePoints, AToolWhoseShaftItsBurrSwallowsIsABurr) {
   const Volume volume = shape_volume(centred_cube(64, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   SurfacePoints algorithm(Settings{});
@@ -86,7 +86,7 @@ TEST(SurfacePoints, Equations14And16SumTheSphersVertices) {
   }
 }
 
-// The tool lies flat above the plane, x of W along the shaft.
+// Returns the pose of a tool lying flat above the plane, with its shaft along x of W.
 Pose lying(double height) {
   return {{-4, 0, height}, quaternion_from_rotation_vector({0, std::acos(-1.0) / 2, 0})};
 }
