@@ -22,7 +22,7 @@ std::optional<std::string> request_real_time() {
   priority.sched_priority = kPriority;
   if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0) {
     refused = std::string("no real-time scheduling (") + std::strerror(error) +
-              "): ticks will be late under load; rtprio in /etc/security/limits.conf allows it";
+              "): ticks will be late under load; set rtprio in /etc/security/limits.conf";
   }
   // Without MCL_FUTURE, because under a memory limit locking later allocations would make them fail. With
   // MCL_ONFAULT, because prefaulting pages for writing would duplicate those that copies of a bone share.

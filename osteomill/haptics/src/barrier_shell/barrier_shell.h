@@ -29,7 +29,7 @@ struct Settings {
 
 struct NewtonStep;
 
-/// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. A barrier that grows
+/// Algorithm 4: the tool rests on a soft skin of bone that no force can push it through. A barrier that grows
 /// without bound keeps two convex cores inside the tool away from the isosurface's points. Each tick takes a
 /// few Newton steps on the sum of barrier and virtual coupling energy, each certified free of penetration
 /// before it is taken. This is incremental potential contact (Li et al. 2020) for a tool on a changing

@@ -4,8 +4,8 @@
 
 namespace osteomill::barrier_shell {
 
-/// Returns the inset of the cores from the tool's surface, mm: the rounding, but at most half of the burr's
-/// radius, the shaft's radius and the shaft's length.
+/// Returns the inset of the cores from the tool's surface, mm: the rounding, but at most half of the smallest
+/// of burr radius, shaft radius and shaft length.
 double inset_within(const MillingTool& tool, double rounding_mm);
 
 /// The two convex bodies inside the tool that bone never reaches, in T: a ball about the burr's centre and a

@@ -10,8 +10,8 @@
 
 namespace osteomill::barrier_shell {
 
-/// Region in which points are gathered: within `near_mm` of the ball, or within `near_mm` + `per_lever` times
-/// the point's distance from the burr's centre of the cylinder.
+/// Region in which points are gathered: for the ball within `near_mm` of it; for the cylinder within
+/// `near_mm` plus `per_lever` times the point's distance from the burr's centre.
 struct GatherRegion {
   Cores cores;
   double near_mm = 0;

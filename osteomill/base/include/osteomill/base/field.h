@@ -44,8 +44,8 @@ struct NumberRange {
 std::string range_text(const NumberRange& range);
 
 /// Describes one value for all code that checks, shows, reads or writes it: the command line, files, tables.
-/// Use designated initialisers, because most fields omit some members: `{.name = "push", .unit = "N", .range
-/// = NumberRange::positive(), .doc = "Push", .option = "push"}`.
+/// Use designated initialisers, because most fields omit some members:
+/// `{.name = "push", .unit = "N", .range = NumberRange::positive(), .doc = "Push", .option = "push"}`.
 struct FieldDescription {
   /// The name in files; empty if files do not store the value.
   std::string name = {};

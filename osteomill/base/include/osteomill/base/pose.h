@@ -12,7 +12,7 @@ using Mat3 = Eigen::Matrix3d;
 /// A rotation `R_AB` from frame B to frame A, a unit quaternion.
 using Quat = Eigen::Quaterniond;
 static_assert(alignof(Quat) == 16,
-              "osteomill is built with EIGEN_MAX_ALIGN_BYTES=16; so must be what links it");
+              "osteomill is built with EIGEN_MAX_ALIGN_BYTES=16; programs that link it must be too");
 
 /// A rigid transform `X_AB`, the pose of frame B in frame A: a point `p_B` in B is `X_AB * p_B` in A, and
 /// `X_AB * X_BC` is `X_AC`. Position in mm; `orientation` is a unit quaternion. Safe in the haptic tick.

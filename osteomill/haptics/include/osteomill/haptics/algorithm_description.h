@@ -26,8 +26,8 @@ struct HapticSettings {
   /// Values for options are applied first, then those for one algorithm, each in this order.
   std::vector<Named> named = {};
 
-  /// Sets an option for every algorithm that has it, replacing an earlier value: `set_option("stiffness",
-  /// 2)`.
+  /// Sets an option for every algorithm that has it. Replaces an earlier value.
+  /// Example: `set_option("stiffness", 2)`.
   void set_option(const std::string& option, double value) {
     clear_option(option);
     named.push_back({"", option, value});

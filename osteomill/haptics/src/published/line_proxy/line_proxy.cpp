@@ -14,7 +14,7 @@ namespace osteomill::line_proxy {
 
 namespace {
 
-// Search distance for the surface if the tip is already deep in bone in the first tick that finds it there
+// Search distance for the surface if the tip is found deep in bone without having been seen to enter it
 // (switched on there, or jumped there).
 constexpr double kExitReach_mm = 5.0;
 // Lengths in mm and forces in N beyond this count as not finite.
