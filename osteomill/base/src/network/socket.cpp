@@ -40,7 +40,7 @@ std::string number_of(const addrinfo* found) {
   return number.data();
 }
 
-// Returns the address of a host; empty if the name cannot be resolved. Resolves in a detached thread, so that
+// Returns the address of a host; empty if its name is unknown. Resolves it in a detached thread, so that
 // an unresponsive name server delays neither reopening a device nor ending the program.
 std::string resolved(const std::string& host) {
   std::promise<std::string> promise;
