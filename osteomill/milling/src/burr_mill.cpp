@@ -27,27 +27,26 @@ namespace {
 
 constexpr double kForgetAfter_s = 0.05;
 constexpr double kMaxAhead_mm_s = 20;
-// Target and hard limit for the pieces of rows in a tick. The limit applies if skipping lines would leave
-// differences in height above kMaxUneven_voxels.
+// Target and hard limit for the row pieces per tick. The limit applies if skipping lines would leave height
+// differences above kMaxUneven_voxels.
 constexpr std::size_t kPiecesOfTick = 1024;
 constexpr std::size_t kMaxPiecesOfTick = 4096;
 constexpr double kMaxUneven_voxels = 0.6;
-// And never more, even in the first ticks, before it is known how many there are.
+// Capacity: also bounds the first ticks, in which the number of pieces is not known yet.
 constexpr std::size_t kRoomForPieces = 2 * kMaxPiecesOfTick;
 constexpr unsigned kMaxShares = 64;
-// Time for which an unspent budget is kept: a burr may swing on the bone that it presses on, and lose it for
-// some ticks.
+// Time worth of budget that is carried over: a burr may bounce on the bone and lose contact for some ticks.
 constexpr double kBudgetKept_s = 0.01;
-// Time over which the cut bone is measured; shorter, and a rate follows single voxels.
+// Time constant of the estimate of the cut bone. If shorter, the rate follows single voxels.
 constexpr double kMeasured_s = 0.005;
-// Directions in which the bone's density is looked at, half of them ahead.
+// Directions in which density is sampled; half of them point ahead.
 constexpr int kDirections = 48;
-// Smallest contact, as a share of the burr's cross-section, with which a chip is not endlessly thick.
+// Lower bound on the contact area relative to the burr's cross-section; bounds the chip thickness.
 constexpr double kMinContact = 0.01;
 // Smallest density, relative to the reference, that counts as bone.
 constexpr double kMinDensity = 0.05;
 
-// The least float that is not below `density`.
+// Returns the smallest float that is not below `density`.
 float float_not_below(double density) {
   const float nearest = static_cast<float>(density);
   return static_cast<double>(nearest) < density
@@ -59,20 +58,20 @@ void require(bool right, const char* what) {
   if (!right) throw std::invalid_argument(what);
 }
 
-// Farther than where bone counts as ahead of the burr, by what an interpolated surface may lie beside where
-// it was cut: what counts must be there to be cut.
+// Half a voxel more than the pressing reach, because the interpolated surface may be off by that much: bone
+// that counts as pressed on must be within reach of the cut.
 double max_ahead(const GridGeometry& geometry) {
   constexpr double kFarther_voxels = 0.5;
   return pressing_reach_mm(geometry) + kFarther_voxels * geometry.spacing_mm.maxCoeff();
 }
 
-// Returns how far back, as a negative distance, the ball's leading half cuts nothing, however deep in bone
-// the burr is.
+// Returns the (negative) advance at which the leading half cuts nothing, however deep in bone the burr is.
 double min_ahead(const GridGeometry& geometry, double radius_mm) {
   return -radius_mm - CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
 }
 
-// Returns the radius, about the midpoint, that encloses a ball about the burr and the same ball ahead of it.
+// Returns the radius of a ball about the midpoint that encloses the burr at both its shown and its advanced
+// position.
 double reach_mm(const GridGeometry& geometry, double radius_mm, double ahead_mm) {
   return radius_mm + 0.5 * ahead_mm + CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
 }
@@ -139,12 +138,12 @@ MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N
   MillingStep done = lower_found(voxels_.find_lowered(ahead_mm_, advance.shares));
   done.rate_mm3_s = paid_mm3_s;
   if (settings_.chips) measure_contact(lines * advance.slope_per_mm, dt_s);
-  // Below zero by a rounding error if floats were rounded in the burr's favour; the next step pays for it.
+  // May be slightly negative by float rounding; the next step pays for it.
   carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kBudgetKept_s * paid_mm3_s);
   return done;
 }
 
-// Looks at the bone just beyond what the profile lowers, which is as it was scanned.
+// Samples the bone just beyond the reach of the profile, which still has its scanned densities.
 void BurrMill::look_ahead(const Vec3& centre_W, const Vec3& ahead_W, double dt_s) {
   const double reach_mm = radius_mm_ + CutProfile::kReach_voxels * geometry().spacing_mm.maxCoeff();
   const Vec3 from_W = centre_W + std::max(ahead_mm_, 0.0) * ahead_W;
@@ -198,9 +197,9 @@ void BurrMill::find(const CuttingBall& ball, double max_ahead_mm, double pressed
   voxels_.gather(reach_, ball, profile, max_ahead_mm);
 }
 
-// A burr deep in its hole has tens of thousands of voxels before it, and takes a thousandth of each in a
-// tick. Every second line then takes twice as much every second tick, and so on: lines, since they sample all
-// of the burr alike.
+// A burr deep in its hole overlaps tens of thousands of voxels and removes a thousandth of each per tick.
+// Every second line then takes twice as much every second tick, and so on. Whole lines are skipped because
+// they sample the burr evenly.
 void BurrMill::share_after(std::size_t found, double advance_voxels) {
   found_of_round_ += found;
   ++share_.turn;

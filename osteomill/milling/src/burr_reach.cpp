@@ -11,7 +11,7 @@ namespace osteomill {
 
 namespace {
 
-// The cells of all voxel centres in a ball lie in the ball grown by half a cell's diagonal.
+// The cells of all voxels whose centres are in the ball lie in the ball grown by half a cell's diagonal.
 std::size_t max_voxels_in_ball(const GridGeometry& geometry, double radius_mm) {
   const double grown_mm = radius_mm + 0.5 * geometry.spacing_mm.norm();
   const double max =
@@ -80,8 +80,8 @@ void BurrReach::find(const Vec3& centre_mm, double radius_mm, const Share& share
   }
 }
 
-// The bricks of a word, a bit each, that lie less than the root of `left2_mm2` away along the line and may
-// hold something.
+// Returns the mask of a word's bricks whose distance along the line is below sqrt(`left2_mm2`) and that may
+// hold voxels above the floor.
 std::uint64_t BurrReach::occupied_in_ball(int bj, int bk, std::size_t word, double left2_mm2) {
   const Squares& x = squares_[0];
   std::uint64_t& occupied = occupied_[words_of_line_ * brick_line(bj, bk) + word];
@@ -156,7 +156,7 @@ void BurrReach::find_pieces(std::size_t word, std::uint64_t occupied, int bj, in
   for (int k = kSide * bk; k < end_k; ++k) {
     const double across_z =
         radius_mm_ * radius_mm_ - static_cast<double>(z.of_voxel_mm2[static_cast<std::size_t>(k)]);
-    // Lines of the share are those with j + 3 k - turn a multiple of its count.
+    // The share consists of the lines for which j + 3 k - turn is a multiple of its count.
     const unsigned before = (share.turn - static_cast<unsigned>(kSide * bj + 3 * k)) & (share.count - 1);
     for (int j = kSide * bj + static_cast<int>(before); j < end_j; j += static_cast<int>(share.count)) {
       const double half2 = across_z - static_cast<double>(y.of_voxel_mm2[static_cast<std::size_t>(j)]);
@@ -171,7 +171,7 @@ void BurrReach::find_pieces(std::size_t word, std::uint64_t occupied, int bj, in
         if (pieces_.size() == max_pieces_) return;
         const VoxelIndex first{kSide * bi, j, k};
         pieces_.push_back({grid.address_of(first), first, static_cast<std::uint8_t>(inside)});
-        // Each row lies in a cache line of its own; by the time that all are known, the first have come.
+        // Each row is in a different cache line; the first are loaded by the time all pieces are found.
         grid.prefetch(first);
       }
     }

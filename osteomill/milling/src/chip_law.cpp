@@ -38,7 +38,8 @@ double power_between(double x, double x0, double y0, double x1, double y1) {
   return y0 * std::pow(x / x0, std::log(y1 / y0) / std::log(x1 / x0));
 }
 
-// Returns the rate of one edge; `swept_mm2_s` is the contact's area times the edges that pass it in a second.
+// Returns the removal rate of one edge. `swept_mm2_s` is the contact area times the edges that pass per
+// second.
 double rate_of(const ChipEdge& edge, double power_mW, double energy_share, double swept_mm2_s) {
   const double energy = edge.energy_Nmm_per_mm3 * energy_share;
   if (edge.exponent == 0) return power_mW / energy;

@@ -1,6 +1,6 @@
 #include "cut_kernel.h"
 
-// AVX3_DL and SSSE3 have nothing for us over their neighbours.
+// AVX3_DL and SSSE3 bring no gain here over the next lower target.
 #define HWY_DISABLED_TARGETS \
   (HWY_AVX3_DL | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 // This file is compiled once for each target.
@@ -41,7 +41,7 @@ HWY_INLINE V density(const CutProfile& profile, V t) {
   return hn::Max(constant(profile.surroundings), hn::Add(within, beyond));
 }
 
-// From the centre of the ball that cuts a voxel: the leading half has moved.
+// Distance from the centre of the half ball that cuts the voxel; `moved` is 0 for the trailing half.
 HWY_INLINE V distance(V distance2, V along, V moved) {
   const V twice = hn::Mul(hn::Add(along, along), moved);
   return hn::Sqrt(hn::Max(hn::Add(hn::Sub(distance2, twice), squared(moved)), constant(kTiny_mm * kTiny_mm)));
@@ -86,7 +86,7 @@ unsigned GatherPiece(const CutPiece& piece, const CutKernelBall& ball, const Cut
   return denser;
 }
 
-// Holds for a list's entries whether the ball's leading half cuts them, and to which density.
+// For a group of list entries: whether the leading half cuts them, and the density that it leaves.
 struct Cut {
   M leads;
   V along, moved, from_centre, per_mm, t, density;
@@ -136,7 +136,8 @@ void LowerDensities(CutLists& lists, float radius, const CutProfile& profile, fl
     const V before = hn::LoadU(d, &lists.before[n]);
     const V drop = hn::Max(hn::Sub(before, c.density), hn::Zero(d));
     const V left = hn::Mul(hn::IfThenElse(c.leads, leading, trailing), drop);
-    // Exactly the profile's if nothing is left of a drop, so that the next cut finds nothing to do.
+    // If the whole drop is applied this is exactly the profile's density, so that the next cut changes
+    // nothing.
     hn::StoreU(hn::Min(before, hn::Add(c.density, left)), d, &lists.after[n]);
   }
 }

@@ -8,9 +8,10 @@
 
 namespace osteomill {
 
-/// The ball as the kernels below read it. They use vector instructions chosen at run time, with the same bits
-/// from all of them. All distances are from the ball's centre, in the grid's axes, mm. Lists are worked
-/// through in whole groups of up to `kLanes` entries, and so beyond their ends.
+/// The ball in the form that the kernels below take. They use vector instructions chosen at run time; all
+/// instruction sets give bit-identical results. All distances are relative to the ball's centre, in the
+/// grid's axes, mm. Lists are processed in whole groups of up to `kLanes` entries and therefore read beyond
+/// their ends.
 struct CutKernelBall {
   float radius;
   /// Unit vector.
@@ -19,10 +20,10 @@ struct CutKernelBall {
   bool cubic;
 };
 
-/// A piece of a row: the densities of its `kLanes` voxels; where they lie from the ball's centre, `x` a voxel
-/// each, `y` and `z` the whole row; the first voxel's column; and a bit for each voxel that is to be looked
-/// at. `gather_piece` appends to `lists` those that the ball lowers with its leading half `max_ahead` ahead,
-/// and returns a bit for each one looked at that is denser than the surroundings.
+/// A piece of a row: the densities of its `kLanes` voxels; their positions relative to the ball's centre (`x`
+/// per voxel, `y` and `z` for the whole row); the first voxel's column; and a mask of the voxels to process.
+/// `gather_piece` appends to `lists` those that the ball lowers if its leading half is `max_ahead` ahead. It
+/// returns the mask of processed voxels that are denser than the surroundings.
 struct CutPiece {
   const float* densities;
   const float* x;
@@ -33,8 +34,8 @@ struct CutPiece {
 unsigned gather_piece(const CutPiece& piece, const CutKernelBall& ball, const CutProfile& profile,
                       float max_ahead, CutLists& lists) noexcept;
 
-/// Leading drops, their derivative by `ahead`, and trailing drops, over [begin, end), both multiples of
-/// `kLanes`, in `kLanes` lanes each.
+/// Sums of the leading drops, of their derivative with respect to `ahead`, and of the trailing drops over
+/// [begin, end), one partial sum per lane. `begin` and `end` must be multiples of `kLanes`.
 struct CutSums {
   alignas(64) float leading[CutLists::kLanes] = {};
   alignas(64) float slope[CutLists::kLanes] = {};
@@ -47,10 +48,10 @@ void sum_drops(const CutLists& lists, std::size_t begin, std::size_t end, float 
 void lower_densities(CutLists& lists, float radius, const CutProfile& profile, float ahead,
                      float leading_share, float trailing_share) noexcept;
 
-/// Chooses the instructions. The first call of a kernel does that too, but asks the system for it.
+/// Chooses the instruction set. The first kernel call would do it otherwise, with a system call.
 void choose_cut_instructions();
 
-/// Returns the sets of vector instructions for which this was compiled, as Highway numbers them. For tests.
+/// Returns the instruction sets this was compiled for, as Highway's bit mask. For tests.
 std::int64_t cut_kernel_targets();
 
 }  // namespace osteomill

@@ -10,7 +10,7 @@ namespace osteomill {
 namespace {
 
 constexpr std::size_t kLanes = CutLists::kLanes;
-// Number of drops that are summed as floats before the sum is added to a double.
+// Number of drops summed in float before the sum is added to a double.
 constexpr std::size_t kBlock = 64 * kLanes;
 
 double sum_of(const float (&lanes)[kLanes]) {
@@ -27,7 +27,7 @@ CutKernelBall kernel_ball(const CuttingBall& ball, const Vec3& spacing_mm) {
           spacing_mm.maxCoeff() - spacing_mm.minCoeff() < 1e-6 * spacing_mm.maxCoeff()};
 }
 
-// An entry that costs nothing.
+// Writes a padding entry, which costs nothing.
 void put_nothing(CutLists& lists, std::size_t n, float surroundings) {
   lists.distance2_mm2[n] = 1;
   lists.ahead_mm[n] = 0;
@@ -35,22 +35,21 @@ void put_nothing(CutLists& lists, std::size_t n, float surroundings) {
   lists.before[n] = surroundings;
 }
 
-// Newton's from the tick before takes two or three; halving alone would take 25.
+// Newton's method started from the last tick takes two or three passes; bisection alone takes 25.
 constexpr int kMaxPasses = 25;
 constexpr double kTolerance = 0.01;
 constexpr double kNoDistance_mm = 1e-7;
-// Largest share of the budget for the bone that the trailing half overlaps.
+// Maximum fraction of the budget for the trailing half.
 constexpr double kMaxTrailing = 0.5;
 
-// Returns `of` as a part of `all`, between 0 and 1; 1 if there is nothing. A budget may be below zero by the
-// rounding of floats.
+// Returns `of` / `all`, clamped to [0, 1]; 1 if `all` is 0. `of` may be slightly negative by float rounding.
 double part(double of, double all) {
   const double spent = std::max(of, 0.0);
   return all > spent ? spent / all : 1.0;
 }
 
-// Returns the next place to try between `low`, where the cost is below the budget, and `high`, where it is
-// above: Newton's place, an end that has not been tried, or the middle.
+// Returns the next advance to try between `low` (cost below the budget) and `high` (above): the Newton step,
+// an untried end, or the midpoint.
 double next_ahead(double ahead, double over, double slope, double low, double high, bool low_tried,
                   bool high_tried) {
   const double newton = slope > 0 ? ahead - over / slope : (over > 0 ? low : high);
@@ -77,14 +76,14 @@ CutVoxels::CutVoxels(const GridGeometry& geometry, std::size_t voxels, std::size
   }
 }
 
-// Measures the distances of the planes of voxels from the ball's centre, for those that can be near it.
+// Computes the distances of the voxel planes near the ball from its centre.
 void CutVoxels::measure(const CuttingBall& ball, double reach_mm) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<Eigen::Index>(axis);
     const double spacing_mm = geometry_.spacing_mm[at], centre_mm = ball.centre_mm[at];
     std::vector<float>& planes = from_centre_mm_[axis];
     const double count = static_cast<double>(planes.size());
-    // A brick's row begins up to a brick before.
+    // A brick's row may begin up to one brick earlier.
     const double first = std::clamp((centre_mm - reach_mm) / spacing_mm - kLanes, 0.0, count);
     const double last = std::clamp((centre_mm + reach_mm) / spacing_mm + kLanes + 1, 0.0, count);
     for (auto n = static_cast<std::size_t>(first); n < static_cast<std::size_t>(last); ++n) {

@@ -8,16 +8,16 @@ namespace osteomill {
 namespace {
 
 constexpr double kSmooth_s = 0.01;
-// Less is nothing, so that a tool in free space feels just that.
+// Smaller values are set to zero, so that a tool in free space gives exactly no wrench.
 constexpr double kNothing_N = 1e-4;
 constexpr double kNothing_Nmm = 1e-4;
-// Means over the unit normals n of half a ball, weighted by their cosine to `ahead`: the mean of n . ahead,
-// and the isotropic part and the part along `ahead` of the mean of n n^T.
+// Means over the unit normals n of a half ball, weighted by their cosine to `ahead`: the mean of n . ahead,
+// and the mean of n n^T as an isotropic part and a part along `ahead`.
 constexpr double kMeanAlong = 2.0 / 3.0;
 constexpr double kAround = 0.25;
 constexpr double kAlong = 0.25;
 
-// Each piece of the burr moves along spin x n, is held back along that, and has the lever r n.
+// Each surface element moves along spin x n; the resistance opposes that, at the lever arm r n.
 Wrench reaction(const Vec3& ahead_W, const Vec3& shaft_W, double burr_radius_mm, double cutting_N) {
   const Vec3 spin_W = -shaft_W;
   const Vec3 mean_n_n_spin = kAround * spin_W + kAlong * ahead_W.dot(spin_W) * ahead_W;
@@ -47,7 +47,7 @@ ShaftDrag shaft_drag(const MillingTool& tool, const Pose& X_WT, const Wrench& co
   const double force_N = across_W_N.norm();
   if (!(force_N > kMinForce_N) || !std::isfinite(force_N)) return {};
   const Vec3 to_bone_W = -across_W_N / force_N;
-  // The force has its torque by a lever along the shaft.
+  // Distance along the shaft at which the force produces the contact torque.
   const double lever_mm = std::clamp(contact.torque_Nmm.dot(shaft_W.cross(across_W_N)) / (force_N * force_N),
                                      0.0, tool.shaft_length_mm);
   const Vec3 speed_W = -shaft_W.cross(to_bone_W);

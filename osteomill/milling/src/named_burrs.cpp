@@ -7,9 +7,9 @@ namespace osteomill {
 
 namespace {
 
-// Shafts: 2.35 mm for straight handpieces, 1.6 mm for friction grip (ISO 1797). Behind a burr that is not
-// wider the shaft tapers to a neck; that it is 0.6 of the burr is assumed, as are the lengths that stand
-// out of the handpiece.
+// Shafts: 2.35 mm for straight handpieces, 1.6 mm for friction grip (ISO 1797). The shaft tapers to a neck
+// behind a burr that is not wider. Assumed: a neck of 0.6 of the burr's diameter, and the lengths outside the
+// handpiece.
 constexpr double kNeckShare = 0.6;
 
 constexpr MillingTool tool_of(double diameter_mm, double shank_mm, double length_mm) {
@@ -21,7 +21,7 @@ constexpr NamedBurr surgical(const char* name, const char* label, double diamete
           tool_of(diameter_mm, 2.35, 25), edge};
 }
 
-// Sizes and numbers by ISO 6360: the size is the diameter in tenths of a millimetre.
+// Sizes and numbers follow ISO 6360: the size is the diameter in tenths of a millimetre.
 constexpr NamedBurr dental(const char* name, const char* label, double diameter_mm, BurrEdge edge) {
   return {name, label, edge == BurrEdge::cutting ? "dental, cutting" : "dental, diamond",
           tool_of(diameter_mm, 1.6, 18), edge};

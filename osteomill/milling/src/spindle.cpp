@@ -19,9 +19,9 @@ constexpr HandpieceType kHandpieces[] = {
      {400000, kMaker},
      {2.33, "the greatest of 41 air turbines (Brockhurst 1994, Aust Dent J 39:33)"},
      {0.15, kRunUp}},
-    // 60 W at half the speed of a straight line.
+    // 60 W at half the free speed, where a linear torque curve gives most power.
     {"electric", {200000, kMaker}, {11.5, kMaker}, {0.15, kRunUp}},
-    // With a burr of 1.5 mm that cuts at its equator and a tangential share of 0.4.
+    // Torque for a burr of 1.5 mm radius that cuts at its equator, with a tangential share of 0.4.
     {"surgical",
      {40000, "assumed: within 20,000 to 100,000 (Abouzgia and James 1995)"},
      {8.1, kSlower},
@@ -35,7 +35,7 @@ std::span<const HandpieceType> handpiece_types() {
 }
 
 void Spindle::step(bool is_on, double torque_Nmm, double dt_s) noexcept {
-  // Slower counts as standing.
+  // Slower than this fraction of the set speed counts as stopped.
   constexpr double kStanding = 1e-3;
   if (type_ == Handpiece::none) {
     speed_rpm_ = is_on ? set_rpm_ : 0;

@@ -12,51 +12,54 @@
 
 namespace osteomill {
 
-/// Finds where a ball overlaps voxels of one volume that are denser than a floor. It remembers, in bricks of
-/// 8 x 8 x 8 voxels and a bit a voxel, which ones were empty at the last visit, so that a step costs little
-/// more than what it finds: a burr in its hole has emptied the bricks around it. It finds pieces of rows (i
-/// runs along a row), brick by brick.
+/// Finds the voxels that a ball overlaps and that are denser than a threshold, the floor. Caches empty voxels
+/// in a bit mask of 8 x 8 x 8 bricks, so that the cost of a step is close to the number of voxels found: a
+/// burr in its hole has already emptied the bricks around it. Results are pieces of rows (i runs along a
+/// row), brick by brick.
 class BurrReach {
  public:
-  /// Allocates all that `find` needs. `volume` outlives it; from the first `find` on its densities must not
-  /// rise. `max_radius_mm` is above 0, the grid not empty. No more than `max_pieces` are found at once.
+  /// Allocates everything that `find` needs. `volume` must outlive this; from the first `find` on, its
+  /// densities must not rise. `max_radius_mm` is above 0 and the grid not empty. One call of `find` returns
+  /// at most `max_pieces`.
   BurrReach(const Volume& volume, double max_radius_mm, float floor_density,
             std::size_t max_pieces = std::numeric_limits<std::size_t>::max());
 
-  /// The rows that a step looks at if a ball has more voxels than a step has time for: those of every
-  /// `count`-th line of the grid, shifted with `turn` so that `count` turns see all. `count` is a power of 2.
+  /// Subset of rows processed in one step if the ball covers more voxels than the time budget allows: every
+  /// `count`-th line of the grid, offset by `turn`, so that `count` consecutive turns cover all lines.
+  /// `count` is a power of 2.
   struct Share {
     unsigned count = 1;
     unsigned turn = 0;
   };
-  /// The voxels of a row within a brick, from `first` on, whose density is the first of `densities`: a bit
-  /// for each that lies in the ball and may be denser than the floor.
+  /// The part of a row that lies in one brick, beginning at voxel `first`, whose density is `densities[0]`.
+  /// Bit n is set if voxel n is inside the ball and may be denser than the floor.
   struct Piece {
     const float* densities;
     VoxelIndex first;
     std::uint8_t bits;
   };
-  /// Finds what the ball overlaps, or a share of it. `centre_mm` (finite) is in the grid's axes, from the
-  /// first voxel's centre; `radius_mm` at most the greatest. Safe in the haptic tick.
+  /// Finds the pieces that the ball overlaps, or a share of them. `centre_mm` (finite) is in the grid's axes,
+  /// relative to the first voxel's centre; `radius_mm` is at most `max_radius_mm`. Safe in the haptic tick.
   void find(const Vec3& centre_mm, double radius_mm, const Share& share = {1, 0}) noexcept;
   const std::vector<Piece>& pieces() const { return pieces_; }
-  /// Forgets voxels of a piece that hold nothing any more, so that they are not found again.
+  /// Marks voxels of a piece (bits `gone`) as empty, so that they are not found again.
   void forget_voxels(const Piece& piece, unsigned gone) noexcept;
   float floor_density() const { return floor_density_; }
-  /// Returns the most that can be found at once.
+  /// Returns the largest number of voxels that one `find` can return.
   std::size_t max_voxels() const { return max_voxels_; }
   std::size_t max_pieces() const { return max_pieces_; }
 
  private:
   static constexpr int kSide = BlockRanges::kBrickVoxels;
-  /// A bit a voxel: whether it may be denser than the floor. Byte j + 8 k, bit i.
+  /// One bit per voxel, set if it may be denser than the floor: byte j + 8 k, bit i.
   using Bits = std::array<std::uint8_t, kSide * kSide>;
-  /// Indices along one axis, both ends among them; none if last < first.
+  /// Inclusive index range along one axis; empty if last < first.
   struct Span {
     int first = 0;
     int last = -1;
   };
-  /// Along one axis: the squared distance of each voxel's centre from the ball's, and the least of a brick's.
+  /// Along one axis: squared distance of each voxel's centre from the ball's, and the minimum over each
+  /// brick.
   struct Squares {
     Span voxels;
     Span bricks;
@@ -84,7 +87,8 @@ class BurrReach {
   std::array<int, 3> brick_dims_;
 
   std::vector<bool> is_scanned_;
-  // A bit a brick, 64 along a line of bricks to a word: whether it may hold voxels denser than the floor.
+  // One bit per brick, 64 consecutive bricks of a line per word; set if the brick may hold voxels above the
+  // floor.
   std::size_t words_of_line_;
   std::vector<std::uint64_t> occupied_;
   std::vector<Bits> bits_;

@@ -10,21 +10,21 @@
 
 namespace osteomill {
 
-/// The density that cutting leaves `t` voxels outside a cut surface (inside it if negative), counted along
-/// the surface's normal: the isovalue on it, the surroundings one voxel inside, as much above the isovalue
-/// one voxel outside, and from there on so steep that bone soon stays as it is. It does not depend on what
-/// was there, so cutting to the same surface again changes nothing. docs/algorithms.md.
+/// Density that cutting leaves at a signed distance `t`, in voxels along the normal, from the cut surface
+/// (positive outside the burr): the isovalue on the surface, the surroundings' density one voxel inside,
+/// linear up to one voxel outside, and steeper beyond, so that bone farther out is unchanged. Independent of
+/// the previous density, so cutting to the same surface again changes nothing. See docs/algorithms.md.
 struct CutProfile {
   float surroundings = 0;
   float isovalue = 0.5f;
   float per_voxel = 0.5f;
   float beyond_per_voxel = 4;
 
-  /// The distance outside the surface up to which bone is lowered, if it is not more than three times as
-  /// dense as the reference.
+  /// Distance outside the surface up to which bone is lowered; holds for bone up to three times the reference
+  /// density.
   static constexpr double kReach_voxels = 1.55;
 
-  /// Returns the profile for these densities; the isovalue and the reference are above the surroundings.
+  /// Returns the profile for these densities. The isovalue and the reference must be above the surroundings.
   static CutProfile between(double surroundings, double isovalue, double reference) {
     return {static_cast<float>(surroundings), static_cast<float>(isovalue),
             static_cast<float>(isovalue - surroundings), static_cast<float>(4 * (reference - surroundings))};
@@ -34,56 +34,55 @@ struct CutProfile {
   }
 };
 
-/// The burr's ball as it cuts, in the grid's axes, mm from the first voxel's centre.
+/// The cutting ball in the grid's axes, mm from the first voxel's centre.
 struct CuttingBall {
   Vec3 centre_mm = Vec3::Zero();
-  /// The direction in which the burr presses: a unit vector, along its force on the bone.
+  /// Unit vector along the burr's force on the bone.
   Vec3 ahead = Vec3::UnitZ();
   double radius_mm = 0;
 };
 
-/// The lists in which CutVoxels gathers, with one entry a voxel and room for `kLanes` entries behind the
-/// last.
+/// Structure of arrays filled by CutVoxels::gather, one entry per voxel, padded by `kLanes` entries.
 struct CutLists {
   static constexpr std::size_t kLanes = 8;
   std::size_t size = 0;
-  /// The squared distance from the ball's centre, the distance ahead of it, and the number of voxels per mm
-  /// along the ball's normal.
+  /// Squared distance from the ball's centre, distance ahead of it, and voxels per mm along the ball's
+  /// normal.
   std::vector<float> distance2_mm2, ahead_mm, voxels_per_mm;
   std::vector<int> columns;
   std::vector<float> before, after;
 };
 
-/// The voxels that a ball would lower: all that it overlaps except those that are cut already. The half of
-/// the ball that lies ahead of its centre (leading) is moved along `ahead`, the other half (trailing) stays.
+/// The voxels that a ball would lower: those that it overlaps and that are not cut yet. The half of the ball
+/// ahead of its centre (leading) is shifted along `ahead`; the other half (trailing) stays in place.
 class CutVoxels {
  public:
-  /// Allocates room for `voxels` voxels and `rows` rows at once.
+  /// Allocates for at most `voxels` voxels and `rows` rows per step.
   CutVoxels(const GridGeometry& geometry, std::size_t voxels, std::size_t rows);
 
-  /// Gathers, from the rows found about the ball, the voxels that it lowers with the leading half up to
-  /// `max_ahead_mm` ahead. Lets `reach` forget what holds nothing.
+  /// Gathers, from the pieces in `reach`, the voxels that the ball lowers if its leading half is
+  /// `max_ahead_mm` ahead. Marks empty voxels in `reach`.
   void gather(BurrReach& reach, const CuttingBall& ball, const CutProfile& profile,
               double max_ahead_mm) noexcept;
 
-  /// The cost of cutting to the ball's surface, as sums of densities.
+  /// Cost of cutting to the ball's surface, as sums of density drops.
   struct Cost {
     double leading = 0;
-    /// The growth of `leading` as the ball goes ahead.
+    /// Derivative of `leading` with respect to the distance ahead.
     double slope_per_mm = 0;
     double trailing = 0;
   };
   Cost cost(double ahead_mm) const noexcept;
 
-  /// The part of each drop that is made.
+  /// Fraction of each drop that is applied.
   struct Shares {
     double leading = 1;
     double trailing = 1;
   };
-  /// Fills `after()`; returns the sum of the drops, exact for the floats that they are.
+  /// Fills `after()`. Returns the sum of the drops, computed from the stored floats without further rounding.
   double find_lowered(double ahead_mm, const Shares& shares) noexcept;
 
-  /// A row's voxels are [begin, end) of the lists below.
+  /// The voxels of a row are entries [begin, end) of the lists below.
   struct Row {
     int j;
     int k;
@@ -103,22 +102,22 @@ class CutVoxels {
   CutProfile profile_;
   CutLists lists_;
   std::vector<Row> rows_;
-  // Along each axis: how far each plane of voxels lies from the ball's centre.
+  // Along each axis: distance of each plane of voxels from the ball's centre.
   std::array<std::vector<float>, 3> from_centre_mm_;
 };
 
-/// The distance ahead of its centre at which a ball cuts, and the part of each drop that is made.
+/// Distance by which the leading half of the ball is shifted, and the fraction of each drop that is applied.
 struct BurrAdvance {
   double ahead_mm = 0;
   CutVoxels::Shares shares;
-  /// `CutVoxels::Cost::slope_per_mm` there.
+  /// `CutVoxels::Cost::slope_per_mm` at `ahead_mm`.
   double slope_per_mm = 0;
 };
 
-/// Returns the ball's place between `min_ahead_mm` and `max_ahead_mm` where cutting to its surface takes just
-/// the `budget` (a sum of densities, above 0); searched from `start_ahead_mm`. Bone that the trailing half
-/// overlaps is paid first, with at most half the budget. If even the least place takes more, part of each
-/// drop is made; no more is spent than the budget, except by the rounding of floats. Safe in the haptic tick.
+/// Returns the advance between `min_ahead_mm` and `max_ahead_mm` at which cutting to the ball's surface costs
+/// `budget` (a sum of densities, above 0). The search starts at `start_ahead_mm`. The trailing half is paid
+/// for first, with at most half the budget. If even `min_ahead_mm` costs more, each drop is applied in part,
+/// so that the budget is not exceeded except by float rounding. Safe in the haptic tick.
 BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_ahead_mm, double min_ahead_mm,
                            double max_ahead_mm) noexcept;
 

@@ -6,55 +6,56 @@
 
 namespace osteomill {
 
-/// Returns the power that a cutting force has at the place where the burr cuts, as a share of its power at
-/// the burr's rim: 3/4 if the equator cuts, 1/2 if the pole does, whose speed is lower. `ahead_W`, in which
-/// it presses, and `shaft_W` are unit vectors. What is cut lies about `ahead_W` as in BurrMill: on the half
-/// ahead, by the cosine of the angle from it. Each piece of the burr is held back in proportion to its speed.
+/// Returns the power of a cutting force as a fraction of its power at the burr's rim: 3/4 if the equator
+/// cuts, 1/2 if the slower pole does. `ahead_W` (pressing direction) and `shaft_W` are unit vectors. The cut
+/// is distributed over the leading half of the ball as in BurrMill, by the cosine of the angle to `ahead_W`.
+/// The resistance on each surface element is proportional to its speed.
 double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) noexcept;
 
-/// Returns the force that pays for what is cut: none if the burr does not turn, so that the mill forgets what
-/// it had pressed for as if it were lifted; else the burr's force, less if its pole presses, and all of it if
-/// energy is constant (no `MillingSettings::chips`) and there is no reaction
-/// (`MillingSettings::reaction_share`). Safe in the haptic tick.
+/// Returns the part of the burr's force that pays for removal. Zero if the spindle is off, so that the mill
+/// drops its unspent budget as if the burr were lifted. Otherwise the force times `rim_share`, or all of it
+/// if energy is constant (no `MillingSettings::chips`) and there is no reaction
+/// (`MillingSettings::reaction_share` is 0). Safe in the haptic tick.
 Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N,
                       bool spindle_on) noexcept;
 
-/// The friction of a spinning shaft on bone. Assumed: no measurement was found.
+/// Coefficient of friction of a spinning shaft on bone. Assumed: no measurement was found.
 inline constexpr double kShaftFriction = 0.2;
 
-/// The drag of bone on the spinning shaft.
+/// Drag of bone on the spinning shaft.
 struct ShaftDrag {
   /// On the hand, about the burr's centre, in W.
   Wrench wrench;
-  /// The torque by which it holds the spindle back.
+  /// Load torque on the spindle.
   double torque_Nmm = 0;
 };
 
-/// Returns the drag, kShaftFriction times the force across the shaft and against its turning, if `contact` is
-/// what bone does to the shaft, about the burr's centre, in W; nothing under 0.01 N. Safe in the haptic tick.
+/// Returns the drag: kShaftFriction times the contact force across the shaft, against the rotation. `contact`
+/// is the wrench of bone on the shaft about the burr's centre, in W. Zero if that force is below 0.01 N. Safe
+/// in the haptic tick.
 ShaftDrag shaft_drag(const MillingTool& tool, const Pose& X_WT, const Wrench& contact) noexcept;
 
-/// Computes what the hand feels of cutting: the burr, which turns clockwise as the hand sees it, is held back
-/// along its speed, so that it pulls sideways along its rim and turns the handle. The power of its torque
-/// about the spindle is what the bone cost. Smoothed over 10 ms, so that no grain of the cutting is a step in
-/// the hand; at most twice `reaction_share` of what the burr pressed with, since no more than 10 ms of
-/// pressing are carried over. Not published in this form; docs/algorithms.md names what is.
+/// Computes the reaction of cutting on the hand. The burr turns clockwise as seen from the hand; bone resists
+/// along its surface velocity, so the burr pulls sideways and its torque turns the handle. The power of the
+/// torque about the spindle equals the cutting power. Smoothed over 10 ms, so that the hand feels no steps as
+/// single voxels are cut. At most twice `reaction_share` of the burr's force, because the mill carries over
+/// no more than 10 ms of pressing. Not published in this form; see docs/algorithms.md for related work.
 class CuttingReaction {
  public:
-  /// Makes the reaction; there is none if `reaction_share` or the removal rate is 0.
+  /// The reaction is zero if `reaction_share` or the removal rate is 0.
   CuttingReaction(const MillingSettings& settings, double burr_radius_mm)
       : settings_(settings), radius_mm_(burr_radius_mm) {}
 
-  /// Returns the reaction on the hand, about the burr's centre, as of the last tick.
+  /// Returns the reaction on the hand in the last tick, in W about the burr's centre.
   const Wrench& wrench() const { return wrench_; }
-  /// Takes in, after each tick, what was removed with this force on the bone in `dt_s`. Safe in the haptic
-  /// tick.
+  /// Updates the reaction from the bone removed in `dt_s` with this force on the bone. Call after each tick.
+  /// Safe in the haptic tick.
   void follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) noexcept;
-  /// Does so with the part of the force that holds the burr back along its rim by `reaction_share`, and with
-  /// the drag on the shaft.
+  /// Updates the reaction from the part of the force that paid for removal (its tangential force is
+  /// `reaction_share` times that) and from the drag on the shaft.
   void follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s,
                    const Wrench& shaft_drag = {}) noexcept;
-  /// Forgets the reaction, as before the first tick.
+  /// Resets to the state before the first tick.
   void reset() noexcept { wrench_ = {}; }
 
  private:

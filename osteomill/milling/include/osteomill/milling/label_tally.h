@@ -8,34 +8,33 @@
 
 namespace osteomill {
 
-/// The bone that a tick took of one label that it touched. `label` 0 means no entry.
+/// Bone removed in a tick from one label that the burr touched. `label` 0 means no entry.
 struct LabelCut {
   LabelMap::LabelIndex label = 0;
-  /// In mm^3 of reference density, as MillingStep counts.
+  /// In mm^3 of reference density, as in MillingStep.
   double removed_mm3 = 0;
   friend bool operator==(const LabelCut&, const LabelCut&) = default;
 };
-/// The labels that a tick reports: first the entries, then empty ones.
+/// Labels reported by one tick; unused entries, at the end, have label 0.
 using LabelCuts = std::array<LabelCut, 4>;
 
-/// Sums what was taken of each label and not yet reported. Its size is fixed; safe in the haptic tick. A tick
-/// reports a few labels; if a burr cuts more at once, the others wait for the next ticks, so that nothing is
-/// lost.
+/// Sums the bone removed per label until it is reported. Fixed size; safe in the haptic tick. A tick reports
+/// at most four labels; further ones stay queued for the next ticks, so nothing is lost.
 class LabelTally {
  public:
-  /// Adds to the sum of a label; does nothing for no label.
+  /// Adds to the sum of a label. Ignores label 0.
   void add(LabelMap::LabelIndex label, double removed_mm3) noexcept {
     add_contact(label);
     if (label != 0) removed_mm3_[label] += removed_mm3;
   }
-  /// Notes that a label was touched, though nothing was taken of it; does nothing for no label.
+  /// Records contact with a label without removal. Ignores label 0.
   void add_contact(LabelMap::LabelIndex label) noexcept {
     if (label == 0 || waits_[label]) return;
     waits_[label] = true;
     waiting_[count_++] = label;
   }
 
-  /// Takes out the labels that have waited longest.
+  /// Removes and returns the labels queued longest.
   LabelCuts take() noexcept {
     LabelCuts cuts;
     const std::size_t taken = std::min(cuts.size(), count_);

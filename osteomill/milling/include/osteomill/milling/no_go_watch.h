@@ -7,12 +7,12 @@
 
 namespace osteomill {
 
-/// Watches whether a burr touches a structure that no burr may touch. It looks at points on the burr's
-/// surface, a voxel apart (on large burrs in fine voxels further, 512 points at the most): any structure as
-/// wide as that is found when the burr reaches it, bone or not.
+/// Detects contact of a burr with no-go structures. Samples points on the burr's surface, one voxel apart
+/// (farther apart for large burrs in fine voxels: at most 512 points), so any structure wider than that
+/// spacing is found, whether it is bone or not.
 class NoGoWatch {
  public:
-  /// Places the points on the burr. Allocates. `labels` may be null: then nothing is found.
+  /// Generates the sample points; allocates. `labels` may be null; there are then no contacts.
   NoGoWatch(std::shared_ptr<const LabelMap> labels, double burr_radius_mm);
 
   /// Adds to `tally` every no-go label that the burr touches, with nothing removed. Safe in the haptic tick.
@@ -21,7 +21,7 @@ class NoGoWatch {
  private:
   std::shared_ptr<const LabelMap> labels_;
   double radius_mm_;
-  // The points on the burr's surface, and its centre, as seen from that centre in W's axes.
+  // Sample points relative to the burr's centre, in W's axes: on the surface, and the centre itself.
   std::vector<Vec3> points_mm_;
 };
 
