@@ -23,7 +23,7 @@ constexpr auto kBetweenBones = 500ms;
 constexpr auto kSendWithin = 2s;
 constexpr const char* kName = "OsteomillBone";
 
-// The protocol has x and y the other way round than W.
+// x and y of the protocol (RAS) are opposite to those of W.
 igtl::Matrix4x4& set_place(const Mat3& axes_W, const Vec3& origin_W, igtl::Matrix4x4& matrix) {
   const Vec3 to_ras(-1, -1, 1);
   igtl::IdentityMatrix(matrix);
@@ -35,7 +35,7 @@ igtl::Matrix4x4& set_place(const Mat3& axes_W, const Vec3& origin_W, igtl::Matri
   return matrix;
 }
 
-// An image is placed by its middle.
+// OpenIGTLink places an image by its centre.
 Vec3 middle_W(const GridGeometry& grid) {
   return grid.world_from_voxel(0.5 * Vec3(grid.dims[0] - 1, grid.dims[1] - 1, grid.dims[2] - 1));
 }
@@ -127,7 +127,7 @@ void BoneSender::run(const std::stop_token& stop, Socket& stream) {
       is_last = stop.stop_requested();
       tool = std::exchange(tool_, {});
     }
-    // Messages of the receiver are not used, but would block it if they were not read.
+    // Read and discard the receiver's messages; unread ones would eventually block it.
     stream.receive(unread);
     if (tool) send_tool(stream, *tool);
     const auto now = std::chrono::steady_clock::now();

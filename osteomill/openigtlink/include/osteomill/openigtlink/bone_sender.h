@@ -16,22 +16,22 @@ namespace osteomill {
 
 class Socket;
 
-/// Sends the bone as it is milled, and the tool, to a receiver of OpenIGTLink (3D Slicer): IMAGE messages
-/// called OsteomillBone, at the beginning all of it, then, at most twice a second and only after a change,
-/// the box of all that was ever milled, as a part of that image, with the scan's densities as 32-bit floats;
-/// and at the rate that it was given TRANSFORM messages called OsteomillTool (X_WT) and STRING messages
-/// called OsteomillReadings. All in the patient's axes (RAS, as the protocol has them). On a thread of its
-/// own, for which neither the haptic thread nor anyone else waits longer than such a box takes to be copied.
+/// Streams the bone while it is milled, and the tool, to an OpenIGTLink receiver (3D Slicer). IMAGE messages
+/// named OsteomillBone carry the scan's densities as 32-bit floats: first the whole image, then, at most
+/// twice a second and only after a change, the bounding box of everything milled so far as a sub-volume.
+/// TRANSFORM messages named OsteomillTool (X_WT) and STRING messages named OsteomillReadings follow at the
+/// given rate. All coordinates are in the patient's axes (RAS, as the protocol requires). Sends from its own
+/// thread; other threads wait at most while it copies such a box.
 class BoneSender {
  public:
-  /// Connects to the address HOST:PORT. `bone` outlives this. Throws InputError if the address is none,
-  /// nothing listens there, or the bone does not fit into a message (2 GiB). At its end the bone is sent as
-  /// it is by then, if that takes no longer than two seconds.
+  /// Connects to `address`, HOST:PORT. `bone` must outlive this. Throws InputError if the address is
+  /// malformed, nothing listens there, or the bone does not fit into a message (2 GiB). The destructor sends
+  /// the final bone if that takes no longer than two seconds.
   BoneSender(const BoneFollower& bone, const std::string& address, double tool_rate_Hz);
 
-  /// Sets the state of the tool that is sent from now on. Any thread.
+  /// Sets the tool state to send next. Any thread.
   void show_tool(const TickRecord& now);
-  /// Returns whether the receiver is still there; nothing is sent any more if it is not. Any thread.
+  /// Returns false once the receiver has disconnected; nothing is sent after that. Any thread.
   bool is_connected() const { return is_connected_.load(std::memory_order_relaxed); }
 
  private:
@@ -43,7 +43,7 @@ class BoneSender {
   std::mutex mutex_;
   std::condition_variable_any end_;
   std::optional<TickRecord> tool_;
-  // Last, so that it ends before all that it uses.
+  // Last member, so that the thread ends before the members it uses are destroyed.
   std::jthread thread_;
 };
 
