@@ -10,47 +10,46 @@
 
 namespace osteomill {
 
-/// The test of section 8.2 of the paper as one hand's intent: mill a hole and push the shaft against its
-/// edge, then stand in it and hold still.
+/// The test of section 8.2 of the paper: mill a hole, lean the shaft against its edge, then hold still in it.
 struct ScriptSettings {
-  /// The time that the milling lasts.
+  /// Duration of the milling phase.
   double milling_s = 20.0;
-  /// If true, the milling instead lasts until the shaft has leant on bone for `leant_share` of `milling_s`,
-  /// or the hand gives up trying to, after three times `milling_s` at the latest.
+  /// If true, milling instead lasts until the shaft has leant on bone for `leant_share` of `milling_s`, or
+  /// the hand gives up, at the latest after three times `milling_s`.
   bool until_leant = false;
   static constexpr double leant_share = 0.15;
   double holding_s = 20.0;
-  /// The hole is deep enough to lean in when the shown burr's tip is this far below the entry.
+  /// Depth of the shown burr's tip below the entry at which the hand begins to lean.
   static constexpr double depth_mm = 3.0;
-  /// The shares of its push that the hand aims for while it feeds the burr in, leans the shaft, and holds.
+  /// Target push as a fraction of HandSettings::push_N while feeding, leaning and holding.
   static constexpr double feed_push = 0.9;
   static constexpr double lean_push = 0.6;
   static constexpr double hold_push = 0.5;
-  /// The least time that the hand takes, at the start of the holding, to come to the push that it then holds.
-  /// With `until_leant` it takes until it feels that push and the wall, but no longer than half the holding;
-  /// the time beyond `settle_s` makes the holding so much longer.
+  /// Minimum time at the start of the holding in which the hand settles to the push that it then holds. With
+  /// `until_leant` settling lasts until the hand feels that push and the wall, at most half the holding; time
+  /// beyond `settle_s` extends the holding.
   double settle_s = 1.0;
 };
 
 /// Throws std::invalid_argument, naming the setting, if one is out of range.
 void require_valid(const ScriptSettings& settings);
 
-/// The parts of the test that the hand did not achieve in the time it had.
+/// Goals of the test that the hand did not reach in time.
 struct ScriptShortfall {
   /// The hole was not deep enough when the hand began to lean.
   bool shallow = false;
-  /// The shaft leant on bone for less than it was to.
+  /// The shaft leant on bone for less than the required time.
   bool hardly_leant = false;
-  /// The tool left the bone while it leant, or as it settled, and found none any more.
+  /// The tool left the bone while leaning or settling and did not touch it again.
   bool lost = false;
-  /// The hand did not come to feel the push that it wanted to hold, with the shaft against the wall.
+  /// The hand did not reach the push to hold with the shaft against the wall.
   bool unsettled = false;
 };
 
 /// The stages of the test, in their order.
 enum class ScriptStage : unsigned char { approach, feed, lean, settle, hold, done };
 
-/// The pose in which the hand wants the tool to be, and whether the spindle turns.
+/// Target pose of the tool, and whether the spindle is on.
 struct ScriptIntent {
   /// Without tremor.
   Pose X_W_target;
@@ -58,21 +57,20 @@ struct ScriptIntent {
   ScriptStage stage = ScriptStage::approach;
 };
 
-/// The hand's intent, tick by tick. It feels its own springs (target against device) and what the device
-/// gives it, by which it knows when the shaft meets the wall, and sees the simulated tool, by which it judges
-/// how deep the hole is; it never looks at the bone. The same inputs give the same intents.
+/// Computes the hand's intent tick by tick. Inputs are the hand's own springs (target against device), the
+/// device's wrench, which reveals when the shaft touches the wall, and the pose of the simulated tool, which
+/// gives the depth of the hole; the bone itself is not used. Deterministic.
 class MillingScript {
  public:
   MillingScript(const ScriptSettings& settings, const HandSettings& hand, const MillingTool& tool,
                 const MillingEntry& entry);
 
-  /// Returns the present intent. At time 0 the device is where the script wants it.
+  /// Returns the current intent. At time 0 its target is the initial device pose.
   const ScriptIntent& intent() const noexcept { return intent_; }
-  /// Returns the shortfall up to now. Without `until_leant` leaning and settling are not waited for, and not
-  /// judged.
+  /// Returns the shortfall so far. `hardly_leant` and `unsettled` are evaluated only with `until_leant`.
   const ScriptShortfall& shortfall() const { return shortfall_; }
-  /// Returns the intent at `time_s`, `dt_s` after the last one. `X_WD` is the device's pose, `X_WT` that at
-  /// which the simulated tool is shown, `felt` the last wrench on the hand. Safe in the haptic tick.
+  /// Advances by `dt_s` and returns the intent at `time_s`. `X_WD` is the device's pose, `X_WT` the simulated
+  /// tool's, `felt` the last wrench on the hand. Safe in the haptic tick.
   const ScriptIntent& step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT,
                            const Wrench& felt) noexcept;
 
@@ -100,17 +98,17 @@ class MillingScript {
   MillingEntry entry_;
   Quat upright_;
   Vec3 lean_axis_W_;
-  // The target: how far along the direction past the entry, how far to the side, and how far leant.
+  // Target: distance along the direction past the entry, sideways offset, and lean angle.
   double along_mm_ = 0;
   double sideways_mm_ = 0;
   double lean_rad_ = 0;
-  // The angle to which the device had leant when the shaft met the wall that it is at; the times for which
-  // it, and the whole tool, have been free.
+  // Lean angle of the device when the shaft met the current wall; times for which the shaft, and the whole
+  // tool, have been free.
   std::optional<double> wall_rad_;
   double shaft_free_s_ = 0;
   double free_s_ = 0;
   bool has_touched_ = false;
-  // Since when the present stage, and how long in all the shaft has leant on something.
+  // Start of the current stage, and total time for which the shaft has leant on something.
   double stage_began_s_ = 0;
   double leant_s_ = 0;
   ScriptShortfall shortfall_;
