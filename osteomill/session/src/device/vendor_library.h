@@ -8,9 +8,8 @@
 
 namespace osteomill {
 
-/// While it lives, the calling thread's calls of makers' functions leave their names in a place that other
-/// threads may read: null while there is none under way. A caller that waits for the thread then knows for
-/// which call.
+/// While it exists, the calling thread stores the name of the vendor function that it is in into `place`;
+/// null outside such calls. Other threads can read it to report a call that hangs.
 class VendorCallTracker {
  public:
   explicit VendorCallTracker(std::atomic<const char*>& place)
@@ -29,20 +28,21 @@ class VendorCallTracker {
   std::atomic<const char*>* before_;
 };
 
-/// A maker's library that is opened when it is wanted, so that nothing of it is needed to build or to run
-/// without the device. Its functions' addresses are good for as long as this lives.
+/// A vendor library loaded at run time, so that it is not needed to build or to run without the device.
+/// Function addresses are valid during its lifetime.
 class VendorLibrary {
  public:
-  /// Opens the file that the environment's `variable` names, else the first of `names` that the system has.
-  /// Throws InputError about `device` if there is none.
+  /// Loads the file named by the environment variable `variable`, otherwise the first of `names` that can be
+  /// loaded. Throws InputError about `device` if there is none.
   VendorLibrary(std::string device, const char* variable, std::initializer_list<const char*> names);
 
-  /// A function, of whatever type it is put into a VendorFunction of.
+  /// An untyped function; VendorFunction gives it its signature.
   struct Function {
     const char* name;
     void* address;
   };
-  /// Throws InputError if the library has none of that name, which lives as long as the program.
+  /// Returns the function. Throws InputError if the library does not have it. `name` must have static
+  /// lifetime.
   Function operator[](const char* name) const;
 
  private:
@@ -51,7 +51,7 @@ class VendorLibrary {
   std::shared_ptr<void> library_;
 };
 
-/// A function of a maker's library.
+/// A function of a vendor library.
 template <typename Signature>
 class VendorFunction;
 template <typename Result, typename... Arguments>

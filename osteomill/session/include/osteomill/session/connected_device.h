@@ -16,95 +16,93 @@
 
 namespace osteomill {
 
-/// Opens a device: a function that returns its connection, or throws InputError.
+/// Function that opens a device and returns its connection, or throws InputError.
 using OpenConnection = std::function<std::unique_ptr<Connection>()>;
 
-/// The state of a device, for people to read. From any thread.
+/// State of a device for display.
 struct DeviceReport {
   enum class State : unsigned char {
     ok,
-    /// It is driven, but there is something to know (`reason`).
+    /// Driven, with a remark for the operator (`reason`).
     remark,
-    /// It gives poses, but may not be driven: not calibrated, its force switched off (`reason`).
+    /// Gives poses but may not be driven, e.g. not calibrated or its force switched off (`reason`).
     not_driven,
     /// No input for longer than 5 ms.
     silent,
-    /// It gives poses that are not finite, or turned by no rotation.
+    /// Gives poses that are not finite or whose quaternion is not a rotation.
     not_finite,
-    /// Gone; it is being opened again.
+    /// Disconnected; being reopened.
     lost,
-    /// A function of its maker's software (`reason`) does not return.
+    /// A call into the vendor library (`reason`) does not return.
     hangs,
   };
   State state = State::ok;
-  /// How long it has been in this state.
+  /// Time in this state.
   double since_s = 0;
-  /// If the device is lost, why it cannot be opened; else what the device reports about itself.
+  /// If the device is lost, why it cannot be opened; otherwise the device's own remark.
   std::string reason;
   double inputs_per_s = 0;
-  /// The place of its handle a moment ago.
+  /// Recent position of the handle.
   Vec3 handle_B_mm = Vec3::Zero();
-  /// Counts: how often it left `ok`, how often the haptic thread's wrench was too old, and how often it was
-  /// opened again.
+  /// Number of times that the device left `ok`, that the haptic thread's wrench was too old, and that the
+  /// device was reopened.
   std::uint64_t faults = 0;
   std::uint64_t late_wrenches = 0;
   std::uint64_t reopened = 0;
-  /// Returns what is wrong with the device, in a sentence without a full stop; empty if nothing is.
+  /// Returns the device's fault as a sentence without its subject and full stop; empty if there is none.
   std::string complaint() const;
   bool gives_poses() const { return state <= State::not_driven; }
 };
 
-/// Haptic hardware as a session's device, whichever its back end is. A thread of its own reads the connection
-/// and writes to it, so that nothing the hardware does makes a tick wait, and watches over both sides. What
-/// is sent is within the device's limits, and from one wrench that has gone out to the next changes by no
-/// more than kHandWrenchRates in a millisecond; it comes down to zero if the wrench is over 5 ms old, if the
-/// device may not be driven, is lost or disengaged, and at the end, and comes up again over 0.1 s. A device
-/// that is lost is opened again until it is there.
+/// Haptic hardware of any back end as a session's device. Its own thread reads from and writes to the
+/// connection, so that the hardware never blocks a tick, and supervises both sides. Wrenches are clamped to
+/// the device's limits, and successive ones differ by at most kHandWrenchRates in a millisecond. The wrench
+/// ramps down to zero if the requested one is older than 5 ms, if the device may not be driven, is lost or
+/// disengaged, and on closing; it rises again over 0.1 s. A lost device is reopened until that succeeds.
 ///
-/// It is driven (`is_driven`) while the newest input says that it may be, it is not lost, and it has not been
-/// disengaged (`disengage`). A clutch leaves it driven, because the tool stays in its place.
+/// The device is driven (`is_driven`) while the latest input permits it, it is not lost, and it is not
+/// disengaged (`disengage`). The clutch leaves it driven, because the tool stays in place.
 ///
-/// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
-/// without the tool: the device gives no pose and the hand feels nothing. Then it goes on from where the tool
-/// is.
+/// The first button requests the spindle. While the second is held (or `set_clutched`), the handle moves
+/// without the tool: the device gives no pose and the hand feels nothing. Afterwards motion continues from
+/// the tool's position.
 class ConnectedDevice final : public Device {
  public:
   static constexpr unsigned kSpindleButton = 1;
   static constexpr unsigned kClutchButton = 2;
 
-  /// Opens the device. Throws as `open` does. Tests have a clock of their own, which never goes back either.
+  /// Opens the device. Throws as `open` does. `now_s` is a monotonic clock that tests may replace.
   explicit ConnectedDevice(OpenConnection open, std::function<double()> now_s = {});
   /// Closes the device.
   ~ConnectedDevice() override;
   ConnectedDevice(const ConnectedDevice&) = delete;
   ConnectedDevice& operator=(const ConnectedDevice&) = delete;
 
-  /// Starts the thread; returns when the device has given a pose. Throws InputError if it gives none within
-  /// half a second.
+  /// Starts the thread and waits for the first pose. Throws InputError if none arrives within half a second.
   void start();
-  /// Returns an empty text when zero has been sent and the device is closed. If its maker's software does not
-  /// return within 0.8 s, leaves the thread to itself and returns a sentence about that; the device then
-  /// gives no pose and takes no wrench.
+  /// Sends zero, closes the device and returns an empty string. If a call into the vendor library does not
+  /// return within 0.8 s, detaches the thread and returns a message; the device then gives no poses and takes
+  /// no wrenches.
   std::string close();
-  /// Does once what the thread does over and over: for a test that keeps time itself, in place of `start`.
+  /// Runs one iteration of the thread's loop. For tests with their own clock, instead of `start`.
   void exchange();
 
   const DeviceCapabilities& capabilities() const { return capabilities_; }
 
-  /// Sets how the handle moves the tool, which stays where it is. For one other thread (the window's). Throws
-  /// std::invalid_argument as Workspace.
+  /// Sets the mapping from handle to tool; the tool keeps its pose. For one thread besides the haptic one
+  /// (the window's). Throws std::invalid_argument as Workspace does.
   void set_workspace(const WorkspaceSettings& settings);
-  /// Sets the rotation of the operator's view, from its axes V to W (from the front unless set). For the
-  /// thread that sets the workspace.
+  /// Sets the rotation from the operator's view V to W; default: view_from_the_front(). For the thread that
+  /// calls `set_workspace`.
   void set_view(const Quat& R_WV);
   const WorkspaceSettings& workspace() const { return requested_mapping_.settings; }
-  /// Returns the most that the device gives and `limits` allow, in W (Workspace::limits_W).
+  /// Returns `limits`, reduced to what the device can give, in W (Workspace::limits_W).
   WrenchLimits limits_W(const WrenchLimits& limits) const {
     return Workspace(capabilities_, workspace()).limits_W(limits);
   }
-  /// Holds the clutch, or lets it go, as the handle's second button does. Any thread.
+  /// Engages or releases the clutch, like the handle's second button. Any thread.
   void set_clutched(bool clutched) { clutched_.store(clutched, std::memory_order_relaxed); }
-  /// Returns the state of the device. Any thread; not for the tick.
+  /// Returns the state of the device. Any thread except the haptic one.
   DeviceReport report() const;
 
   Pose read_pose() noexcept override;
@@ -118,7 +116,7 @@ class ConnectedDevice final : public Device {
   void engage() noexcept override;
 
  private:
-  // Belongs to the device's thread, which keeps it if it is left to itself.
+  // State of the device's thread, which shares ownership in case it is detached.
   class Exchange;
   struct Mapping {
     WorkspaceSettings settings;
@@ -132,7 +130,7 @@ class ConnectedDevice final : public Device {
   LatestValue<Mapping> mapping_;
   std::atomic<bool> clutched_{false};
 
-  // The haptic thread's.
+  // Used by the haptic thread only.
   DeviceCapabilities capabilities_;
   Workspace workspace_;
   Pose X_WD_;

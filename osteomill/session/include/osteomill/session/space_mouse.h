@@ -4,32 +4,31 @@
 
 namespace osteomill {
 
-/// The push and the twist of a SpaceMouse, -1 to 1 along and about each axis of the viewer: right, up,
-/// towards the viewer.
+/// Deflection of a SpaceMouse, -1 to 1 along and about each axis of the viewer: right, up, towards the
+/// viewer.
 struct SpaceMouseState {
   Vec3 push = Vec3::Zero();
   Vec3 twist = Vec3::Zero();
-  /// The number of times that any of its buttons went down since the last reading.
+  /// Number of button presses since the last reading.
   int presses = 0;
 };
 
-/// Returns a pose in W after the SpaceMouse has pushed and twisted it for this time: pushed as far as it goes
-/// by 20 mm, twisted by 1.2 rad a second, along and about the axes of the viewer, which R_WV turns to those
-/// of W.
+/// Returns the pose `X_W` moved by the SpaceMouse for `passed_s`. Full deflection gives 20 mm/s along and 1.2
+/// rad/s about the viewer's axes; R_WV rotates these to W.
 Pose moved(const Pose& X_W, const SpaceMouseState& by, const Quat& R_WV, double passed_s);
 
-/// A SpaceMouse behind the daemon spacenavd (or another program that listens at the socket that SPNAV_SOCKET
-/// names). One at a time; for one thread, not the haptic one.
+/// A SpaceMouse accessed through the daemon spacenavd (or another program that listens on the socket named by
+/// SPNAV_SOCKET). Only one instance at a time; for one thread, not the haptic one.
 class SpaceMouse {
  public:
-  /// Looks for the daemon; without one there is no SpaceMouse, which is no error.
+  /// Connects to the daemon. Without one, `is_present` returns false.
   SpaceMouse();
   ~SpaceMouse();
   SpaceMouse(const SpaceMouse&) = delete;
   SpaceMouse& operator=(const SpaceMouse&) = delete;
 
   bool is_present() const { return is_present_; }
-  /// Returns its state now. Never waits.
+  /// Returns the current state. Never blocks.
   SpaceMouseState read();
 
  private:

@@ -12,22 +12,22 @@
 
 namespace osteomill {
 
-/// Counts the ticks whose wrench could not be sent as it was, from every TickRecord in turn. `add` is safe in
+/// Counts the ticks whose wrench could not be sent unchanged. Call `add` with every TickRecord; it is safe in
 /// the haptic tick.
 class FaultCount {
  public:
   void add(const TickRecord& record) noexcept;
-  /// Returns how many wrenches were shortened to the device's limits.
+  /// Returns the number of wrenches clamped to the device's limits.
   int limited() const;
-  /// Returns how many ticks sent zero because the wrench was not finite.
+  /// Returns the number of ticks that sent zero because the wrench was not finite.
   int not_finite() const;
-  /// Returns how many ticks sent zero because the device gave no pose.
+  /// Returns the number of ticks that sent zero because the device gave no pose.
   int without_pose() const;
-  /// Returns how many ticks sent zero because the pose jumped or the tick came too late.
+  /// Returns the number of ticks that sent zero because the pose jumped or the tick was late.
   int unsafe() const;
-  /// Returns how many ticks sent zero because the hand was held back (WrenchGuard).
+  /// Returns the number of ticks that sent zero because the hand was held back (WrenchGuard).
   int held_back() const;
-  /// Returns a sentence about them for people to read; nothing if there were none. Not for the tick.
+  /// Returns a summary for display, or nothing if all counts are 0. Not for the haptic tick.
   std::optional<std::string> sentence() const;
 
  private:
@@ -37,38 +37,38 @@ class FaultCount {
   std::array<int, static_cast<std::size_t>(WrenchFault::held_back) + 1> ticks_{};
 };
 
-/// Counts how much of each label was removed, when and with what force, from every tick in turn. Not for the
-/// tick.
+/// Accumulates removed bone, contact times and forces per label. Call `add` with every tick. Not for the
+/// haptic tick.
 class LabelCount {
  public:
-  /// The counts of one label.
+  /// Totals of one label.
   struct Entry {
-    /// In mm^3 of reference density, as TickRecord counts.
+    /// In mm^3 of reference density, as in TickRecord.
     double removed_mm3 = 0;
-    /// The times at which the burr first and last cut or touched it.
+    /// Times of the burr's first and last contact, cutting or not.
     double first_s = 0;
     double last_s = 0;
-    /// The time for which it did in all, and the burr's force on bone meanwhile.
+    /// Total contact time, and the burr's force on bone during it.
     double time_s = 0;
     double force_mean_N = 0;
     double force_max_N = 0;
-    /// The number of contacts; half a second without parts one from the next.
+    /// Number of contacts, separated by at least 0.5 s without contact.
     int contacts = 0;
   };
 
   explicit LabelCount(std::vector<Label> labels) : labels_(std::move(labels)), entries_(labels_.size()) {}
-  /// Counts a bone's labels; `map` is null if it has none.
+  /// Uses the labels of `map`; none if it is null.
   explicit LabelCount(const std::shared_ptr<const LabelMap>& map = nullptr)
       : LabelCount(map ? map->labels() : std::vector<Label>{}) {}
 
-  /// Takes in a tick. Returns a sentence for people to read if a contact with a no-go label begins in it.
+  /// Adds a tick. Returns a message for display if a contact with a no-go label begins in it.
   std::optional<std::string> add(const TickRecord& record);
 
-  /// Returns when the burr last cut or touched a no-go label.
+  /// Returns the time of the last contact with a no-go label.
   std::optional<double> last_no_go_s() const;
 
   const std::vector<Label>& labels() const { return labels_; }
-  /// Returns the counts, one for each label.
+  /// Returns the totals, one entry per label.
   const std::vector<Entry>& entries() const { return entries_; }
 
  private:
@@ -76,7 +76,7 @@ class LabelCount {
   std::vector<Entry> entries_;
 };
 
-/// Returns a line for each label that was cut or touched, without line feeds.
+/// Returns one line per label that was touched, without line feeds.
 std::vector<std::string> label_lines(const LabelCount& count);
 
 }  // namespace osteomill

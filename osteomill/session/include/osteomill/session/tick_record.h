@@ -9,66 +9,64 @@
 
 namespace osteomill {
 
-/// All that is known of one tick: what recordings hold and reports are made from.
+/// Data of one tick, stored in recordings and used for reports.
 struct TickRecord {
-  /// The value of a number that recordings of earlier programs do not have.
+  /// Value of fields that are missing in recordings of earlier versions.
   static constexpr double kNotRecorded = -1;
 
   double time_s = 0;
-  /// The length that the tick was taken to have, and whether the spindle turned. With the tool's pose and the
-  /// burr's force that is all that milling depends on.
+  /// Tick length used, and whether the spindle was on. Milling depends on these, the tool's pose and the
+  /// burr's force only.
   double dt_s = 0;
   bool spindle_on = false;
-  /// The session's other inputs beside the device's pose. The share of the force that the hand had so far
-  /// (Device::delivered_fraction); whether what was sent reached a hand (Device::is_driven); whether the tick
-  /// is one of a pause; whether from this tick on nothing is felt until the tool is placed; whether before
-  /// this tick the tool was placed where the device is, and its contacts were forgotten.
+  /// The session's other inputs besides the device's pose: the fraction of the force that reached the hand
+  /// (Device::delivered_fraction); Device::is_driven; whether the session was paused; whether the wrench
+  /// fades out from this tick on until the tool is placed; whether the tool was placed at the device before
+  /// this tick, which discards its contacts.
   double delivered_fraction = 1;
   bool driven = true;
   bool paused = false;
   bool fade_out = false;
   bool placed = false;
-  /// The number of its session, if several follow each other on a bone.
+  /// Index of the session, if several follow one another on a bone.
   std::uint32_t session = 0;
-  /// The device's pose as read, and the simulated tool's.
+  /// The device's pose as read, and the simulated tool's pose.
   Pose X_WD;
   Pose X_WT;
-  /// The wrench that was sent to the device (safe), in W about the burr's centre.
+  /// Wrench sent to the device (after the guard), in W about the burr's centre.
   Wrench wrench;
   WrenchFault fault = WrenchFault::none;
-  /// The part of its torque that cutting adds (CuttingReaction).
+  /// Part of the sent torque that is due to cutting (CuttingReaction).
   Vec3 cutting_torque_W_Nmm = Vec3::Zero();
-  /// The energy given to the hand less what it gave, up to this tick's pose (PassivityObserver), in N mm.
+  /// Net energy given to the hand up to this tick's pose, N mm (PassivityObserver).
   double energy_given_Nmm = 0;
   int contacts = 0;
-  /// The bricks that were not up to date (HapticStep::pending_bricks).
+  /// Bricks not yet up to date (HapticStep::pending_bricks).
   int pending_bricks = 0;
-  /// The force with which the burr pressed on the bone, in W.
+  /// Force of the burr on the bone, in W.
   Vec3 burr_force_W_N = Vec3::Zero();
-  /// The spindle's true speed, the power that went into what was removed, and the density of the bone before
-  /// the burr relative to the reference (0 without contact, 1 with constant energy).
+  /// Actual speed of the spindle, power spent on removal, and density of the bone in front of the burr
+  /// relative to the reference (0 without contact, 1 at constant energy).
   double spindle_rpm = kNotRecorded;
   double cutting_power_W = kNotRecorded;
   double cut_density = kNotRecorded;
-  /// The bone removed since the start, in mm^3 of reference density.
+  /// Bone removed since the start, mm^3 of reference density.
   double removed_mm3 = 0;
-  /// The distance of the burr's surface from the nearest structure that it must not touch (Volume::no_go);
-  /// not a number without structures.
+  /// Distance from the burr's surface to the nearest no-go structure (Volume::no_go); NaN without structures.
   double no_go_distance_mm = std::numeric_limits<double>::quiet_NaN();
-  /// The hash of the bone after the tick (Volume::change_hash).
+  /// Hash of the bone after the tick (Volume::change_hash).
   std::uint64_t bone_hash = 0;
-  /// If the bone has labels: how much of which was taken in this tick, and which no-go ones were touched.
+  /// Bone removed per label, and no-go labels touched, in this tick; empty if the bone has no labels.
   LabelCuts label_cuts{};
-  /// Time taken by the algorithm's step, and by milling with all that follows the volume.
+  /// Time of the algorithm's step, and of milling including all updates that follow a change of the volume.
   double compute_us = 0;
   double milling_us = 0;
-  /// CPU time that the thread itself had for the whole tick, which no other program on the machine lengthens.
-  /// 0 if it was not measured: asking for it is a system call, so only a loop whose ticks no hand waits for
-  /// can ask, before and after them.
+  /// CPU time of the thread for the whole tick, which is independent of other programs. 0 if not measured:
+  /// reading it is a system call, so only loops that no hand waits for measure it.
   double tick_cpu_us = 0;
 
-  /// Returns how long the tick kept its loop busy: by the thread's own CPU time if it is known, else by the
-  /// clock.
+  /// Returns the time for which the tick kept its loop busy: the thread's CPU time if measured, otherwise
+  /// wall-clock time.
   double busy_us() const { return tick_cpu_us > 0 ? tick_cpu_us : compute_us + milling_us; }
 };
 

@@ -8,31 +8,31 @@
 
 namespace osteomill {
 
-/// The pose of a device at a time, and whether the spindle turned.
+/// Pose of a device at a time, and whether the spindle was on.
 struct TrajectoryPoint {
   double time_s = 0;
   Pose X_WD;
   bool milling = false;
 };
 
-/// The greatest distance of a pose from the origin of W, along each axis: beyond any scanner and any device.
+/// Maximum distance of a pose from the origin of W along each axis; larger than any scanner or device.
 inline constexpr double kMaxPose_mm = 3e5;
-/// Returns whether the pose is finite and not farther than that. Safe in the haptic tick.
+/// Returns whether the pose is finite and within kMaxPose_mm. Safe in the haptic tick.
 inline bool is_reachable(const Pose& pose) {
   return is_finite(pose) && pose.position_mm.cwiseAbs().maxCoeff() <= kMaxPose_mm;
 }
 
-/// Reads CSV with the columns time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling (in any order; others are passed
-/// over), one row a tick. Throws InputError naming the file and the row for a missing column, a value that is
-/// not a finite number, a pose that is not reachable, a line of over 4096 bytes, a quaternion that is not of
-/// unit length within 1e-3, milling other than 0 or 1, a time that does not go forward, a row with too few
-/// values, or no row at all.
+/// Reads CSV with the columns time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling (in any order; others are ignored),
+/// one row per tick. Throws InputError with the file and the row for a missing column, a value that is not a
+/// finite number, a pose out of reach (`is_reachable`), a line of more than 4096 bytes, a quaternion whose
+/// length differs from 1 by more than 1e-3, milling other than 0 or 1, a time that does not increase, a row
+/// whose number of values differs from the header's, or a file without rows.
 std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
 
-/// A device that gives the pose it was put at, and remembers the wrench it was sent: for replays and tests.
+/// Device with a settable pose that stores the last wrench. For replays and tests.
 class PosedDevice : public Device {
  public:
-  /// Sets what the device gives from the next reading on.
+  /// Sets the values returned from the next reading on.
   void put(const Pose& X_WD, double delivered_fraction = 1, bool is_driven = true) noexcept {
     pose_ = X_WD;
     delivered_fraction_ = delivered_fraction;

@@ -9,20 +9,20 @@
 
 namespace osteomill {
 
-/// A simulated device whose handle follows a pose that another thread sets (from a mouse or a SpaceMouse). It
-/// is pulled there by a spring of limited force and a damper, so that bone can hold it back: a user without
-/// haptic hardware sees the resistance.
+/// A simulated device whose handle follows a pose set by another thread (from a mouse or a SpaceMouse). A
+/// spring of limited force and a damper pull it there, so that bone can resist: a user without haptic
+/// hardware sees the resistance.
 ///
-/// `pull_to` is for one other thread and never waits.
+/// `pull_to` is for one other thread and never blocks.
 class VirtualHand final : public Device {
  public:
-  /// Begins at rest at `X_WD`. Throws std::invalid_argument as SimulatedHandle and the hand's settings do.
+  /// Starts at rest at `X_WD`. Throws std::invalid_argument if a setting is invalid.
   VirtualHand(const HandleSettings& handle, const HandSettings& hand, const Pose& X_WD);
 
-  /// Sets the pose to pull to; one that is not finite is ignored.
+  /// Sets the target pose; ignores one that is not finite.
   void pull_to(const Pose& X_W_target) noexcept;
-  /// Puts hand and handle at `X_WD`, at rest, where they stay until the next `pull_to`. For the haptic
-  /// thread, between two ticks; safe in the tick.
+  /// Places hand and handle at rest at `X_WD`, where they stay until the next `pull_to`. For the haptic
+  /// thread, between two ticks; real-time safe.
   void put_at(const Pose& X_WD) noexcept override;
 
   Pose read_pose() noexcept override { return handle_.read(); }
@@ -38,15 +38,15 @@ class VirtualHand final : public Device {
   };
   LatestValue<PullTarget> pull_target_;
   std::uint64_t pull_count_ = 0;
-  // The last pull that does not count any more.
+  // Number of the last pull that is ignored.
   std::uint64_t ignored_pulls_ = 0;
-  // The pose that the hand pulls to now. It follows smoothly what is asked for, which comes only with every
-  // picture.
+  // Current target of the hand. Follows the requested pose smoothly, because that changes only once per video
+  // frame.
   Pose X_W_target_;
 };
 
-/// Returns a hand for pointing devices: as firm as the simulated operator's, without tremor, and damped so
-/// that it does not swing with the default handle.
+/// Returns a hand for pointing devices: the default stiffness, no tremor, and critically damped with the
+/// default handle.
 HandSettings pointing_hand();
 
 }  // namespace osteomill

@@ -8,21 +8,20 @@
 
 namespace osteomill {
 
-/// A client's end of a WebSocket that carries texts. For one thread at a time.
+/// Client end of a WebSocket for text messages. Not thread-safe.
 class WebSocket {
  public:
-  /// Connects to HOST:PORT. Throws InputError about `device` if nothing answers within 400 ms. Texts of
-  /// more than `max_bytes` break the connection off.
+  /// Connects to HOST:PORT. Throws InputError about `device` if nothing answers within 400 ms. Closes the
+  /// connection on a message of more than `max_bytes`.
   WebSocket(const std::string& device, const std::string& host, int port, std::size_t max_bytes);
   ~WebSocket();
   WebSocket(const WebSocket&) = delete;
   WebSocket& operator=(const WebSocket&) = delete;
 
   bool is_open() const;
-  /// The newest whole text that has come, or that comes within `wait`.
+  /// Returns the newest complete message received so far or within `wait`.
   std::optional<std::string> receive(std::chrono::microseconds wait);
-  /// Sends a text without waiting, in place of one that could not be sent yet. Returns false if this could
-  /// not either.
+  /// Sends a message without blocking, replacing one that is still pending. Returns false if it is pending.
   bool send(std::string text);
 
  private:

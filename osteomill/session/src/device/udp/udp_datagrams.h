@@ -20,7 +20,7 @@ struct Head {
   std::uint16_t version = kVersion;
   Kind kind{};
   std::uint32_t sequence = 0;
-  /// 1 in an answer if the device takes wrenches from another partner than the one that asks, else 0.
+  /// In an answer: 1 if the device takes wrenches from a partner other than the asking one, otherwise 0.
   std::uint32_t is_taken = 0;
 };
 static_assert(sizeof(Head) == 16);
@@ -42,7 +42,7 @@ struct State {
   std::array<double, 3> position_mm{};
   std::array<double, 4> orientation_wxyz{};
   std::uint32_t buttons = 0;
-  /// 0 if it may be driven, 1 if it is not calibrated, 2 if its force is off.
+  /// 0: may be driven; 1: not calibrated; 2: force is off.
   std::uint32_t not_driven = 0;
 };
 static_assert(sizeof(State) == 80);
