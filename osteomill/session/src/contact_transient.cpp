@@ -9,9 +9,9 @@ namespace osteomill {
 
 namespace {
 
-// Hands feel this frequency best, and a device at 1 kHz renders it.
+// Hands are most sensitive to this frequency, and a 1 kHz device can render it.
 constexpr double kFrequency_Hz = 200, kDecay_s = 0.006, kLength_s = 0.02;
-// Less is no contact: noise of the device must not end a time without one.
+// Smaller forces do not count as contact, so that device noise does not end a contact-free interval.
 constexpr double kContact_N = 1e-3;
 
 }  // namespace

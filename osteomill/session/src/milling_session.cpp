@@ -27,8 +27,8 @@ const Vec3 kNotANumber = Vec3::Constant(std::numeric_limits<double>::quiet_NaN()
 const Wrench kNotFinite{kNotANumber, Vec3::Zero()};
 const Pose kNoPose{kNotANumber, Quat::Identity()};
 
-// The bone, if the tool can work in it, the hand is guarded by numbers, and the algorithm holds the burr off
-// structures that have a guard.
+// Returns `bone` after checking that the guard's settings are valid, the tool can work in the bone, and the
+// algorithm supports the guards of its structures.
 std::shared_ptr<Volume> workable(const MillingSetup& setup, std::shared_ptr<Volume> bone) {
   require_workable(setup.guard);
   require_workable(setup.tool, bone->geometry());
@@ -39,7 +39,7 @@ std::shared_ptr<Volume> workable(const MillingSetup& setup, std::shared_ptr<Volu
   return bone;
 }
 
-// Returns points that lie `by_mm` inside the tool's surface.
+// Returns sample points `by_mm` below the tool's surface.
 std::vector<Vec3> points_inside(const MillingTool& tool, double by_mm) {
   constexpr int kOnBurr = 64;
   constexpr double kSlice_mm = 0.5;
@@ -66,7 +66,7 @@ double tick_length_s(const std::vector<TrajectoryPoint>& trajectory, std::size_t
 }  // namespace
 
 double vibration_hz(double spindle_speed_rpm) {
-  // The fastest spindle that a setting allows is felt at kMax_hz.
+  // The highest speed that the settings allow maps to kMax_hz.
   constexpr double kTrue_hz = 100, kMax_hz = 250, kFastest_hz = 1e6 / 60;
   const double turns_per_s = spindle_speed_rpm / 60;
   if (turns_per_s <= kTrue_hz) return turns_per_s;
@@ -102,7 +102,7 @@ MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities
   algorithm_->prepare({volume_.get(), setup.tool, setup.tick_s});
 }
 
-// A length that is no time would stay in everything that is summed up over ticks.
+// An invalid tick length would corrupt everything that is integrated over ticks.
 double MillingSession::usable_tick_s(double dt_s) const noexcept {
   return is_positive(dt_s) ? dt_s : setup_.tick_s;
 }
@@ -117,7 +117,7 @@ TickRecord MillingSession::begin_record(Device& device, const TickInput& input) 
   record.fade_out = std::exchange(fade_out_requested_, false);
   if (record.fade_out) guard_.fade_out();
   record.X_WD = device.read_pose();
-  // No device reaches so far, and indices of voxels would overflow there.
+  // Beyond the range of any device; voxel indices would overflow.
   if (!is_reachable(record.X_WD)) record.X_WD = kNoPose;
   record.delivered_fraction = device.delivered_fraction();
   record.driven = device.is_driven() && !std::exchange(hold_back_requested_, false);
@@ -138,12 +138,12 @@ TickRecord MillingSession::tick(Device& device, const TickInput& input) {
   try {
     return tick_of(device, input);
   } catch (...) {
-    // Only the device throws. Whatever its hand feels now, it is to be zero, until the tool is out of bone.
+    // Only the device throws. The hand's wrench is unknown; send zero until the tool is out of bone.
     guard_.hold_back();
     try {
       device.write_wrench({});
     } catch (...) {
-      // The first failure is the one to report.
+      // Report the first failure.
     }
     throw;
   }
@@ -171,7 +171,7 @@ void MillingSession::work(Device& device, TickRecord& record) {
   const Clock::time_point start = Clock::now();
   auto [step, safe, cutting_torque_W_Nmm, shaft_drag] =
       step_safely(record.X_WD, record.dt_s, record.spindle_on, record.driven);
-  // The bone that goes is paid with what the hand gives.
+  // Only the force that the hand delivers pays for removal.
   step.burr_force_W_N *= record.delivered_fraction;
   record.compute_us = microseconds_since(start);
   device.write_wrench(safe.wrench);
@@ -219,8 +219,8 @@ void MillingSession::forget_contacts(const std::optional<Pose>& X_WT) noexcept {
   if (X_WT) algorithm_->step(*X_WT, kUsualTick_s);
 }
 
-// Returns whether no bone reaches into the tool. Algorithms do not tell: in their first ticks, and deep in
-// bone, some find nothing to push against.
+// Returns whether the tool is free of bone. The algorithm's force cannot show that: in the first ticks, and
+// deep in bone, some algorithms give none.
 bool MillingSession::is_free(const Pose& X_WD) const noexcept {
   const Vec3 end_W = X_WD.position_mm + setup_.tool.shaft_length_mm * shaft_direction(X_WD);
   return !first_crossing(*volume_, X_WD.position_mm, end_W) &&
@@ -249,12 +249,12 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
   const bool may_be_let = is_driven && (!guard_.is_held_back() || is_free(X_WD));
   SafeWrench safe = guard_.filter(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, may_be_let);
-  // An algorithm that finds nothing to push against deep in bone asks for what is sent anyway.
+  // Report it even if the algorithm, deep in bone, asked for zero anyway.
   if (safe.fault == WrenchFault::none && is_driven && guard_.is_held_back())
     safe.fault = WrenchFault::held_back;
   if (safe.fault == WrenchFault::not_finite) {
-    // Whatever led there is still in the algorithm's memory of contacts. The tool itself is still outside the
-    // bone, where the device may have sunk into it.
+    // Discard the contacts that led to the invalid wrench. Restart from the last tool pose, which is outside
+    // the bone; the device may have sunk into it.
     forget_contacts(last_X_WT_);
     return {nothing, safe};
   }
@@ -265,8 +265,8 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
           drag};
 }
 
-// Returns the force that vibrates: all that presses with constant energy; else by the power of the chips,
-// more in bone of uneven density.
+// Returns the force that drives the vibration: the whole burr force at constant energy; with the chip law
+// scaled by the recent cutting share and the speed, and larger in bone of uneven density.
 double MillingSession::vibrating_N(const Vec3& burr_force_W_N) const noexcept {
   if (!milling_.chips) return burr_force_W_N.norm();
   const double speed_share = spindle_.speed_rpm() / spindle_.set_rpm();
@@ -289,7 +289,7 @@ void MillingSession::mill(const HapticStep& step, const ShaftDrag& shaft_drag, T
         milling_.tangential_share * force_N * rim_share(force_W_N / force_N, shaft_direction(step.X_WT));
     const double rim_mm_s = 2 * std::numbers::pi * radius_mm * record.spindle_rpm / 60;
     load_Nmm_ = rim_N * radius_mm;
-    // All that presses drags, whether it cuts or not; a burr that stands still, by what the drive has.
+    // The whole pressing force drags, whether it cuts or not, limited by the drive's stall torque.
     if (setup_.drag) holding_share = std::min(1.0, spindle_.stall_Nmm() / load_Nmm_);
     record.cutting_power_W = paid_share * rim_N * rim_mm_s * 1e-3;
     record.cut_density = mill_.cut_bone().density;
@@ -301,7 +301,8 @@ void MillingSession::mill(const HapticStep& step, const ShaftDrag& shaft_drag, T
     reaction_.follow(step.X_WT, force_W_N, cut.removed_mm3, dt_s);
   }
   last_change_ = cut.change;
-  // Nothing is written while nothing is milled: then another thread may read it (HapticThread::freeze_bone).
+  // Not written while nothing is removed, because another thread may then read it
+  // (HapticThread::freeze_bone).
   if (cut.removed_mm3 > 0) removed_mm3_ += cut.removed_mm3;
   if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);
 }

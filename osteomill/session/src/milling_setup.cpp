@@ -10,7 +10,7 @@ namespace osteomill {
 
 namespace {
 
-// They stand in a recording's own attributes.
+// Fields without names; a recording stores them in its own attributes.
 std::vector<Field<MillingTool>> tool_fields() {
   using T = MillingTool;
   constexpr unsigned kOwn = kOfTheTool | kOfTheRecording;
@@ -88,7 +88,7 @@ using S = MillingSetup;
 
 constexpr NumberRange kNotNegative = NumberRange::not_negative(), kSwitch = NumberRange::on_or_off(),
                       kLimit = NumberRange::limit();
-// Within these a hand is held, and what is cut is a number.
+// Within these ranges bone can resist the hand and the removed volume is finite.
 constexpr NumberRange kSpeed{1, 1e6}, kEnergy{0.001, 1e6}, kRate{1e-12, 1e12}, kForce{0.1, 1000},
     kTorque{1, 1e5};
 
@@ -129,7 +129,8 @@ double usual_rpm(Handpiece handpiece) {
   return handpiece_types()[static_cast<std::size_t>(handpiece)].speed_rpm.value;
 }
 
-// Comes before the spindle's speed, which wins if it is set as well. A speed that is not the usual one stays.
+// Must come before the spindle speed, which takes precedence if both are set. Changes the speed only if it is
+// the default of the previous handpiece.
 Field<S> handpiece_field() {
   return {choice("spindle.handpiece",
                  "Handpiece, which slows down under load and sets the rotational speed unless "
@@ -144,8 +145,8 @@ Field<S> handpiece_field() {
           }};
 }
 
-// A burr by its name. Comes before the sizes of the tool and the kind of burr, which win if they are set as
-// well, and which are what recordings have.
+// Burr by name. Must come before the tool's sizes and the kind of burr, which take precedence if set as well.
+// Recordings store those, not the name.
 Field<S> burr_name_field() {
   std::vector<std::string> names = names_of(named_burrs());
   names.insert(names.begin(), "own");

@@ -22,7 +22,7 @@ namespace {
 constexpr std::array<std::string_view, 9> kColumns{"time_s", "x_mm", "y_mm", "z_mm",   "qw",
                                                    "qx",     "qy",   "qz",   "milling"};
 constexpr double kUnitTolerance = 1e-3;
-// A longer line is no row of numbers: a binary file, most likely.
+// A longer line is most likely from a binary file.
 constexpr std::size_t kMaxLine = 4096;
 
 using Row = std::array<double, kColumns.size()>;
@@ -62,7 +62,7 @@ class TrajectoryReader {
     } catch (const LineTooLong&) {
       fail("too long for a row of a trajectory");
     }
-    // Spreadsheets put a byte order mark before the first line.
+    // Spreadsheets write a byte order mark before the first line.
     if (row_number_ == 1 && line_.starts_with("\xEF\xBB\xBF")) line_.erase(0, 3);
     return true;
   }

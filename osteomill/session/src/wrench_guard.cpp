@@ -10,16 +10,15 @@ namespace osteomill {
 
 namespace {
 
-// A late tick allows no larger a step than one of this length.
+// Clamps the tick length so that a late tick does not permit a larger step.
 double usual_tick_s(double dt_s) {
   constexpr double kUsualTick_s = 1e-3;
   return dt_s > 0 ? std::min(dt_s, kUsualTick_s) : 0;
 }
 
-// Largest damping with which a handle of 0.1 kg that is read once a millisecond does not shake: a third of m
-// / T.
+// Maximum damping at which a 0.1 kg handle sampled at 1 kHz does not oscillate: a third of m / T.
 constexpr double kMaxDamping_Ns_per_mm = 0.03;
-// How far the hand holds the handle from the burr: by this a turn counts as a motion.
+// Distance from the grip to the burr, mm; converts rotation into motion at the grip.
 constexpr double kLever_mm = 30;
 
 }  // namespace
@@ -143,7 +142,7 @@ SafeWrench WrenchGuard::filter(const Wrench& asked, const Pose& X_WD, double dt_
   }
   const Wrench wanted = fading_out_ ? Wrench{} : within.wrench;
   blended_ = settings_.blend_s > 0 ? std::min(1.0, blended_ + usual_tick_s(dt_s) / settings_.blend_s) : 1;
-  // In free space there is nothing to come up slowly.
+  // No blend in free space.
   if (is_zero(wanted) && is_zero(from_)) blended_ = 1;
   if (blended_ == 1) return approach(wanted, fault, dt_s);
   const Wrench target = (1 - blended_) * from_ + blended_ * wanted;

@@ -22,21 +22,22 @@ namespace {
 using namespace std::chrono_literals;
 using State = DeviceReport::State;
 
-// Age at which an input or a wrench expires: the haptic thread then has no pose and sends zero, or the device
-// is sent zero, whatever the haptic thread is doing.
+// Age at which an input or a wrench expires. After that the haptic thread has no pose and requests zero, or
+// the device thread sends zero, whatever the haptic thread does.
 constexpr double kMaxAge_s = 5e-3;
-// Time of the rise from zero when the device may be driven (again), s.
+// Duration of the rise from zero when the device may be driven (again), s.
 constexpr double kBlend_s = 0.1;
-// After this long without a pose the tool goes on from where it is, not from where the hand is by then.
+// After a longer gap without poses the tool stays in place instead of jumping to the hand.
 constexpr double kMaxPoseGap_s = 0.1;
 constexpr double kReopen_s = 0.5;
-// Upper bound on the time since the last wrench, s, so that the next makes no larger a step.
+// Upper bound on the time since the last wrench, s; limits the step of the next one.
 constexpr double kRound_s = 1e-3;
 constexpr double kUnitTolerance = 1e-3;
 constexpr int kMaxWaitsForPose = 500;
-// More rounds than it takes to come down from any wrench.
+// More rounds than the ramp from any wrench to zero takes.
 constexpr int kMaxFinalRounds = 50;
-// Time that a maker's function may take before a message names it, and time that closing waits for it.
+// Time after which a vendor call is reported as hanging, and number of milliseconds that closing waits for
+// it.
 constexpr double kHangs_s = 0.1;
 constexpr int kMaxWaitsForEnd = 800;
 
@@ -72,7 +73,7 @@ std::string DeviceReport::complaint() const {
   return {};
 }
 
-// Holds what the device's thread works on; the thread keeps it if it is left to itself.
+// State of the device's thread; shared with it in case the thread is detached.
 class ConnectedDevice::Exchange {
  public:
   Exchange(OpenConnection open, std::function<double()> now_s)
@@ -84,7 +85,7 @@ class ConnectedDevice::Exchange {
         pending_report_{.state = State::silent, .since_s = sent_s_},
         published_report_(pending_report_) {}
 
-  // Runs rounds in the device's thread until `end_requested`, and one round.
+  // `run` calls `round` in the device's thread until `end_requested`.
   void run();
   void round();
 
@@ -96,7 +97,7 @@ class ConnectedDevice::Exchange {
     DeviceInput input;
     double at_s = -std::numeric_limits<double>::infinity();
     bool is_pose = false;
-    // Number of times that it was gone before.
+    // Number of gaps longer than kMaxPoseGap_s before this input.
     std::uint64_t reconnects = 0;
   };
   struct RequestedWrench {
@@ -106,10 +107,10 @@ class ConnectedDevice::Exchange {
   LatestValue<ReceivedInput> latest_input;
   LatestValue<RequestedWrench> requested_wrench;
   std::atomic<double> delivered_fraction{0};
-  // Number of times that it began or ceased to be a device that may be driven: odd while it is.
+  // Number of changes of whether the device may be driven; odd while it may.
   std::atomic<std::uint64_t> gate{0};
   std::atomic<bool> is_disengaged{false};
-  // Number of times that it was disengaged.
+  // Number of calls that disengaged the device.
   std::atomic<std::uint64_t> disengage_count{0};
   std::atomic<bool> at_rest{true};
   std::atomic<bool> end_requested{false};
@@ -132,7 +133,7 @@ class ConnectedDevice::Exchange {
   // The capabilities at the first opening.
   DeviceCapabilities opened_;
   ReceivedInput newest_;
-  // The last wrench that went out, and its time.
+  // Last wrench sent, and its time.
   Wrench sent_B_;
   double sent_s_;
   // Progress of the rise from zero, 0 to 1.
@@ -142,12 +143,12 @@ class ConnectedDevice::Exchange {
   bool wrench_was_late_ = false;
   RecentRate inputs_;
 
-  // Time at which the thread's last round began, and the maker's function that it is in.
+  // Start of the thread's last round, and the vendor function that it is in, or null.
   std::atomic<double> round_s_{std::numeric_limits<double>::infinity()};
   std::atomic<const char*> call_{nullptr};
-  // The report in the making; `since_s` holds the time of the clock here.
+  // Report being built by the device's thread; here `since_s` is a clock time, not a duration.
   DeviceReport pending_report_;
-  // The copy that others read, under the lock, for which the device's thread does not wait.
+  // Copy for other threads, guarded by the mutex; the device's thread only tries to lock it.
   std::mutex report_mutex_;
   DeviceReport published_report_;
 };
@@ -217,7 +218,7 @@ void ConnectedDevice::Exchange::round() {
         drop_connection("the connection was closed");
     }
   } catch (const std::exception& error) {
-    // A back end that throws breaks its contract.
+    // Back ends must not throw; treat it as a lost connection.
     drop_connection(error.what());
   }
   update_report();
@@ -232,7 +233,8 @@ void ConnectedDevice::Exchange::store_input(const DeviceInput& input) {
     if (now_s - last_pose_s_ > kMaxPoseGap_s) ++newest_.reconnects;
     last_pose_s_ = now_s;
   }
-  // Before the pose, so that none from behind a closed gate is taken for one that is driven.
+  // Set the gate before publishing the pose, so that a pose of a device that is not driven never appears as
+  // driven.
   set_gate(input.not_driven == nullptr && !is_disengaged.load(std::memory_order_acquire));
   latest_input.write(newest_);
   inputs_.count();
@@ -252,7 +254,7 @@ bool ConnectedDevice::Exchange::check_drivable(double now_s) {
   return !late && gate.load(std::memory_order_relaxed) % 2 == 1;
 }
 
-// Sends the next wrench towards the requested one. No other function sends one.
+// Sends the next wrench on the way to the requested one. The only function that calls Connection::write.
 ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
   const double lapse_s = connection_->capabilities().watchdog_s;
   if (lapse_s > 0 && now_s - sent_s_ > lapse_s) {
@@ -276,8 +278,8 @@ ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
   return status;
 }
 
-// Sends falling wrenches, one a millisecond, until zero has gone out. What cannot be sent any more is left to
-// the device itself.
+// Ramps the wrench down to zero, one step per millisecond. If sending fails, the device has to stop by
+// itself.
 void ConnectedDevice::Exchange::ramp_to_zero() {
   double now_s = sent_s_;
   try {
@@ -296,7 +298,7 @@ void ConnectedDevice::Exchange::drop_connection(const std::string& reason) {
   if (connection_) ramp_to_zero();
   connection_.reset();
   set_gate(false);
-  // Its own remarks go with it.
+  // The remarks of the lost device are obsolete.
   newest_.input.not_driven = newest_.input.remark = nullptr;
   sent_B_ = {};
   blended_ = 0;
@@ -324,7 +326,7 @@ void ConnectedDevice::Exchange::update_report() {
   State state = State::ok;
   const char* says = "";
   const double age_s = now_s - newest_.at_s;
-  // Its own remark is worth more than the line that it is a little slow.
+  // A remark of the device is more useful than the report that it is slightly slow.
   const double silent_after_s =
       input.not_driven != nullptr || input.remark != nullptr ? kMaxPoseGap_s : kMaxAge_s;
   if (!connection_) {
@@ -391,7 +393,7 @@ Pose ConnectedDevice::read_pose() noexcept {
   const Exchange::ReceivedInput& latest_input = exchange_->latest_input.read();
   const std::uint64_t gate = exchange_->gate.load(std::memory_order_acquire);
   const std::uint64_t disengage_count = exchange_->disengage_count.load(std::memory_order_acquire);
-  // False for a tick also if it was not driven between this one and the last.
+  // Also false for one tick if the device was not driven at any time since the last tick.
   is_driven_ = gate % 2 == 1 && gate == gate_ && disengage_count == disengage_count_ &&
                !exchange_->is_disengaged.load(std::memory_order_acquire);
   gate_ = gate;
@@ -434,7 +436,7 @@ double ConnectedDevice::delivered_fraction() const noexcept {
 }
 
 bool ConnectedDevice::disengage() noexcept {
-  // The wrench that is being sent right now may not be zero yet.
+  // A wrench that the device's thread is sending right now may not be zero.
   if (!exchange_->is_disengaged.exchange(true, std::memory_order_acq_rel)) {
     exchange_->disengage_count.fetch_add(1, std::memory_order_release);
     exchange_->at_rest.store(false, std::memory_order_release);

@@ -8,7 +8,7 @@ namespace osteomill {
 
 namespace {
 
-// The daemon's value for a device pushed as far as it goes.
+// The daemon's value at full deflection.
 constexpr double kFull = 350;
 constexpr double kPush_mm_s = 20;
 constexpr double kTwist_rad_s = 1.2;
@@ -35,7 +35,7 @@ SpaceMouseState SpaceMouse::read() {
   spnav_event event;
   while (is_present_ && spnav_poll_event(&event) != 0) {
     if (event.type == SPNAV_EVENT_MOTION) {
-      // Its z points away from the viewer, in a left-handed frame.
+      // The daemon's frame is left-handed: z points away from the viewer.
       state_.push = {share(event.motion.x), share(event.motion.y), -share(event.motion.z)};
       state_.twist = {share(event.motion.rx), share(event.motion.ry), -share(event.motion.rz)};
     } else if (event.type == SPNAV_EVENT_BUTTON && event.button.press != 0) {

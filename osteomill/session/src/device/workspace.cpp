@@ -40,7 +40,7 @@ std::optional<Vec3> turn_by_moves_deg(const DeviceCapabilities& device, const Ve
 }
 
 Quat view_from_the_front() {
-  // Right is the patient's left, x of W; up is z.
+  // The viewer's right is x of W (the patient's left), up is z.
   return quaternion_from_rotation_vector(0.5 * std::numbers::pi * Vec3::UnitX());
 }
 
@@ -72,7 +72,7 @@ Pose Workspace::tool_pose(const Pose& X_BH) const noexcept {
 Wrench Workspace::wrench_B(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept {
   const Quat R_BW = R_WB_.conjugate();
   Vec3 force_W_N = wrench_W.force_N;
-  // The force at the burr whose moment about the hand is the torque's.
+  // Force at the burr whose moment about the hand equals the torque.
   if (!drives_torque_ && settings_.shaft_lever_mm > 0)
     force_W_N += shaft_W.cross(wrench_W.torque_Nmm) / settings_.shaft_lever_mm;
   return {settings_.power * settings_.scale * (R_BW * force_W_N),

@@ -8,7 +8,7 @@ namespace osteomill {
 
 namespace {
 
-// The square of the lever by which rotation follows translation, 1e-3 m^2.
+// Squared lever arm that converts translational to rotational values, 1e-3 m^2.
 constexpr double kLeverSquared_mm2 = 1000.0;
 
 Vec3 limited(const Vec3& vector, double limit) {
@@ -25,7 +25,7 @@ struct Band {
 constexpr Band kPhysiological{8.0, 12.0, 0.9};
 constexpr Band kBroad{1.0, 30.0, 0.1};
 
-// sin(2 pi turns) to 1e-9 by its series: library sines differ in the last bit from one machine to the next.
+// Returns sin(2 pi turns) to 1e-9 by a series, because library sines differ in the last bit between machines.
 double sine_of_turns(double turns) {
   double folded = turns - std::floor(turns + 0.5);
   if (folded > 0.25) folded = 0.5 - folded;
@@ -85,8 +85,8 @@ Tremor::Tremor(std::uint64_t seed, double rms) {
   for (auto& sines : axes_) {
     std::size_t next = 0;
     for (const Band& band : {kPhysiological, kBroad}) {
-      // One sine in each equal part of the band, somewhere in it: no two periods fit, so that nothing
-      // repeats.
+      // One sine at a random frequency in each equal part of the band: the periods are incommensurate, so the
+      // signal does not repeat.
       const double part_hz = (band.highest_hz - band.lowest_hz) / kSinesPerBand;
       const double amplitude = rms * std::sqrt(2.0 * band.share_of_power / kSinesPerBand);
       for (int n = 0; n < kSinesPerBand; ++n) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
-// A ball that holds all densities, also those that fall off beyond the border voxels.
+// A ball that contains the volume, including the interpolated falloff beyond the border voxels.
 struct BoundingBall {
   Vec3 centre_W;
   double radius_mm;
@@ -31,8 +31,8 @@ BoundingBall ball_around(const GridGeometry& geometry) {
           0.5 * geometry.spacing_mm.cwiseProduct(voxels).norm() + 2 * geometry.spacing_mm.maxCoeff()};
 }
 
-// The first bone from `from_W` along the direction, or, if `from_W` lies in bone, the point at which the
-// way back leaves it. Nothing if the line meets none.
+// Returns the first bone surface from `from_W` along the direction; if `from_W` is inside bone, the surface
+// behind it. Nothing if the line misses the bone.
 std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, const Vec3& direction_W) {
   const BoundingBall ball = ball_around(volume.geometry());
   const double middle_mm = direction_W.dot(ball.centre_W - from_W);
@@ -41,7 +41,7 @@ std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, cons
     if (!(last_mm > 0)) return std::nullopt;
     return first_crossing(volume, from_W, from_W + last_mm * direction_W);
   }
-  // Back out of the bone in steps that miss no gap of a voxel; beyond the ball there is none.
+  // Steps back out of the bone, finely enough to find gaps of one voxel. There is no bone beyond the ball.
   const GridGeometry& geometry = volume.geometry();
   const double step_mm =
       0.5 / (geometry.direction.transpose() * direction_W).cwiseQuotient(geometry.spacing_mm).norm();
@@ -54,7 +54,7 @@ std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, cons
   return std::nullopt;
 }
 
-// Two unit directions across this one and each other.
+// Returns two unit vectors perpendicular to `direction_W` and to each other.
 std::pair<Vec3, Vec3> across(const Vec3& direction_W) {
   Eigen::Index min_axis = 0;
   direction_W.cwiseAbs().minCoeff(&min_axis);
@@ -62,7 +62,7 @@ std::pair<Vec3, Vec3> across(const Vec3& direction_W) {
   return {first_W, direction_W.cross(first_W)};
 }
 
-// Holds the points at which lines along the direction, in a square lattice across it, first meet bone.
+// First bone surface along each line of a square lattice perpendicular to the direction.
 struct Lattice {
   Vec3 corner_W;
   Vec3 first_W;
@@ -93,8 +93,8 @@ Lattice sample_along(const Volume& volume, const MillingTool& tool, const Vec3& 
   return lattice;
 }
 
-// Returns whether the place is a pit, visible only down a hole: bone around it is more than 4 mm higher, with
-// a slope of more than 0.7 from here to there.
+// Returns whether the point is in a pit: some bone within 80 mm is more than 4 mm higher, at a slope of more
+// than 0.7.
 bool is_pit(const Lattice& lattice, int a, int b, const Vec3& direction_W) {
   constexpr double kFar_mm = 80, kHigher_mm = 4, kRise = 0.7;
   const int reach = static_cast<int>(std::ceil(kFar_mm / lattice.step_mm));
@@ -112,29 +112,30 @@ bool is_pit(const Lattice& lattice, int a, int b, const Vec3& direction_W) {
 }
 
 constexpr double kBefore_mm = 3.0;
-// Further than this from a body's bone there is none.
+// Larger than any distance at which a scan still has bone, mm.
 constexpr double kMaxDistance_mm = 1e4;
-// Distance from bone within which an algorithm may feel it, mm.
+// Minimum clearance; an algorithm may sense bone that is closer, mm.
 constexpr double kClearance_mm = 1.0;
 
 struct Tilt {
   double aside_rad;
-  // From the right, against the clock as it is seen.
+  // Counter-clockwise from the right, as seen by the viewer.
   double towards_rad;
 };
-// Upwards to the right as a right hand holds it, then elsewhere, at last straight to the viewer.
+// First up and to the right, as a right hand holds the tool, then other directions, last straight to the
+// viewer.
 constexpr std::array kTilts{Tilt{0.9, 1.0}, Tilt{0.9, 2.1}, Tilt{0.9, 0.0}, Tilt{0.9, 3.1}, Tilt{0.9, 4.2},
                             Tilt{0.9, 5.2}, Tilt{0.4, 1.0}, Tilt{0.4, 2.1}, Tilt{0.4, 4.2}, Tilt{0.0, 0.0}};
 
-// Returns whether the border of the volume cuts bone off here.
+// Returns whether the border of the volume cuts the bone off at this surface point.
 bool is_on_cut_edge(const GridGeometry& geometry, const Vec3& point_W) {
   const Vec3 voxel = geometry.voxel_from_world(point_W);
   const Vec3 last(geometry.dims[0] - 1, geometry.dims[1] - 1, geometry.dims[2] - 1);
   return (voxel.array() < 0).any() || (voxel.array() > last.array()).any();
 }
 
-// Returns whether a tool can enter here and stay in bone: it is free above; bone fills most of where the burr
-// goes in the first millimetres; and it does not come near the border of the volume meanwhile.
+// Returns whether a tool can enter here and stay in bone: it is free above the entry, bone fills at least 60
+// % of the burr's path over the first millimetres, and the path keeps away from the border of the volume.
 bool can_stay(const Volume& volume, const MillingTool& tool, const MillingEntry& entry) {
   constexpr double kMinBoneShare = 0.6;
   constexpr int kLayers = 6, kLines = 12;
@@ -158,8 +159,8 @@ bool can_stay(const Volume& volume, const MillingTool& tool, const MillingEntry&
   return bone >= kMinBoneShare * all;
 }
 
-// The highest place, seen against the direction, at which a tool can enter a face that looks at it and stay,
-// and which is no pit. Nothing if there is none.
+// Returns the highest entry, seen against the direction, on a surface that faces the tool and is not a pit,
+// at which the tool can stay in bone. Nothing if there is none.
 std::optional<MillingEntry> find_entry(const Volume& volume, const MillingTool& tool,
                                        const Vec3& direction_W) {
   constexpr double kMinFacing = 0.7;
@@ -183,7 +184,7 @@ std::optional<MillingEntry> find_entry(const Volume& volume, const MillingTool& 
   return std::nullopt;
 }
 
-// A little more than 4 mm: a layer of voxels at just that depth counts whichever way its last bit falls.
+// Slightly more than 4 mm, so that a voxel layer at exactly that depth is included despite rounding.
 constexpr double kTop_mm = 4.0 + 1e-6;
 constexpr int kSides = 36;
 
@@ -197,7 +198,7 @@ Vec3 unit_direction(const std::optional<Vec3>& direction) {
 
 struct BoneTop {
   Vec3 highest_W = Vec3::Zero();
-  // The middle of all bone near the top, in W, at the top's height.
+  // Centroid of all bone near the top, projected to the top's height, in W.
   Vec3 middle_W = Vec3::Zero();
 };
 
@@ -234,8 +235,8 @@ BoneTop top_of_bone(const Volume& volume, const Vec3& direction_W, std::string_v
   return top;
 }
 
-// Returns how high the rim of the hole to come stands on one side, above the entry; a side without bone is
-// far below.
+// Returns the mean height above the entry of the future hole's rim on one side; -10 mm for samples without
+// bone.
 double rim_height_mm(const Volume& volume, const MillingTool& tool, const MillingEntry& entry,
                      const Vec3& side_W) {
   constexpr double kAbove_mm = 10.0;
@@ -251,8 +252,8 @@ double rim_height_mm(const Volume& volume, const MillingTool& tool, const Millin
 }
 
 Vec3 towards_highest_rim(const Volume& volume, const MillingTool& tool, const MillingEntry& entry) {
-  // A side must be higher by more than the noise of a crossing, so that flat bone gives the same side
-  // everywhere.
+  // Minimum height advantage, above the numerical noise of a crossing, so that flat bone always gives the
+  // same side.
   constexpr double kHigher_mm = 1e-3;
   const auto [first_W, second_W] = across(entry.direction_W);
   Vec3 best_W = first_W;
@@ -291,17 +292,17 @@ MillingEntry top_entry(const Volume& volume, const MillingTool& tool, const Bone
     entry.point_W = *point_W;
     if (tool_is_free(volume, tool, pose_above(entry, tool, kStartAbove_mm))) return entry;
   }
-  // A voxel's centre lies in the bone; its surface is the crossing above it.
+  // The centre of a bone voxel is inside the bone; the surface is the crossing above it.
   entry.point_W = surface_along(volume, top.highest_W, direction_W).value_or(top.highest_W);
   return entry;
 }
 
-// The top, if the tool can stay in bone there, else the highest place where it can, else seen from another
-// side, unless a direction was asked for; and if there is none the top all the same.
+// Returns the top if the tool can stay in bone there, otherwise the highest entry at which it can, also from
+// other directions if none was given. Falls back to the top.
 MillingEntry default_entry(const Volume& volume, const MillingTool& tool, const BoneTop& top,
                            const Vec3& direction_W, bool given_direction) {
   const MillingEntry at_top = top_entry(volume, tool, top, direction_W);
-  // In the middle of a rim that the volume cuts off is a hollow.
+  // An entry far below the highest voxel is in a hollow inside a rim that the volume's border cuts off.
   const double below_mm = direction_W.dot(at_top.point_W - top.highest_W);
   if (below_mm < 2 * kTop_mm && can_stay(volume, tool, at_top)) return at_top;
   std::vector<Vec3> directions{direction_W};

@@ -14,44 +14,43 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(std::string("milling script: ") + what);
 }
 
-// Share of its push sideways, towards the rim that is leant against. Leaning by torque alone would press the
-// burr into the wall on the other side as hard as the shaft into the rim, and so mill that wall away instead
-// of loading the edge.
+// Sideways force towards the rim, as a fraction of the push. Leaning by torque alone would press the burr
+// into the opposite wall as hard as the shaft into the rim, and mill that wall away instead of loading the
+// edge.
 constexpr double kSide = 0.6;
-// Share of its torque limit. With `until_leant` only until the shaft meets the wall, and from there by what
-// its spring takes for the torque: no further, if the wall gives way.
+// Lean torque as a fraction of the torque limit. With `until_leant` the lean angle is limited to the angle at
+// which the shaft met the wall plus the stretch for this torque, in case the wall gives way.
 constexpr double kTorque = 0.8;
 constexpr double kApproach_s = 1.0;
 constexpr double kFeed_mm_s = 2.0;
 constexpr double kLean_rad_s = 0.14;  // 8 degrees a second
-// The shaft is never meant to stand further from the direction than this (35 degrees).
+// Maximum lean angle of the target (35 degrees).
 constexpr double kLeanLimit_rad = 0.61;
-// It leans, however deep the hole is, when this share of the (longest) milling is over; for this share of the
-// milling at the most; and settles for this share of the holding at the most.
+// Fraction of the (maximum) milling time after which the hand leans whatever the depth of the hole; maximum
+// leaning time as a fraction of `milling_s`; maximum settling time as a fraction of the holding.
 constexpr double kLatestLeanShare = 0.6;
 constexpr double kMaxLeanShare = 0.4;
 constexpr double kMaxSettleShare = 0.5;
-// How fast the hand corrects what it feels, as a rate of the spring's stretch and of its twist: slow against
-// the swing of hand and handle (41 rad/s), so that the script neither damps nor drives it.
+// Rates at which the hand corrects the stretch and twist of its spring. Slow against the natural frequency of
+// hand and handle (41 rad/s), so that the script neither damps nor excites it.
 constexpr double kPushCorrection_per_s = 4.0;
 constexpr double kTorqueCorrection_per_s = 8.0;
 
-// Share of the intended force or torque from which on the hand counts as feeling it.
+// Fraction of the intended force at which the hand counts as feeling it.
 constexpr double kFelt = 0.8;
-// Smallest force and torque that a hand feels (twice a step of the encoder), and the time after which it is
-// sure of it.
+// Smallest force and torque that the hand feels (two encoder steps), and the time without contact after which
+// the wall counts as gone.
 constexpr double kFelt_N = 0.02;
 constexpr double kFelt_Nmm = 0.2;
 constexpr double kWallGone_s = 0.2;
-// A little more than the time after which a recording counts as without contact to its end.
+// Slightly more than the time after which a recording counts as having no further contact.
 constexpr double kLost_s = 1.01;
 
 constexpr double kMaxMillingFactor = 3;
-// Times are sums of ticks; this keeps a stage from beginning a tick late by a rounding.
+// Tolerance for times, which are sums of ticks, so that rounding does not delay a stage by a tick.
 constexpr double kRounding_s = 1e-6;
 
-// Returns how far a spring is stretched when it gives `share` of its limit; a spring of no stiffness gives
-// nothing.
+// Returns the stretch at which a spring gives `share` of its limit; 0 if it has no stiffness.
 double stretch_for(double share, double limit, double stiffness) {
   return stiffness > 0 ? share * limit / stiffness : 0.0;
 }
@@ -72,7 +71,7 @@ MillingScript::MillingScript(const ScriptSettings& settings, const HandSettings&
   require_valid(tool);
   const Pose start = pose_above(entry, tool, kStartAbove_mm);
   upright_ = start.orientation;
-  // About this axis the shaft, which points against the direction, turns towards the lateral side.
+  // Rotation about this axis leans the shaft, which points against the direction, towards the lateral side.
   lean_axis_W_ = (-entry.direction_W).cross(entry.lateral_W).normalized();
   along_mm_ = entry.direction_W.dot(start.position_mm - entry.point_W);
   intent_.X_W_target = target();
@@ -83,7 +82,7 @@ double MillingScript::shown_depth_mm(const Pose& X_WT) const {
   return entry_.direction_W.dot(X_WT.position_mm - entry_.point_W) + tool_.burr_radius_mm;
 }
 
-// Returns the share of the hand's push that its spring gives.
+// Returns the force of the hand's spring along the direction as a fraction of its push.
 double MillingScript::felt_push_share(const Pose& X_WD) const {
   const double stretch_mm = along_mm_ - entry_.direction_W.dot(X_WD.position_mm - entry_.point_W);
   return hand_.push_N > 0 ? stretch_mm * hand_.stiffness_N_per_mm / hand_.push_N : 0;
@@ -172,7 +171,7 @@ void MillingScript::push_sideways(double dt_s, const Pose& X_WD) {
   const double felt_mm = sideways_mm_ - entry_.lateral_W.dot(X_WD.position_mm - entry_.point_W);
   const double rate_mm_s = kPushCorrection_per_s * (wanted_mm - felt_mm);
   sideways_mm_ += dt_s * std::clamp(rate_mm_s, -kFeed_mm_s, kFeed_mm_s);
-  // If nothing resists (a burr that slides over bone too hard for it) the target must not wander off.
+  // Without resistance (a burr that slides over bone too hard for it) the target must not drift away.
   sideways_mm_ = std::clamp(sideways_mm_, 0.0, wanted_mm);
 }
 
@@ -217,7 +216,7 @@ const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& 
                                         const Wrench& felt) noexcept {
   feel(dt_s, X_WD, felt);
   advance_stage(time_s + kRounding_s, dt_s, X_WD, X_WT);
-  // A hand whose tool is lost stays where it is.
+  // If the tool has lost the bone, the hand stays in place.
   if (!shortfall_.lost) move(dt_s, X_WD);
   intent_.milling = intent_.stage < ScriptStage::settle;
   intent_.X_W_target = target();

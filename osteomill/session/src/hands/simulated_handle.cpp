@@ -72,8 +72,8 @@ void SimulatedHandle::command(const Wrench& wrench) noexcept {
 }
 
 void SimulatedHandle::advance(const Wrench& other) noexcept {
-  // The newest command takes the place of the one that the last substep used up; what is the oldest now was
-  // given `force_delay_s` ago.
+  // The newest command overwrites the one used in the last substep; the oldest one left was given
+  // `force_delay_s` ago.
   const std::size_t newest = oldest_;
   delay_line_[newest] = commanded_;
   oldest_ = (oldest_ + 1) % delay_line_.size();

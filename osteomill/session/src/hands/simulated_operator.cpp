@@ -9,10 +9,11 @@ namespace osteomill {
 namespace {
 
 constexpr double kMaxTick_s = 1.0;
-// Makes the random signal of a hand's rotation differ from that of its displacement.
+// Decorrelates the tremor of a hand's rotation from that of its displacement.
 constexpr std::uint64_t kTurning = 0x9e3779b97f4a7c15;
 
-// The bound of semi-implicit Euler (simulated_handle.h), with a fourth of it left for the wall.
+// Stability bound of semi-implicit Euler (simulated_handle.h), reduced from 4 to 3 to leave a margin for the
+// wall.
 void require_integrable(const HandleSettings& handle, const HandSettings& hand) {
   const double h = handle.substep_s;
   // In SI units: N/m, N s/m, N m/rad, N m s/rad.
@@ -48,13 +49,13 @@ void SimulatedOperator::tick_done(const Pose& X_WT, double dt_s) noexcept {
   if (!(dt_s > 0 && dt_s <= kMaxTick_s)) return;
   const double substep_s = handle_.settings().substep_s;
   const double owed_s = time_left_over_s_ + dt_s;
-  // A rounding must not cost a substep.
+  // The tolerance keeps rounding from dropping a substep.
   const auto count = static_cast<std::int64_t>(std::floor(owed_s / substep_s + 1e-6));
   time_left_over_s_ = owed_s - static_cast<double>(count) * substep_s;
   if (count < 1) return;
 
-  // The target goes from where it is to where the script wants it at the end of this time, in a straight line
-  // and at one speed: jumps at the tick's rate would be felt as a buzz.
+  // Interpolates the target linearly to the script's target at the end of this time; jumps at the tick rate
+  // would be felt as a buzz.
   substeps_ += count;
   const double passed_s = static_cast<double>(count) * substep_s;
   const Pose from = X_W_target_;

@@ -7,7 +7,7 @@ namespace osteomill {
 
 namespace {
 
-// How fast the target follows what is asked for: over about two pictures.
+// Rate at which the target follows the requested pose: about two video frames.
 constexpr double kFollow_per_s = 30.0;
 constexpr double kMaxTick_s = 0.05;
 
@@ -16,7 +16,7 @@ constexpr double kMaxTick_s = 0.05;
 HandSettings pointing_hand() {
   HandSettings hand;
   hand.push_N = 2.5;
-  // Critical: 2 sqrt(k m) of the default handle along a line, and the same about an axis.
+  // Critical damping, 2 sqrt(k m), with the default handle, in translation and rotation.
   hand.damping_Ns_per_mm = 0.0245;
   hand.torsional_damping_Nmms_per_rad = 24.5;
   hand.tremor_mm = 0;

@@ -17,19 +17,19 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// The library speaks of m and N m.
+// The library uses m and N m.
 constexpr double kMmPerM = 1000;
-// Twice as often as wrenches change; the library itself does not wait for the device.
+// Polling interval: twice the rate at which wrenches change. The library's read does not wait for the device.
 constexpr auto kBetweenReadings = 500us;
 constexpr auto kBetweenStatuses = 20ms;
-// Functions of dhd return 0 after success and less than 0 after a failure; more than 0 means success, but the
-// pose is the last one again.
+// dhd functions return 0 on success, a negative value on failure, and a positive value on success without a
+// new pose.
 constexpr int kNoNewFrame = 1;
-// In steps of 125 us, the longest that there is. It does not run before the first wrench.
+// Watchdog timeout in steps of 125 us; the maximum. The watchdog starts with the first wrench.
 constexpr unsigned char kWatchdog = 255;
 constexpr double kWatchdogStep_s = 125e-6;
 
-// Indices into the status, and the causes for a force that is off.
+// Indices into the status array, and causes of a force that is off.
 constexpr std::size_t kStatuses = 17;
 enum Status : std::size_t { kIsReset = 3, kHasForce = 5, kBrakes = 6, kForceOffCause = 14 };
 using StatusOfDevice = std::array<int, kStatuses>;
@@ -43,8 +43,7 @@ constexpr std::array kForceIsOff{"has its force off: switch it on by the device'
                                  "has its force off, as it was unplugged: switch it on by its button",
                                  "has its force off: hold its dead man's switch"};
 
-// The functions of libdhd 3 that are used, as their manual declares them. A device's number is -1 for the one
-// opened last.
+// Functions of libdhd 3, declared as in its manual. Device number -1 means the device opened last.
 struct Dhd {
   VendorLibrary file{
       "dhd", "OSTEOMILL_DHD_LIBRARY", {"libdhd.so.3", "libdhd.so", "libdrd.so.3", "libdrd.so"}};
@@ -76,7 +75,7 @@ struct Dhd {
       file["dhdSetForceAndTorqueAndGripperForce"];
 };
 
-// Limits that the library does not give, from the makers' data sheets.
+// Limits from the vendors' data sheets; the library does not report them.
 struct Model {
   int first_type, last_type;
   WrenchLimits limits;
@@ -134,7 +133,8 @@ class ForceDimensionConnection final : public Connection {
     capabilities_.driven = dhd_.has_active_wrist(id_) ? 6 : 3;
     capabilities_.R_VB = Mat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
     capabilities_.limits = model.limits;
-    // Reopened too, what its operator or its brakes switched off is theirs to switch on.
+    // Also after reopening: force that the operator or the brakes switched off may only be switched on by the
+    // operator.
     StatusOfDevice found{};
     switches_on_ = dhd_.status(found.data(), id_) < 0 || !is_off(found) || found[kForceOffCause] == 0 ||
                    found[kForceOffCause] == kByWatchdog || found[kForceOffCause] == kByProgram;
@@ -191,7 +191,7 @@ class ForceDimensionConnection final : public Connection {
 
  private:
   Dhd dhd_;
-  // Not every device has one.
+  // Does nothing on devices without a watchdog.
   void set_watchdog() {
     dhd_.enable_expert_mode();
     dhd_.set_watchdog(kWatchdog, id_);
@@ -202,9 +202,9 @@ class ForceDimensionConnection final : public Connection {
 
   static bool is_off(const StatusOfDevice& status) { return status[kHasForce] == 0 || status[kBrakes] != 0; }
 
-  // Force is switched on once the device is calibrated, and again if its watchdog alone had switched it
-  // off: then not before it has been said to be off and the wrench has come down, since the device goes on
-  // with the last that it was sent.
+  // Switches the force on once the device is calibrated, and again if only the watchdog had switched it off.
+  // In the latter case it first reports the force as off and waits until the wrench is zero, because the
+  // device resumes with the last wrench sent.
   const char* why_not_driven() {
     StatusOfDevice status{};
     if (dhd_.status(status.data(), id_) < 0) return "does not say whether it is calibrated";
@@ -240,7 +240,7 @@ std::unique_ptr<Connection> open_force_dimension(const std::string& address) {
   return std::make_unique<ForceDimensionConnection>(address);
 }
 
-// Does not open the device, because that would take it from another program.
+// Does not open the device, because that would take it away from another program.
 std::string probe_force_dimension(const std::string& address) {
   const Dhd dhd;
   require_device(dhd, number_of(address));

@@ -22,19 +22,20 @@ using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 
 constexpr const char* kUsualAddress = "127.0.0.1:10001";
-// The service speaks of m.
+// The service uses m.
 constexpr double kMmPerM = 1000;
-// The first text names every device with its settings; later ones are a few kB.
+// The first message lists every device with its settings; later ones are a few kB.
 constexpr std::size_t kMaxBytes = 1 << 18;
 constexpr auto kInventoryWithin = 100ms;
 constexpr auto kWait = 1500us;
 constexpr auto kBetweenReadings = 500us;
-// A service that has not answered for this time is connected to again.
+// Time without an answer after which the connection counts as lost and is reopened.
 constexpr auto kAnswersWithin = 1s;
-// By the mean of some twenty answers. A pose that is older than that is none (ConnectedDevice).
+// Latency limit, applied to a running mean over about kLatencies answers: ConnectedDevice ignores older
+// poses.
 constexpr double kFeltWithin_ms = 5;
 constexpr double kLatencies = 20;
-// Number of answers whose mean tells whether the forces are those that were sent.
+// Time constant, in answers, of the mean that detects forces other than those sent.
 constexpr double kAnswers = 200;
 constexpr double kOtherForce_N = 0.3;
 constexpr double kOtherShare = 0.25;
@@ -49,7 +50,7 @@ const Json* member(const Json* of, const char* key) {
   return found == of->end() ? nullptr : &*found;
 }
 
-// The first of a list that is as wanted.
+// Returns the first element of the list `key` that matches the predicate, or null.
 template <typename IsWanted>
 const Json* first_of(const Json& of, const char* key, IsWanted is_wanted) {
   const Json* const list = member(&of, key);
@@ -77,15 +78,14 @@ bool is_false(const Json* value) {
   return value != nullptr && *value == false;
 }
 
-// Also a Minverse stands among them, which is not driven with the forces of an Inverse3.
+// The list also contains Minverse devices, which must not get the forces of an Inverse3.
 bool is_inverse3(const Json& device) {
   const Json* const type = member(member(&device, "config"), "type");
   const Json* const id = member(&device, "device_id");
   return id != nullptr && id->is_string() && (type == nullptr || *type == "inverse3" || *type == "inverse3x");
 }
 
-// Returns why the device may not be driven, from its own status; without a status it is not known to be
-// calibrated.
+// Returns why the device may not be driven, or null. Without a status it counts as not calibrated.
 const char* why_not_driven(const Json* status) {
   if (is_false(member(status, "power_supply"))) return "has no power: plug its power supply in";
   if (is_false(member(status, "ready")) || is_false(member(status, "started")))
@@ -126,7 +126,7 @@ bool take_grip(const Json* grip, DeviceInput& input) {
   return true;
 }
 
-// A service that has said which devices it has, and was told nothing.
+// A connected service that has sent its inventory; no command has been sent to it.
 struct OpenedService {
   explicit OpenedService(const HostAndPort& at) : socket(name_of(at), at.host, at.port, kMaxBytes) {
     const auto text = socket.receive(kInventoryWithin);
@@ -149,7 +149,7 @@ struct OpenedService {
 class HaplyConnection final : public Connection {
  public:
   explicit HaplyConnection(const HostAndPort& at)
-      // Version 3.5 counts its sessions, and takes a force as `vector`; before it was `values`.
+      // Version 3.5 sends a session id and takes the force as `vector`; earlier versions as `values`.
       : service_(at),
         id_(service_.id()),
         force_key_(service_.inventory.contains("session_id") ? "vector" : "values"),
@@ -162,7 +162,7 @@ class HaplyConnection final : public Connection {
     capabilities_.R_VB = Mat3{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
     capabilities_.limits = {10, 0};
     not_driven_ = why_not_driven(member(service_.inverse3, "status"));
-    // By which the Haply Hub knows whose forces these are; only once.
+    // Identifies this program in the Haply Hub; sent once.
     ask(Vec3::Zero(), {{"session", {{"configure", {{"profile", {{"name", "osteomill"}}}}}}}});
   }
   ~HaplyConnection() override { ask(Vec3::Zero()); }
@@ -177,14 +177,14 @@ class HaplyConnection final : public Connection {
     }
     if (is_asked_) check_latency();
     is_asked_ = false;
-    // One that answers at once is not asked as often as it could answer.
+    // Limits the rate of requests to a service that answers immediately.
     std::this_thread::sleep_until(next_);
     next_ = Clock::now() + kBetweenReadings;
     return take_state(*text, input) ? ConnectionStatus::fresh : ConnectionStatus::silent;
   }
 
   ConnectionStatus write(const Wrench& wrench_B) override {
-    // One text at a time is on its way: a slow service would else work off wrenches of long ago.
+    // Only one message may be pending; otherwise a slow service would apply outdated wrenches.
     if (is_asked_) return or_lost(ConnectionStatus::silent);
     return or_lost(ask(wrench_B.force_N) ? ConnectionStatus::fresh : ConnectionStatus::silent);
   }
@@ -194,7 +194,8 @@ class HaplyConnection final : public Connection {
     return service_.socket.is_open() ? status : ConnectionStatus::lost;
   }
 
-  // The force, for which the service answers with the state of all devices. False if it waits to be sent.
+  // Sends the force; the service answers with the state of all devices. Returns false if the message is still
+  // pending.
   bool ask(const Vec3& force_N, Json message = Json::object()) {
     const Json force{{force_key_, {{"x", force_N.x()}, {"y", force_N.y()}, {"z", force_N.z()}}}};
     const Json device{{"device_id", id_}, {"commands", {{"set_cursor_force", force}}}};
@@ -205,7 +206,7 @@ class HaplyConnection final : public Connection {
     return service_.socket.send(message.dump());
   }
 
-  // Keeps one text for as long as the service is slow.
+  // Keeps one message while the service is slow, because `remark` points to it.
   void check_latency() {
     const double latency_ms = std::chrono::duration<double, std::milli>(Clock::now() - asked_).count();
     mean_latency_ms_ += (latency_ms - mean_latency_ms_) / kLatencies;
@@ -219,7 +220,7 @@ class HaplyConnection final : public Connection {
     }
   }
 
-  // Filters of the service, and its scale, change forces on their way.
+  // The service's filters and force scale may change the forces.
   bool gives_other_forces(const Json* state) {
     Vec3 given_N;
     if (!take(member(state, "current_cursor_force"), given_N)) return false;
@@ -253,7 +254,7 @@ class HaplyConnection final : public Connection {
   std::string force_key_;
   bool has_grip_;
   DeviceCapabilities capabilities_;
-  // The device's last reason.
+  // Last known reason; messages without a status keep it.
   const char* not_driven_ = nullptr;
   Vec3 force_N_ = Vec3::Zero();
   double mean_asked_N_ = 0;

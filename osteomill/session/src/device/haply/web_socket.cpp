@@ -65,7 +65,7 @@ struct WebSocket::Impl {
 
   bool write() {
     if (!going) return true;
-    // The library writes its head in front.
+    // The library writes its header in front of the payload.
     std::vector<unsigned char> packet(LWS_PRE + going->size());
     std::copy(going->begin(), going->end(), packet.begin() + LWS_PRE);
     const std::size_t length = going->size();
@@ -73,8 +73,8 @@ struct WebSocket::Impl {
     return lws_write(socket, packet.data() + LWS_PRE, length, LWS_WRITE_TEXT) >= static_cast<int>(length);
   }
 
-  // Until something comes or the time is over. Waiting is not left to the library, which sleeps on for half a
-  // minute if its alarm goes off between being set and its falling asleep.
+  // Waits for input or the timeout. Does not use the library's own wait, which may sleep for half a minute if
+  // its timer fires before it goes to sleep.
   void serve(std::chrono::microseconds wait) {
     const timespec time{0, 1000 * std::max<std::int64_t>(wait.count(), 0)};
     pollfd wanted{socket == nullptr ? -1 : lws_get_socket_fd(socket), POLLIN, 0};

@@ -19,8 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// Constants of libHD 3, from its reference: parameters that are read and set, and return values of a frame's
-// function.
+// Constants of libHD 3, from its reference: parameters, and return values of a callback.
 enum Parameter : unsigned {
   kCurrentButtons = 0x2000,
   kCurrentTransform = 0x2052,
@@ -39,17 +38,18 @@ constexpr unsigned kInvalidHandle = 0xffffffff;
 constexpr unsigned kContinue = 1;
 constexpr unsigned kCalibrated = 0x5000;
 constexpr unsigned kCalibratesItself = 0x5001;
-// Styles of calibration that need no operator, except to use the inkwell; resetting the encoders needs one.
+// Calibration styles that the program can run by itself (the operator only uses the inkwell), unlike an
+// encoder reset.
 constexpr unsigned kByItself = 1 << 1;
 constexpr unsigned kByInkwell = 1 << 2;
 constexpr unsigned short kDefaultPriority = 0xffff / 2;
-// Errors of 0x02.. are of forces (motors too warm, a force or velocity too large): the device goes on.
+// Error codes 0x02.. concern forces (warm motors, excessive force or velocity); the device keeps running.
 constexpr bool is_of_force(unsigned code) {
   return code >> 8 == 2;
 }
 
-// A wrench that has not been renewed for this time becomes zero. This is no watchdog of the device: the
-// library's thread, which does it, ends with the program.
+// A wrench older than this is replaced by zero. Not a watchdog of the device: it runs in the library's
+// thread, which ends with the program.
 constexpr auto kLapse = 20ms;
 constexpr auto kPollPeriod = 200us;
 constexpr double kFrame_s = 1e-3;
@@ -82,7 +82,7 @@ struct Hd {
   VendorFunction<void()> stop_scheduler = file["hdStopScheduler"];
 };
 
-// A device that is opened, and none of whose motors has power.
+// An opened device whose motors are not powered.
 struct OpenedDevice {
   explicit OpenedDevice(const std::string& address)
       : handle(hd.init_device(address.empty() ? nullptr : address.c_str())) {
@@ -115,7 +115,7 @@ struct OpenedDevice {
 struct SentWrench {
   Wrench wrench;
   Clock::time_point time{};
-  // Number of the wrench; zeros in a row share one.
+  // Number of the wrench; consecutive zeros share one.
   unsigned number = 0;
 };
 
@@ -126,7 +126,8 @@ class TouchConnection final : public Connection {
     frames_ = hd_.schedule([](void* self) { return static_cast<TouchConnection*>(self)->frame(); }, this,
                            kDefaultPriority);
     {
-      // The library's thread is to go on while another handles a signal.
+      // Signals are blocked in the library's thread, so that it keeps running while another thread handles
+      // one.
       const BlockedSignals start_with_none;
       hd_.start_scheduler();
     }
@@ -137,7 +138,7 @@ class TouchConnection final : public Connection {
     }
   }
   ~TouchConnection() override {
-    // No frame sends it if the library hangs.
+    // Waits at most 20 ms: if the library hangs, no frame sends the zero.
     for (const auto end = Clock::now() + 20ms; !send({}) && Clock::now() < end;)
       std::this_thread::sleep_for(kPollPeriod);
     close();
@@ -159,7 +160,7 @@ class TouchConnection final : public Connection {
 
   ConnectionStatus write(const Wrench& wrench_B) override {
     if (is_lost_.load(std::memory_order_relaxed)) return ConnectionStatus::lost;
-    // One a frame: in a frame that has begun the one before may still be to be sent.
+    // At most one wrench per frame, because the previous one may not have been sent yet.
     const unsigned frames = frames_done_.load(std::memory_order_acquire);
     if (frames == frames_at_writing_) return ConnectionStatus::silent;
     frames_at_writing_ = frames;
@@ -167,7 +168,7 @@ class TouchConnection final : public Connection {
   }
 
  private:
-  // Returns, for a wrench of zero, whether the motors have it; true for any other.
+  // Returns false if `wrench_B` is zero and the motors have not received it yet; otherwise true.
   bool send(const Wrench& wrench_B) {
     const bool zero = is_zero(wrench_B);
     if (!zero || !sends_zero_) ++number_;
@@ -188,11 +189,11 @@ class TouchConnection final : public Connection {
     capabilities_.limits = {force_N, torque_Nmm};
   }
 
-  // One servo tick of the library's own thread, at 1 kHz.
+  // One servo tick, called at 1 kHz by the library's thread.
   unsigned frame() {
     hd_.begin_frame(device_.handle);
     DeviceInput input;
-    // Columns, as OpenGL has them; mm.
+    // Column-major as in OpenGL; mm.
     std::array<double, 16> transform{};
     hd_.get_doubles(kCurrentTransform, transform.data());
     const Eigen::Map<const Eigen::Matrix4d> X_BH(transform.data());
@@ -219,12 +220,13 @@ class TouchConnection final : public Connection {
     return kContinue;
   }
 
-  // Returns why the device may not be driven; call in a frame. The motors get power once it is calibrated.
+  // Returns why the device may not be driven, or null. Powers the motors once it is calibrated. Call within a
+  // frame.
   const char* why_not_driven() {
     const unsigned calibration = hd_.check_calibration();
     if (calibration == kCalibratesItself && calibration_style_ != 0) {
       hd_.update_calibration(calibration_style_);
-      // That it could not be is no error of the device: it is asked again in the next frame.
+      // Clears the error of a failed calibration; the next frame tries again.
       hd_.get_error();
     }
     if (calibration != kCalibrated)
@@ -243,7 +245,7 @@ class TouchConnection final : public Connection {
   const Hd& hd_ = device_.hd;
   unsigned calibration_style_ = 0;
   unsigned long frames_ = 0;
-  // The servo thread's.
+  // Used by the servo thread only.
   bool has_power_ = false;
   Wrench driven_;
   DeviceCapabilities capabilities_;
@@ -254,7 +256,7 @@ class TouchConnection final : public Connection {
   unsigned frames_at_writing_ = ~0U;
   unsigned number_ = 0;
   bool sends_zero_ = true;
-  // The number of the wrench for which a frame sent zero last.
+  // Number of the wrench in the last frame that sent zero.
   std::atomic<unsigned> zero_of_{0};
   std::atomic<bool> is_lost_{false};
 };

@@ -26,12 +26,12 @@ constexpr const char* kUsualAddress = "127.0.0.1:47117";
 constexpr auto kWait = 2ms;
 constexpr int kQuestions = 10;
 constexpr auto kWaitForAnswer = 50ms;
-// After a silence this long the device may have restarted, and counts from any number.
+// After a longer silence the device may have restarted, so any sequence number is accepted.
 constexpr auto kSilence = 100ms;
 constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
                                                    "is not calibrated: calibrate it as its maker says",
                                                    "has its force off: switch it on as its maker says"};
-// Limit of datagrams at once, so that a flood does not block the thread.
+// Maximum number of datagrams per read, so that a flood does not block the thread.
 constexpr int kMaxDatagrams = 64;
 
 struct Question {
@@ -39,7 +39,7 @@ struct Question {
   Head head;
 };
 
-// Returns whether it went out.
+// Returns whether the datagram was sent.
 template <typename Datagram>
 bool send(Socket& socket, Datagram datagram, std::uint32_t sequence) {
   datagram.head.kind = Datagram::kKind;
@@ -47,11 +47,11 @@ bool send(Socket& socket, Datagram datagram, std::uint32_t sequence) {
   return socket.send({reinterpret_cast<const unsigned char*>(&datagram), sizeof(datagram)}) > 0;
 }
 
-// One that has come and is of this kind.
+// Returns the next received datagram of this kind, skipping others.
 template <typename Datagram>
 std::optional<Datagram> receive(Socket& socket) {
   for (int n = 0; n < kMaxDatagrams; ++n) {
-    // A longer one is cut off, and then told by its length.
+    // Longer datagrams are truncated; their length then does not match.
     std::array<unsigned char, 256> bytes;
     const std::optional<std::size_t> length = socket.receive(bytes);
     if (!length) return std::nullopt;
@@ -86,7 +86,7 @@ DeviceCapabilities capabilities_of(const Answer& answer, const std::string& devi
   return can;
 }
 
-// A device at HOST:PORT that has answered.
+// A device that has answered at HOST:PORT.
 struct Partner {
   explicit Partner(const std::string& address)
       : socket("udp:" + address, host_and_port("udp", address), Socket::Kind::datagrams) {
@@ -97,7 +97,7 @@ struct Partner {
         capabilities = capabilities_of(*answer, "udp:" + address);
         is_taken = answer->head.is_taken != 0;
         if (!is_taken) return;
-        // A program that was killed has it for a moment longer.
+        // A killed program keeps the device for another moment; ask again.
         std::this_thread::sleep_for(kWaitForAnswer);
       }
     }
@@ -107,7 +107,7 @@ struct Partner {
 
   Socket socket;
   DeviceCapabilities capabilities;
-  // By another program.
+  // In use by another program.
   bool is_taken = false;
 };
 
@@ -117,7 +117,7 @@ class UdpConnection final : public Connection {
     if (partner_.is_taken) throw InputError("udp:" + address, "another program has the device in use");
   }
   ~UdpConnection() override {
-    // One of them arrives.
+    // Datagrams may be lost; send zero three times.
     for (int n = 0; n < 3; ++n) write({});
   }
 
@@ -147,7 +147,7 @@ class UdpConnection final : public Connection {
   }
 
  private:
-  // Numbers go round.
+  // Sequence numbers wrap around.
   bool is_newer(std::uint32_t sequence) const {
     return !heard_ || Clock::now() - *heard_ > kSilence || static_cast<std::int32_t>(sequence - newest_) > 0;
   }
