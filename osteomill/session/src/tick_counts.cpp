@@ -41,8 +41,8 @@ std::optional<std::string> FaultCount::sentence() const {
   if (limited() + not_finite() + without_pose() + unsafe() + held_back() == 0) return std::nullopt;
   return fmt::format(
       "{} wrenches were clamped to the device's limits, {} were not finite and sent as zero, {} were sent as "
-      "zero since the device gave no pose (a clutch that was held among them), {} since it jumped or the "
-      "tick came late, {} since the tool had not left the bone after the device began to be driven",
+      "zero because the device gave no pose (including while the clutch was held), {} because it jumped or "
+      "the tick was late, {} because the tool had not left the bone yet after the device became driven",
       limited(), not_finite(), without_pose(), unsafe(), held_back());
 }
 

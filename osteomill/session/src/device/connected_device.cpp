@@ -312,7 +312,7 @@ void ConnectedDevice::Exchange::reopen() {
   connection_ = open_();
   const DeviceCapabilities& now = connection_->capabilities();
   if (now.name != opened_.name || now.driven != opened_.driven || now.sensed != opened_.sensed) {
-    drop_connection("another device is there: " + now.name);
+    drop_connection("another device is connected: " + now.name);
     return;
   }
   sent_s_ = now_s_();

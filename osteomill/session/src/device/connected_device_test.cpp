@@ -290,7 +290,7 @@ TEST_F(ConnectedDeviceTest, AnotherDeviceInItsPlaceIsNotTaken) {
   hardware_.can.name = "another";
   run(600);
   EXPECT_EQ(device_.report().state, State::lost);
-  EXPECT_EQ(device_.report().reason, "another device is there: another");
+  EXPECT_EQ(device_.report().reason, "another device is connected: another");
 }
 
 TEST_F(ConnectedDeviceTest, ABackEndThatThrowsIsALostDevice) {

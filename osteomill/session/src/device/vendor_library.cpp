@@ -37,8 +37,8 @@ VendorLibrary::VendorLibrary(std::string device, const char* variable,
     const std::string reason = dlerror();
     if (!reason.starts_with(std::string(name) + ": cannot open shared object file")) why = reason;
   }
-  throw InputError(device_, why.empty() ? fmt::format("{} of the maker's software is not installed; {} may "
-                                                      "name it",
+  throw InputError(device_, why.empty() ? fmt::format("{} of the maker's software is not installed; {} can "
+                                                      "name its path",
                                                       *names.begin(), variable)
                                         : "the maker's software cannot be loaded: " + why);
 }

@@ -45,9 +45,9 @@ void require_valid(const HandSettings& settings) {
   require_not_negative(settings.torsional_stiffness_Nmm_per_rad, "hand: its torsional stiffness (N mm/rad)");
   require_not_negative(settings.torsional_damping_Nmms_per_rad, "hand: its torsional damping (N mm s/rad)");
   require_not_negative(settings.push_N, "hand: its push (N)");
-  require_not_negative(settings.push_lever_mm, "hand: its push's lever (mm)");
+  require_not_negative(settings.push_lever_mm, "hand: the lever arm of its push (mm)");
   require_not_negative(settings.tremor_mm, "hand: its tremor (mm)");
-  require_not_negative(settings.tremor_rad, "hand: its tremor's turning (rad)");
+  require_not_negative(settings.tremor_rad, "hand: its rotational tremor (rad)");
 }
 
 Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist& target_velocity,
@@ -80,7 +80,7 @@ HandSettings gripping(HandSettings hand, double firmness) {
 }
 
 Tremor::Tremor(std::uint64_t seed, double rms) {
-  require_not_negative(rms, "tremor: its root mean square");
+  require_not_negative(rms, "tremor: its rms");
   SeededRandom random(seed);
   for (auto& sines : axes_) {
     std::size_t next = 0;

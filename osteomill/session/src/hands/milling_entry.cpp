@@ -192,7 +192,7 @@ Vec3 unit_direction(const std::optional<Vec3>& direction) {
   if (!direction) return -Vec3::UnitZ();
   const double length = direction->norm();
   if (!std::isfinite(length)) throw InputError("direction", "its numbers must be finite");
-  if (!(length > 0)) throw InputError("direction", "0,0,0 points nowhere");
+  if (!(length > 0)) throw InputError("direction", "must not be 0,0,0");
   return *direction / length;
 }
 
@@ -362,8 +362,8 @@ std::vector<std::string> coarseness_warnings(const GridGeometry& geometry, const
   const double apart_mm = geometry.spacing_mm.maxCoeff();
   if (apart_mm <= tool.burr_radius_mm) return {};
   return {fmt::format(
-      "the scan's voxels lie up to {:.3g} mm apart, more than the burr's radius of {:.3g} mm: what is "
-      "milled is hardly seen or felt as it was",
+      "the scan's voxels lie up to {:.3g} mm apart, more than the burr's radius of {:.3g} mm: milling is "
+      "hardly visible or felt",
       apart_mm, tool.burr_radius_mm)};
 }
 
@@ -373,7 +373,7 @@ std::vector<std::string> entry_warnings(const Volume& volume, const MillingTool&
   if (is_on_cut_edge(volume.geometry(), entry.point_W)) {
     warnings.emplace_back("the tool enters where the border of the volume cuts the bone off");
   } else if (!can_stay(volume, tool, entry)) {
-    warnings.emplace_back("where the tool enters it does not stay in bone for long");
+    warnings.emplace_back("the tool leaves the bone again soon after it has entered");
   }
   return warnings;
 }

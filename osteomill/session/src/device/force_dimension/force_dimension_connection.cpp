@@ -37,10 +37,10 @@ constexpr int kByWatchdog = 3;
 constexpr int kByProgram = 4;
 constexpr std::array kForceIsOff{"has its force off: switch it on by the device's button",
                                  "has its force off by its button: press it again",
-                                 "has braked, as it moved too fast: switch its force on by its button",
-                                 "has its force off, as it waited too long for a wrench",
+                                 "has braked because it moved too fast: switch its force on by its button",
+                                 "has its force off because it received no wrench in time",
                                  "has its force off by another program",
-                                 "has its force off, as it was unplugged: switch it on by its button",
+                                 "has its force off because it was unplugged: switch it on by its button",
                                  "has its force off: hold its dead man's switch"};
 
 // Functions of libdhd 3, declared as in its manual. Device number -1 means the device opened last.
@@ -207,10 +207,10 @@ class ForceDimensionConnection final : public Connection {
   // device resumes with the last wrench sent.
   const char* why_not_driven() {
     StatusOfDevice status{};
-    if (dhd_.status(status.data(), id_) < 0) return "does not say whether it is calibrated";
+    if (dhd_.status(status.data(), id_) < 0) return "does not report whether it is calibrated";
     if (status[kIsReset] != 0) {
       switches_on_ = true;
-      return "is not calibrated: calibrate it by the maker's tool (HapticInit), a Falcon by hand";
+      return "is not calibrated: calibrate it with the maker's tool (HapticInit), a Falcon by hand";
     }
     const auto cause = static_cast<std::size_t>(status[kForceOffCause]);
     const char* const off = is_off(status) ? kForceIsOff[cause < kForceIsOff.size() ? cause : 0] : nullptr;
@@ -219,7 +219,7 @@ class ForceDimensionConnection final : public Connection {
       switches_on_ = false;
       dhd_.set_brakes(0, id_);
       dhd_.enable_force(1, id_);
-      if (dhd_.status(status.data(), id_) < 0) return "does not say whether its force is on";
+      if (dhd_.status(status.data(), id_) < 0) return "does not report whether its force is on";
       return is_off(status) ? off : nullptr;
     }
     return off;

@@ -115,7 +115,7 @@ TEST_F(ForceDimension, IsDrivenWhereItIsCalibratedAndHasItsForceOn) {
   device_->status[kForce] = 0;
   device_->status[kCause] = 3;
   for (int n = 0; n < 2; ++n) {
-    EXPECT_EQ(why_not(), "has its force off, as it waited too long for a wrench");
+    EXPECT_EQ(why_not(), "has its force off because it received no wrench in time");
     EXPECT_EQ(device_->status[kForce], 0);
   }
   connection->write({});
@@ -254,8 +254,9 @@ TEST_F(ForceDimension, WhyThereIsNoneIsSaid) {
 
 TEST_F(ForceDimension, ALibraryThatIsMissingOrAnotherIsSaid) {
   unsetenv("OSTEOMILL_DHD_LIBRARY");
-  EXPECT_EQ(refusal(),
-            "dhd: libdhd.so.3 of the maker's software is not installed; OSTEOMILL_DHD_LIBRARY may name it");
+  EXPECT_EQ(
+      refusal(),
+      "dhd: libdhd.so.3 of the maker's software is not installed; OSTEOMILL_DHD_LIBRARY can name its path");
   setenv("OSTEOMILL_DHD_LIBRARY", "/nowhere/libdhd.so", 1);
   EXPECT_NE(refusal().find("/nowhere/libdhd.so"), std::string::npos);
   setenv("OSTEOMILL_DHD_LIBRARY", "libm.so.6", 1);

@@ -40,7 +40,7 @@ constexpr double kAnswers = 200;
 constexpr double kOtherForce_N = 0.3;
 constexpr double kOtherShare = 0.25;
 constexpr const char* kOtherForces =
-    "gives other forces than it is sent: look at its filters and force scale in the Haply Hub";
+    "gives other forces than requested: check its filters and force scale in the Haply Hub";
 constexpr const char* kGrips[] = {"wireless_verse_grip", "verse_grip"};
 
 // Returns a member; null if the key is missing or has another type than expected. Never throws.
@@ -89,7 +89,7 @@ bool is_inverse3(const Json& device) {
 const char* why_not_driven(const Json* status) {
   if (is_false(member(status, "power_supply"))) return "has no power: plug its power supply in";
   if (is_false(member(status, "ready")) || is_false(member(status, "started")))
-    return "is not ready: look into the Haply Hub";
+    return "is not ready: check it in the Haply Hub";
   if (!is_true(member(status, "calibrated")))
     return "is not calibrated: calibrate it as its maker says (inkwell)";
   return nullptr;
@@ -130,7 +130,7 @@ bool take_grip(const Json* grip, DeviceInput& input) {
 struct OpenedService {
   explicit OpenedService(const HostAndPort& at) : socket(name_of(at), at.host, at.port, kMaxBytes) {
     const auto text = socket.receive(kInventoryWithin);
-    if (!text) throw InputError(name_of(at), "the service does not say which devices it has");
+    if (!text) throw InputError(name_of(at), "the service sends no list of its devices");
     inventory = Json::parse(*text, nullptr, false);
     inverse3 = first_of(inventory, "inverse3", &is_inverse3);
     if (inverse3 == nullptr) throw InputError(name_of(at), "the service has no Inverse3");
@@ -214,8 +214,8 @@ class HaplyConnection final : public Connection {
       is_slow_[0] = '\0';
     } else if (is_slow_[0] == '\0') {
       *fmt::format_to_n(is_slow_.data(), is_slow_.size() - 1,
-                        "answers after {:.0f} ms, and from {:g} ms on next to nothing can be felt",
-                        latency_ms, kFeltWithin_ms)
+                        "answers after {:.0f} ms; above {:g} ms almost nothing can be felt", latency_ms,
+                        kFeltWithin_ms)
            .out = '\0';
     }
   }

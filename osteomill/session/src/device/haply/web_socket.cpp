@@ -96,7 +96,7 @@ struct WebSocket::Impl {
 
 WebSocket::WebSocket(const std::string& device, const std::string& host, int port, std::size_t max_bytes)
     : impl_(std::make_unique<Impl>(max_bytes)) {
-  if (impl_->context == nullptr) throw InputError(device, "no WebSocket can be had");
+  if (impl_->context == nullptr) throw InputError(device, "cannot create a WebSocket");
   lws_client_connect_info to{};
   to.context = impl_->context;
   to.address = to.host = to.origin = host.c_str();

@@ -70,19 +70,19 @@ DeviceCapabilities capabilities_of(const Answer& answer, const std::string& devi
   can.name.assign(answer.name.begin(), end);
   const auto printable = [](unsigned char letter) { return letter >= 0x20 && letter != 0x7f; };
   if (can.name.empty() || !std::all_of(can.name.begin(), can.name.end(), printable))
-    throw InputError(device, "the device does not say its name");
+    throw InputError(device, "the device reports no valid name");
   const auto is_dof = [](std::uint32_t dof) { return dof == 3 || dof == 6; };
   if (!is_dof(answer.sensed) || !is_dof(answer.driven))
     throw InputError(
         device,
-        fmt::format("the device says {} degrees of freedom sensed and {} driven, where each is 3 or 6",
+        fmt::format("the device reports {} degrees of freedom sensed and {} driven; each must be 3 or 6",
                     answer.sensed, answer.driven));
   can.sensed = static_cast<int>(answer.sensed);
   can.driven = static_cast<int>(answer.driven);
   can.limits = {answer.max_force_N, answer.max_torque_Nmm};
   can.watchdog_s = kLapse_s;
   if (!is_not_negative(can.limits.force_N) || !is_not_negative(can.limits.torque_Nmm))
-    throw InputError(device, "the device says limits that are not numbers from 0");
+    throw InputError(device, "the device reports limits that are negative or not finite");
   return can;
 }
 

@@ -198,8 +198,8 @@ std::string fault_of(const std::function<void()>& action) {
 
 TEST(UdpDevice, AnAnswerThatCannotBeIsRefused) {
   const std::vector<std::pair<std::function<void(Answer&)>, std::string>> faults{
-      {[](Answer& answer) { answer.name = {}; }, "does not say its name"},
-      {[](Answer& answer) { answer.name[1] = '\n'; }, "does not say its name"},
+      {[](Answer& answer) { answer.name = {}; }, "reports no valid name"},
+      {[](Answer& answer) { answer.name[1] = '\n'; }, "reports no valid name"},
       {[](Answer& answer) { answer.driven = 4; }, "6 degrees of freedom sensed and 4 driven"},
       {[](Answer& answer) { answer.max_force_N = -1; }, "not numbers from 0"},
       {[](Answer& answer) { answer.max_torque_Nmm = std::numeric_limits<double>::infinity(); },
