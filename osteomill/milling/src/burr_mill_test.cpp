@@ -18,7 +18,7 @@ using testing_support::plane;
 using testing_support::shape_volume;
 
 constexpr BoneDensities kBone{0, 1000};
-// A round rate, so that what must be removed can be read off.
+// A round rate, so that the expected volume is easy to read.
 const MillingSettings kMilling{.removal_rate_mm3_per_Ns = 2.0};
 constexpr double kRadius_mm = 1.5;
 
@@ -30,7 +30,7 @@ GridGeometry cube_of(double side_mm, double spacing_mm) {
   return centred_cube(static_cast<int>(std::lround(side_mm / spacing_mm)), spacing_mm);
 }
 
-// Bone below z = 0, its edge 0.25 mm wide whatever the voxels.
+// Bone below z = 0 with an edge 0.25 mm wide for any voxel size.
 Volume half_space(const GridGeometry& geometry, const Vec3& normal = Vec3::UnitZ()) {
   return shape_volume(geometry, plane(Vec3::Zero(), normal), 0.25 / geometry.spacing_mm.minCoeff());
 }
@@ -55,7 +55,7 @@ struct Hole {
   double depth_mm = 0;
 };
 
-// A burr pressed straight down with a force, kept at the depth at which a spring of 20 N/mm bears that force.
+// Presses a burr straight down, at the depth at which a spring of 20 N/mm balances the force.
 Hole mill_hole(Volume& volume, BurrMill& mill, double force_N, double seconds, double rate_hz,
                const Vec3& down = -Vec3::UnitZ()) {
   Hole hole;
@@ -90,7 +90,7 @@ TEST(BurrMill, ABurrThatIsHeldWhereItIsCutsWhatTheForcePaysForAndThenNothing) {
           removed_mm3 += cut_mm3;
         }
         EXPECT_LT(last_cut_s, 0.9) << spacing_mm << ' ' << radius_mm << ' ' << normal.transpose();
-        // The tolerance is the budget that is kept for a burr that swings, of 10 ms, twice.
+        // Tolerance: twice the carried-over budget of 10 ms.
         const double paid_mm3_s = kMilling.removal_rate_mm3_per_Ns * 1.5;
         EXPECT_NEAR(removed_mm3, paid_mm3_s * last_cut_s, 0.02 * paid_mm3_s)
             << spacing_mm << ' ' << radius_mm << ' ' << normal.transpose();
@@ -138,8 +138,8 @@ bool touches_surface(const Volume& volume, const Vec3& centre) {
 }
 
 TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
-  // The burr stays on the surface, like a proxy, and never sinks in. The denser the bone, the farther its
-  // voxels lie behind the isosurface.
+  // The burr stays on the surface, like a proxy. The denser the bone, the farther its voxels are behind the
+  // isosurface.
   for (const double spacing_mm : {0.125, 0.25}) {
     for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(Vec3::Ones().normalized())}) {
       const Volume bone = half_space(cube_of(6, spacing_mm), normal);
@@ -191,7 +191,7 @@ TEST(BurrMill, StopsWhereItsReachEndsAndCarriesTheRestWithinBounds) {
   double removed_mm3 = 0;
   for (int n = 0; n < 3000; ++n) removed_mm3 += mill.step(centre, down(kForce_N), 0.001).removed_mm3;
   EXPECT_NEAR(held_mm3 - charge_mm3(volume.grid(), bone), removed_mm3, 1e-6);
-  // A voxel ahead, and as far outside as cutting to a surface lowers the voxels beyond it.
+  // One voxel ahead, and the reach of the cut profile.
   const double outside_mm = kRadius_mm + (1 + 1.55) * kSpacing_mm, inside_mm = kRadius_mm - kSpacing_mm;
   for (int k = 0; k < geometry.dims[2]; ++k)
     for (int j = 0; j < geometry.dims[1]; ++j)
@@ -225,7 +225,7 @@ TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
 }
 
 TEST(BurrMill, CutsWhereItPresses) {
-  // In a hole that fits it, pressed at an angle: bone goes on that side and on no other.
+  // In a hole that fits it, pressed at an angle: bone is removed on that side only.
   const GridGeometry geometry = cube_of(6, 0.125);
   Volume volume = shape_volume(geometry, [](const Vec3& p) { return kRadius_mm - p.norm(); });
   const Volume before = volume;
@@ -273,14 +273,15 @@ TEST(BurrMill, MakesTheSameHoleWithAnyVoxels) {
   }
 }
 
-// In voxels of 0.0625 mm the burr overlaps thousands at a time and cuts a share of its lines in each step; in
-// voxels of 0.25 mm it overlaps a few hundred, and cuts all.
+// With 0.0625 mm voxels the burr overlaps thousands and cuts a share of its lines in each step; with 0.25 mm
+// voxels it overlaps a few hundred and cuts all.
 TEST(BurrMill, CuttingAShareOfItsLinesAStepMakesTheSameHole) {
   const auto hole_in = [](double spacing_mm) {
     Volume volume = half_space(cube_of(5, spacing_mm));
     BurrMill mill(volume, kRadius_mm, kBone, kMilling);
     const Hole hole = mill_hole(volume, mill, 2, 0.8, 1000);
-    // The surface left is that of a ball: no ridges from line to line. Its depth at places around the axis.
+    // The remaining surface is spherical, without ridges between lines. Compares its depth at points around
+    // the axis.
     double min = 1, max = 0;
     for (int n = 0; n < 24; ++n) {
       const double angle = n * 2 * M_PI / 24;

@@ -59,8 +59,8 @@ void forget_empty(BurrReach& reach, const Volume& volume) {
   }
 }
 
-// Every voxel of the grid, one by one. Those on the ball's very surface may be found or not. `empty` are
-// those that were found empty before.
+// Tests every voxel of the grid. Voxels exactly on the ball's surface may be found or not. `empty` are those
+// found empty before.
 void expect_found_as_one_by_one(const BurrReach& reach, const Volume& volume, const Vec3& centre_mm,
                                 double radius_mm, std::vector<bool>& empty) {
   std::vector<bool> found(volume.geometry().voxel_count(), false);
@@ -96,7 +96,7 @@ TEST(BurrReach, FindsWhatAPlainSearchFindsWhileBoneGoesAndTheBallMoves) {
   std::vector<bool> empty(geometry.voxel_count(), false);
   Vec3 voxel(15, 12, 10);
   for (int n = 0; n < 300; ++n) {
-    // Small moves, and at times a leap, also to where the ball lies partly or wholly outside the grid.
+    // Small moves and occasional jumps, also partly or wholly out of the grid.
     for (int axis = 0; axis < 3; ++axis) {
       const double size = n % 23 == 0 ? 20 : n % 3 == 0 ? 0.0 : 0.6;
       voxel[axis] += size * (unit_random(random) - 0.5);
@@ -113,7 +113,7 @@ TEST(BurrReach, FindsWhatAPlainSearchFindsWhileBoneGoesAndTheBallMoves) {
 }
 
 TEST(BurrReach, SharesOfLinesTogetherFindAllOnceWhileBoneGoes) {
-  // More than 64 bricks along a line, so that a line of bricks takes two words.
+  // More than 64 bricks along a line, which needs two words.
   GridGeometry geometry = turned_geometry();
   geometry.dims = {540, 11, 13};
   std::mt19937_64 random(12);
@@ -123,7 +123,7 @@ TEST(BurrReach, SharesOfLinesTogetherFindAllOnceWhileBoneGoes) {
     BurrReach whole(volume, kRadius_mm, kFloor);
     BurrReach shared(volume, kRadius_mm, kFloor);
     for (int round = 0; round < 3; ++round) {
-      // The ball lies across the border of two words.
+      // The ball spans the border of two words.
       const Vec3 centre_mm = in_grid(Vec3(510 + 0.7 * round, 5.2, 6.1), geometry);
       whole.find(centre_mm, kRadius_mm);
       std::vector<std::size_t> expected, found;

@@ -1,4 +1,4 @@
-// Compares what a burr driven along a path cuts with what it sweeps.
+// Compares the bone cut by a burr along a path with its swept volume.
 #include <cmath>
 #include <functional>
 
@@ -23,7 +23,7 @@ const MillingSettings kMilling{.removal_rate_mm3_per_Ns = 1.5};
 
 using Shape = std::function<double(const Vec3&)>;
 
-// Describes a burr's path through bone: from `start` by `length_mm` along `ahead`, pressed in that direction.
+// Path of a burr through bone: from `start` by `length_mm` along `ahead`, pressed in that direction.
 struct Drive {
   const char* name;
   Shape bone;
@@ -38,7 +38,7 @@ double floor_at_0(const Vec3& p) {
 Drive plunge(double radius_mm, double depth_mm) {
   return {"plunge", floor_at_0, radius_mm * Vec3::UnitZ(), -Vec3::UnitZ(), depth_mm};
 }
-// Two thirds of the ball in a block whose side it comes in from.
+// Two thirds of the ball in a block, entered from the side.
 Drive groove(double radius_mm, double length_mm) {
   return {"groove", [](const Vec3& p) { return std::max(p.z(), -p.x()); },
           Vec3(-radius_mm, 0, -radius_mm / 3), Vec3::UnitX(), length_mm};
@@ -47,13 +47,13 @@ Drive diagonal(double radius_mm, double length_mm) {
   const Vec3 ahead = Vec3(1, 0.4, -1).normalized();
   return {"diagonal", floor_at_0, -radius_mm / -ahead.z() * ahead, ahead, length_mm};
 }
-// Down into a floor, along a wall that it just touches.
+// Down into a floor, along a wall that the burr just touches.
 Drive along_wall(double radius_mm, double depth_mm) {
   return {"along a wall", [=](const Vec3& p) { return std::min(p.z(), radius_mm - p.x()); },
           radius_mm * Vec3::UnitZ(), -Vec3::UnitZ(), depth_mm};
 }
 
-// A grid that holds all of the drive, its axes turned by `turn` from W's.
+// Returns a grid that contains the whole drive, its axes rotated by `turn` from W.
 GridGeometry grid_about(const Drive& drive, double radius_mm, const Vec3& spacing_mm, const Quat& turn) {
   const Vec3 end = drive.start + drive.length_mm * drive.ahead;
   const double half = 0.5 * drive.length_mm + radius_mm + 1;
@@ -68,7 +68,7 @@ GridGeometry grid_about(const Drive& drive, double radius_mm, const Vec3& spacin
     grid.dims[static_cast<std::size_t>(axis)] = count;
     last[axis] = (count - 1) * spacing_mm[axis];
   }
-  // Off the voxels' planes, so that nothing lies on them by chance.
+  // Offset from the voxel planes, so that nothing coincides with them by chance.
   grid.origin_mm = 0.5 * (drive.start + end) - grid.direction * (0.5 * last + Vec3(0.011, 0.017, 0.013));
   return grid;
 }
@@ -79,7 +79,7 @@ struct Cut {
   double removed_mm3 = 0;
 };
 
-// The burr goes on as far as the bone before it lets it, as a hand that follows would have it.
+// Advances the burr as far as the bone ahead permits, as a following hand would.
 Cut drive_through(Volume& volume, BurrMill& mill, const Drive& drive, double radius_mm, double force_N,
                   double dt_s = 1e-3) {
   const Volume before = volume;
@@ -159,7 +159,7 @@ TEST(BurrSweep, ByBurrsOfAnySizeAndForce) {
   }
 }
 
-// If lines of voxels take turns, as in fine voxels, no line is left behind.
+// In fine voxels lines take turns; none may be left uncut.
 TEST(BurrSweep, LeavesNoIslandsInFineVoxels) {
   const Vec3 spacing = Vec3::Constant(0.03125);
   for (const double force_N : {1.5, 9.0}) {
@@ -181,13 +181,13 @@ TEST(BurrSweep, SlidingPastAWallLeavesEveryVoxelOfItAsItWas) {
       for (int i = 0; i < grid.dims[0]; ++i) {
         const VoxelIndex v{i, j, k};
         const Vec3 at = grid.world_from_voxel(v);
-        // A voxel out of the ball's path and of the floor that it cuts.
+        // Only voxels outside the ball's path and above the floor that it cuts.
         if (at.z() < 0.6 || at.x() < kRadius_mm + 0.125) continue;
         ASSERT_EQ(volume.grid()[v], before.grid()[v]) << at.transpose();
       }
 }
 
-// Cutting is to a surface: once there, the same ball finds nothing that it would lower.
+// After cutting to a surface, the same ball lowers nothing.
 TEST(BurrSweep, CuttingAgainChangesNothing) {
   const GridGeometry grid = grid_about(plunge(1.5, 2), 1.5, Vec3::Constant(0.2), Quat::Identity());
   Volume volume = testing_support::shape_volume(grid, floor_at_0, kEdge_mm / 0.2);
@@ -210,7 +210,7 @@ TEST(BurrSweep, CuttingAgainChangesNothing) {
   EXPECT_EQ(cut(), 0);
 }
 
-// A tool that starts inside bone has more before it than it can pay for, and a force that turns about.
+// A tool that starts inside bone overlaps more than it can pay for, and its force rotates.
 TEST(BurrSweep, ABurrInSolidBoneIsPaidForToo) {
   const GridGeometry grid = grid_about(plunge(1, 1), 1, Vec3::Constant(0.125), Quat::Identity());
   Volume volume(DensityGrid(grid, std::vector<float>(grid.voxel_count(), 1000.0f)), 500);

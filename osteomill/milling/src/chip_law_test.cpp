@@ -108,8 +108,8 @@ struct Plunge {
 
 constexpr double kArea_mm2 = std::numbers::pi * kBurr_mm * kBurr_mm;
 
-// Pushes a burr that lies in a bowl of its own shape down, in bone of this density relative to the reference,
-// and moves it by what it removed.
+// Presses a burr down in a bowl of its own shape, in bone of `density` relative to the reference, and
+// advances it by the depth removed.
 Plunge plunge(double force_N, double spacing_mm, double density) {
   const auto bowl = [](const Vec3& point_W) { return std::max(point_W.z(), kBurr_mm - point_W.norm()); };
   Volume bone = testing_support::shape_volume(

@@ -48,7 +48,7 @@ Gathered gathered(const Volume& bone, double max_ahead_mm) {
   return g;
 }
 
-// Returns what the leading and the trailing half would cut, voxel by voxel, in doubles.
+// Returns the drops of the leading and the trailing half, computed per voxel in double.
 CutVoxels::Cost plain_cost(const Volume& bone, const CuttingBall& ball, double ahead_mm) {
   const GridGeometry& geometry = bone.geometry();
   CutVoxels::Cost cost;

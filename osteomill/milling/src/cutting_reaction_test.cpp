@@ -22,7 +22,7 @@ MillingSettings settings() {
   return settings;
 }
 
-// Upright, the hand above.
+// Upright tool, hand above.
 Pose upright(const Vec3& position_mm = Vec3::Zero()) {
   return {position_mm, Quat::Identity()};
 }
@@ -36,7 +36,7 @@ Wrench settled(const Vec3& force_W_N, const Pose& X_WT = upright()) {
   return reaction.wrench();
 }
 
-// Half a ball in small pieces, each held back against its speed.
+// Integrates the resistance over a half ball in small surface elements.
 Wrench by_pieces(const Vec3& force_W_N, const Vec3& spin_W) {
   const Vec3 ahead = force_W_N.normalized(), side = ahead.unitOrthogonal(), up = ahead.cross(side);
   Wrench sum;
@@ -65,8 +65,8 @@ TEST(CuttingReaction, IsThatOfItsPiecesHeldBackAgainstTheirSpeed) {
   }
 }
 
-// Seen from the hand it turns clockwise: pressed to the right, where its rim comes towards a person who
-// stands below, it walks off away from that person.
+// The burr turns clockwise as seen from the hand. Pressed to the right (+x), where its rim moves towards -y,
+// it is pushed towards +y.
 TEST(CuttingReaction, TheBurrWalksOffAgainstItsTurning) {
   const Wrench wrench = settled({1.5, 0, 0});
   EXPECT_NEAR(wrench.force_N.y(), 2.0 / 3.0 * 0.3 * 1.5, 1e-9);
@@ -96,7 +96,7 @@ TEST(CuttingReaction, IsBoundedAndHasNoSteps) {
   const MillingSettings s = settings();
   double before_N = 0;
   for (int n = 0; n < 2000; ++n) {
-    // Nothing, and then all that may be carried over at once.
+    // Nothing for nine ticks, then the maximum that can be carried over at once.
     const double removed = n % 10 == 0 ? 10 * s.removal_rate_mm3_per_Ns * 2 * kTick_s : 0.0;
     reaction.follow(upright(), {2, 0, 0}, removed, kTick_s);
     const double force_N = reaction.wrench().force_N.norm();

@@ -45,8 +45,8 @@ double cap_mm3(double radius_mm, double z) {
   return std::numbers::pi * h * h * (3 * radius_mm - h) / 3;
 }
 
-// A burr inside solid bone carves its ball and, ahead of it, a disc as thick as it goes ahead; of both, a
-// plane at 0.4 mm along z parts off what geometry says.
+// A burr inside solid bone cuts its ball plus a disc whose thickness is its advance. A plane at z = 0.4 mm
+// divides both as geometry predicts.
 TEST(BurrMill, SharesOutACarvedBallAmongLabelsAsGeometryDoes) {
   constexpr double kRadius_mm = 1.5, kPlane_mm = 0.4;
   const GridGeometry grid = centred_cube(61, 0.1);
@@ -68,7 +68,7 @@ TEST(BurrMill, SharesOutACarvedBallAmongLabelsAsGeometryDoes) {
   const double ball_mm3 = 4 * std::numbers::pi * std::pow(kRadius_mm, 3) / 3;
   const double disc_mm2 = std::numbers::pi * kRadius_mm * kRadius_mm;
   const double ahead_mm = (removed_mm3 - ball_mm3) / disc_mm2;
-  // The farthest that it goes: 0.12 mm and half a voxel.
+  // Maximum advance: 0.12 mm plus half a voxel.
   EXPECT_NEAR(ahead_mm, 0.17, 0.03);
   const auto above_mm3 = [&](double z) {
     const double segment_mm2 =
@@ -79,7 +79,7 @@ TEST(BurrMill, SharesOutACarvedBallAmongLabelsAsGeometryDoes) {
   EXPECT_NEAR(of_label_mm3[2], above_mm3(0.45), 0.01 * above_mm3(0.45));
   const double below_mm3 = removed_mm3 - above_mm3(-0.15);
   EXPECT_NEAR(of_label_mm3[1], below_mm3, 0.01 * below_mm3);
-  // And exactly what the voxels lost.
+  // Matches the voxels' loss exactly.
   std::array<double, 3> lost{};
   for (int k = 0; k < 61; ++k) {
     for (int j = 0; j < 61; ++j) {

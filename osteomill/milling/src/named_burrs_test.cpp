@@ -16,7 +16,7 @@ TEST(NamedBurrs, AreFoundByTheirNamesAndByTheirSizes) {
     EXPECT_EQ(find_burr(burr.tool, burr.edge), &burr) << burr.name;
     EXPECT_TRUE(names.insert(burr.name).second) << burr.name;
     EXPECT_LT(burr.tool.shaft_radius_mm, burr.tool.burr_radius_mm) << burr.name;
-    // The name ends in the diameter, in mm or in tenths.
+    // The name ends with the diameter, in mm or in tenths of a mm.
     const std::string name(burr.name);
     const double size = std::stod(name.substr(name.rfind('-') + 1));
     EXPECT_NEAR(2 * burr.tool.burr_radius_mm, name.starts_with("dental") ? 0.1 * size : size, 1e-12) << name;

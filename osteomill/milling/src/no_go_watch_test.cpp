@@ -41,7 +41,7 @@ TEST(NoGoWatch, FindsAStructureFromWhereverTheBurrComes) {
       EXPECT_EQ(cut, (LabelCut{2, 0}));
       touched_mm = distance_mm;
     }
-    // Half a voxel's diagonal of the nearest voxel, and what lies between the points that are looked at.
+    // Tolerance: half a voxel diagonal plus the spacing of the sample points.
     EXPECT_NEAR(touched_mm, kRadius_mm + 0.6, 0.27) << from.transpose();
   }
 }

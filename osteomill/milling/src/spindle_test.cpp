@@ -39,7 +39,7 @@ TEST(Spindle, ANineNewtonPushHalvesASurgicalDrillAndATurbineStalls) {
   EXPECT_EQ(settled_rpm(Spindle(Handpiece::turbine, 400000), torque_Nmm), 0);
 }
 
-// The greatest power of 41 turbines, which their stall torque and free speed did not use.
+// Maximum power measured on 41 turbines; independent of the stall torque and free speed in the table.
 TEST(Spindle, TheGreatestPowerOfATurbineIsThatMeasured) {
   double max_W = 0;
   for (double torque_Nmm = 0.05; torque_Nmm < 2.3; torque_Nmm += 0.05) {

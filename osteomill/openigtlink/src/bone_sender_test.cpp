@@ -66,7 +66,7 @@ TEST_F(SendBone, AllOfItComesFirstWhereItLies) {
   const BoneSender sender(follower_, server_.address(), 30);
   const IgtlStandIn::Image image = await_messages(server_, 1);
   expect_same(image, *bone_);
-  // A voxel's place from the image's middle, axes and spacing, in the protocol's axes.
+  // Position of a voxel, in RAS, from the image's centre, axes and spacing.
   const GridGeometry& grid = bone_->geometry();
   const Vec3 voxel(3, 20, 7);
   Vec3 ras_mm;
@@ -88,7 +88,7 @@ TEST_F(SendBone, ThenWhatWasMilled) {
   const IgtlStandIn::Image image = await_messages(server_, 2);
   expect_same(image, *bone_);
   EXPECT_LT(image.last_values, image.values.size() / 4);
-  // Nothing changed since: nothing is sent.
+  // Without a change nothing is sent.
   std::this_thread::sleep_for(700ms);
   EXPECT_EQ(server_.image().messages, image.messages);
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTick_s = 1e-3;
 
-// A hand of 0.1 kg that meets a spring wall of 1 N/mm at z = 0 without muscles or friction.
+// A passive mass of 0.1 kg that hits a spring wall of 1 N/mm at z = 0 without friction.
 struct Bounce {
   std::vector<double> transient_N;
   double given_Nmm = 0;
@@ -91,7 +91,7 @@ TEST(ContactTransient, IsSilentWhileContactsFollowEachOther) {
   for (int n = 0; n < 200; ++n) EXPECT_EQ(tick(n % 10 < 5 ? 0 : 1), 0);
 }
 
-// A session's wrench with it, less that without it, along a plunge onto flat bone.
+// Difference of a session's wrench with and without the transient while plunging onto flat bone.
 TEST(ContactTransient, IsAllThatChangesInASession) {
   const auto wrenches = [](bool on) {
     MillingSetup setup;

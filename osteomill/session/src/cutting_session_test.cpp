@@ -12,7 +12,7 @@
 namespace osteomill {
 namespace {
 
-// Holds the tool at the device, and says that the burr presses with a force.
+// Keeps the tool at the device and reports a fixed burr force.
 class PressingAlgorithm : public HapticAlgorithm {
  public:
   HapticStep next;
@@ -27,7 +27,7 @@ class PressingAlgorithm : public HapticAlgorithm {
   int sample_point_count() const override { return 1; }
 };
 
-// The burr lies on its side on bone that fills the lower half of the grid, and its equator presses down.
+// The tool lies on its side on bone that fills the lower half of the grid; the burr's equator presses down.
 class CuttingSession : public ::testing::Test {
  protected:
   void start(MillingSetup setup) {
@@ -82,7 +82,7 @@ TEST_F(CuttingSession, AStallStopsTheRemovalAndNotTheHand) {
   const TickRecord stalled = ticks(2000);
   EXPECT_EQ(stalled.spindle_rpm, 0);
   EXPECT_GT(stalled.removed_mm3, 0);
-  // Fresh bone under the burr stays while it stands, and is cut when the push lets it turn.
+  // Fresh bone under the burr stays while the spindle is stalled, and is cut once the push lets it turn.
   device_.put(at(1.1));
   const TickRecord later = ticks(500);
   EXPECT_EQ(later.removed_mm3, stalled.removed_mm3);
@@ -127,8 +127,8 @@ TEST_F(CuttingSession, AStalledBurrTwistsTheHandWithNoMoreThanTheDriveHas) {
   EXPECT_GT(std::abs(record.wrench.torque_Nmm.x()), 2.2);
 }
 
-// Drag is paid by the spindle: along any path the hand is given no more than the friction's force times its
-// way.
+// The spindle supplies the energy of drag: along any path the hand gets at most the friction force times the
+// path length.
 TEST_F(CuttingSession, DragGivesTheHandNoMoreThanItsFrictionAlongTheWay) {
   start({.law = CuttingLaw::chips, .drag = true});
   press(2);

@@ -20,7 +20,7 @@ TEST(LabelCount, SaysHowMuchWhenAndWithWhatForce) {
   EXPECT_EQ(count.add(tick(1.000, 1, {LabelCut{1, 0.5}})), std::nullopt);
   EXPECT_EQ(count.add(tick(1.001, 3, {LabelCut{1, 0.25}, LabelCut{2, 0}})),
             "no-go: the burr touched nerve at 1.001 s, pressing with 3.00 N");
-  // Continues the contact, and begins another half a second later.
+  // The first tick continues the contact, the second, over half a second later, begins another.
   EXPECT_EQ(count.add(tick(1.4, 2, {LabelCut{2, 0.125}})), std::nullopt);
   EXPECT_NE(count.add(tick(1.95, 2, {LabelCut{2, 0.125}})), std::nullopt);
   const LabelCount::Entry& bone = count.entries()[0];

@@ -38,7 +38,7 @@ TEST(RequireWorkable, NamesAToolThatCannotWorkInTheScan) {
   EXPECT_NE(fault_of({-1, 1, 25}), "");
 }
 
-// An algorithm that says what it is told to, and what it was told.
+// Algorithm that returns scripted results and records its calls.
 class ScriptedAlgorithm : public HapticAlgorithm {
  public:
   HapticStep next;
@@ -99,7 +99,7 @@ TEST_F(MillingSessionTest, TooMuchIsClampedAndSaid) {
   EXPECT_TRUE(device_.sent().force_N.isApprox(Vec3(0, 0, 20)));
 }
 
-// The burr lies on its side, the hand to the right, and presses down: it is held back along the bone.
+// The tool lies on its side, hand to the right, and presses down; bone resists along its surface.
 TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
   start(session_->volume(), {.cutting_reaction = true, .guard = GuardSettings::for_simulation({0.25, 500})});
   const Pose lying{{0, 0, 1.45}, Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX())};
@@ -123,7 +123,7 @@ TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
   EXPECT_EQ(record.wrench.force_N.norm() + record.wrench.torque_Nmm.norm(), 0) << "the spindle is off";
 }
 
-// A burr that starts to turn again cuts no more in its first tick than one that never turned.
+// A restarted burr cuts no more in its first tick than one that never turned.
 TEST_F(MillingSessionTest, ASpindleThatStandsStillForgetsWhatItWasPressedFor) {
   device_.put({{0, 0, 1.4}, Quat::Identity()});
   algorithm_->next.burr_force_W_N = {0, 0, -5};
@@ -145,7 +145,7 @@ TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {
   EXPECT_EQ(algorithm_->steps[1].position_mm, Vec3(0, 0, 1.0));
 }
 
-// Writes down what it is asked, in order, and how much time has passed for it.
+// Records calls in order and its simulated time.
 class AskedDevice final : public Device {
  public:
   std::string asked;
@@ -234,7 +234,7 @@ TEST_F(MillingSessionTest, ADeviceWithoutAPoseGetsNothing) {
   EXPECT_EQ(record.X_WT.position_mm, Vec3(0, 0, 1.0)) << "the tool stays where it was last shown";
 }
 
-// Fails to write once, when it is asked to.
+// Throws once from write_wrench when requested.
 class FailingDevice : public Device {
  public:
   PosedDevice posed;

@@ -10,11 +10,11 @@ namespace osteomill {
 namespace {
 
 constexpr double kTick_s = 1e-3;
-// Enough substeps that the integrator's own gain is negligible.
+// Enough substeps to make the integrator's energy error negligible.
 constexpr int kSubsteps = 200;
 
-// A handle at a wall at z = 0 that is far too stiff for it, pressed on it by a hand without a
-// damper: whatever the wall gives too much stays in the handle's motion.
+// A handle pressed by an undamped hand against a wall at z = 0 that is far too stiff for it: any excess
+// energy from the wall remains in the handle's motion.
 struct Wall {
   double stiffness_N_per_mm = 20;
   double press_N = 0;
@@ -49,7 +49,7 @@ TEST(PassivityObserver, CountsTheWorkThatAHandleGains) {
   Wall wall;
   wall.press_N = 2;
   wall.run(400);
-  // The handle's energy less the work of the hand's own force on the way from 1 mm above.
+  // The handle's energy minus the work of the hand's force since the start 1 mm above.
   const double by_the_hand_Nmm = wall.press_N * (1 - wall.handle.pose().position_mm.z());
   wall.guard.filter({}, wall.handle.read(), kTick_s);
   EXPECT_NEAR(wall.guard.energy_given_Nmm(), wall.kinetic_mJ - by_the_hand_Nmm,
@@ -75,7 +75,7 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
   controlled.run(4000);
   EXPECT_GT(active.max_given_Nmm, 100);
   EXPECT_GT(active.deepest_mm, 10);
-  // The next contact takes back the energy that the last tick of a contact gives: it never adds up.
+  // The next contact takes back the energy given in the last tick of a contact, so it does not accumulate.
   EXPECT_LT(controlled.max_given_Nmm, 1);
   EXPECT_LT(controlled.deepest_mm, 1);
 }
@@ -83,12 +83,12 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
 TEST(PassivityObserver, InFreeSpaceNothingIsFelt) {
   WrenchGuard guard(GuardSettings::for_simulation({}, true));
   Pose X_WD;
-  // Pushed 1 mm along the force: 3 N mm too many.
+  // Moves 1 mm along the force: 3 N mm of excess energy.
   guard.filter({{3, 0, 0}, Vec3::Zero()}, X_WD, kTick_s);
   X_WD.position_mm.x() += 1;
   EXPECT_EQ(guard.filter({}, X_WD, kTick_s).wrench.force_N, Vec3::Zero());
   EXPECT_NEAR(guard.energy_given_Nmm(), 3, 1e-12);
-  // At the next contact it is taken back, as an easing of what was asked for.
+  // The next contact takes it back by reducing the requested wrench.
   X_WD.position_mm.x() += 1;
   const SafeWrench safe = guard.filter({{3, 0, 0}, Vec3::Zero()}, X_WD, kTick_s);
   EXPECT_LT(safe.wrench.force_N.x(), 3);

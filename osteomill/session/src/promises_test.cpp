@@ -8,7 +8,7 @@
 namespace osteomill {
 namespace {
 
-// All functions that the tick calls are noexcept, except those of a device that has failed.
+// All functions called in the tick are noexcept, except those with which a device reports failure.
 template <typename T>
 T& a() noexcept;
 
@@ -25,7 +25,7 @@ static_assert(noexcept(a<BurrMill>().step(a<const Vec3>(), a<const Vec3>(), 1e-3
 static_assert(noexcept(a<WrenchGuard>().filter(a<const Wrench>(), a<const Pose>(), 1e-3)));
 static_assert(noexcept(a<MillingSession>().resume_from(a<const SessionHandover>())));
 
-// A copy of what is used through its interface would be a part of it.
+// Copying through the interface would slice.
 static_assert(!std::is_copy_assignable_v<Device> && !std::is_copy_assignable_v<HapticAlgorithm>);
 static_assert(std::is_nothrow_swappable_v<Volume>);
 

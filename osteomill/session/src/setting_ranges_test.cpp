@@ -25,7 +25,7 @@ const Volume& small_bone() {
   return bone;
 }
 
-// Names the part of the tool that is put on the bone, and returns the height of the tool's origin then.
+// Part of the tool placed on the bone, and the resulting height of the tool's origin.
 struct Placement {
   const char* name;
   Quat orientation;
@@ -42,14 +42,14 @@ const Placement kPlacements[] = {
 struct Pressed {
   double wanted_N;
   double force_N = 0;
-  // How far the drawn tool came below the surface.
+  // Penetration depth of the shown tool.
   double sunk_mm = 0;
   bool finite = true;
-  // In the tick that read or summed the most.
+  // Maximum number of points read or summed in a tick.
   std::uint64_t max_points = 0;
 };
 
-// The hand goes down, half a percent deeper each tick, until it feels what it wants or its arm ends.
+// Moves the hand down, half a percent deeper each tick, until it feels the target force or reaches its limit.
 Pressed press(const MillingSetup& setup, const Placement& placement, bool spindle_on) {
   constexpr double kWanted_N = 3, kArm_mm = 100, kAbove_mm = 0.5, kTick_s = 1e-3;
   constexpr int kHeldTicks = 200;
@@ -81,10 +81,10 @@ bool says(const std::string& line, const std::string& word) {
   return line.find(word) != std::string::npos && line.find_first_of("0123456789") != std::string::npos;
 }
 
-// Expects that a setup holds a tool that is pressed by a few newtons; if not, it has to be refused or
-// warned of in words that name `setting`. No algorithm of ours is excused by a warning.
+// Expects bone to hold a tool pressed with a few newtons, or the setup to be refused or to give a warning
+// that names `setting`. For our own algorithm a warning is not enough.
 void expect_held_or_warned(const MillingSetup& setup, const std::string& setting) {
-  // Some hundred microseconds of work.
+  // Takes a few hundred microseconds.
   constexpr std::uint64_t kMaxPoints = 20000;
   constexpr double kMaxDepth_mm = 0.3;
   const bool is_ours = setup.algorithm.id == kOurs;
@@ -148,7 +148,7 @@ TEST(SettingRanges, EitherEndOfToolCuttingAndLimitsHoldsOrIsToldOf) {
   }
 }
 
-// Bone goes from under the burr, so that only what is sent is looked at.
+// Bone is removed under the burr, so this checks only the sent wrench.
 TEST(SettingRanges, EitherEndOfTheCuttingsSettingsCutsByFiniteNumbers) {
   for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
     if (!field.has(kOfTheCutting) || field.option.empty()) continue;

@@ -64,7 +64,7 @@ TEST_F(TrajectoryTest, APoseFartherThanAnyWorkspaceIsRefusedAtItsRow) {
 
 TEST_F(TrajectoryTest, AFileWithoutLineEndsIsReadNoFurtherThanARowCanBe) {
   EXPECT_EQ(fault_of(std::string(5000, '\0')), "row 1: too long for a row of a trajectory");
-  // It has no end.
+  // An endless file.
   EXPECT_THROW(read_trajectory("/dev/zero"), InputError);
 }
 

@@ -17,7 +17,7 @@ namespace osteomill {
 namespace {
 
 constexpr double kTick_s = 1e-3;
-// The largest change in a tick by default: 20 N and 500 N mm fall to zero in five.
+// Largest default change per tick: 20 N and 500 N mm fall to zero in five ticks.
 constexpr double kMaxStep_N = 4 + 1e-9;
 constexpr double kMaxStep_Nmm = 100 + 1e-9;
 const Pose kHere{{1, 2, 3}, Quat::Identity()};
@@ -26,7 +26,7 @@ Wrench down(double force_N) {
   return {{0, 0, -force_N}, {0, 10 * force_N, 0}};
 }
 
-// A hand that has felt nothing, and then this for long enough.
+// Returns a guard after free space and then a constant force, with the blend finished.
 WrenchGuard holding(double force_N) {
   WrenchGuard guard;
   guard.filter({}, kHere, kTick_s);
@@ -114,7 +114,7 @@ TEST(WrenchGuard, NoStepIsLargerThanAHandMayFeel) {
   }
 }
 
-// In each what was wrong is said, 20 N are zero within 5 ms, and afterwards it comes up slowly.
+// Each fault is reported, 20 N fall to zero within 5 ms, and the wrench then rises slowly.
 TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   struct Fault {
@@ -125,7 +125,7 @@ TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
   };
   const Fault faults[] = {{{{nan, 0, 0}, Vec3::Zero()}, kHere, kTick_s, WrenchFault::not_finite},
                           {down(20), {{1, 2, 53}, Quat::Identity()}, kTick_s, WrenchFault::pose_jumped},
-                          // A grip that is centred again.
+                          // The grip is recentred.
                           {down(20),
                            {kHere.position_mm, quaternion_from_rotation_vector({0, 0.3, 0})},
                            kTick_s,
@@ -183,7 +183,7 @@ TEST(WrenchGuard, LetGoItComesDownToRest) {
   EXPECT_TRUE(guard.is_at_rest());
 }
 
-// A hand on a flat bone with every algorithm: what happens between two ticks, and the largest steps then.
+// A hand on flat bone with every algorithm; measures the largest steps between ticks.
 class GuardedSession : public ::testing::TestWithParam<std::string> {
  protected:
   GuardedSession() : session_(make(GetParam())) { put(3); }
@@ -206,7 +206,7 @@ class GuardedSession : public ::testing::TestWithParam<std::string> {
     step_N_ = std::max(step_N_, (wrench.force_N - sent_.force_N).norm());
     sent_ = wrench;
   }
-  // Presses from free space down to this height above the surface.
+  // Moves the device from free space down to `height_mm` above the surface.
   void press(double height_mm) {
     for (double here_mm = 3; here_mm > height_mm; here_mm -= 0.02) {
       put(here_mm);
@@ -228,7 +228,7 @@ INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, GuardedSession, ::testing::ValuesIn(alg
                            return name;
                          });
 
-// From free space, faster than a hand moves and as fast as the guard takes for a jump.
+// From free space, faster than a hand moves, up to the speed that the guard treats as a jump.
 TEST_P(GuardedSession, AsItIsNoTickBringsMoreThanAHandMayFeel) {
   double felt_N = 0;
   for (const double mm_a_tick : {0.9, 4.9, 5.1}) {
@@ -256,14 +256,14 @@ TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
   EXPECT_LT(step_N_, 0.3);
 }
 
-// Also if the algorithm finds nothing to push against, and on the way out.
+// Also if the algorithm gives no force there, and on the way out.
 TEST_P(GuardedSession, AStartInBoneIsNotFeltUntilTheToolIsOut) {
   for (const double height_mm : {0.5, -2.0, -6.0}) {
     session_ = make(GetParam());
     put(height_mm);
     tick(200);
     EXPECT_EQ(step_N_, 0) << height_mm;
-    // One of the paper's algorithms finds no number that deep.
+    // One of the paper's algorithms is not finite that deep.
     EXPECT_NE(session_->tick(device_, {.dt_s = kTick_s}).fault, WrenchFault::none) << height_mm;
     for (double here_mm = height_mm; here_mm < 3; here_mm += 0.02) {
       put(here_mm);
@@ -293,7 +293,7 @@ TEST_P(GuardedSession, AfterADeviceJumped50mmTheWrenchComesUpSlowly) {
     put(height_mm);
     EXPECT_EQ(session_->tick(device_, {.dt_s = kTick_s}).fault, WrenchFault::pose_jumped);
     sent_ = device_.sent();
-    // A tenth of the way to what it asks for, 20 N at the most.
+    // At most a tenth of the blend to the requested force of up to 20 N.
     tick(10);
     EXPECT_LE(sent_.force_N.norm(), 2 + 1e-9) << height_mm;
   }
@@ -308,7 +308,7 @@ TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
     std::swap(session_, next);
     session_->resume_from({Pose{{0, 0, 1.2}, Quat::Identity()}, next->handover().sent, false});
     tick(200);
-    // One of the paper's may step from tick to tick by itself, as far as the guard lets it.
+    // One of the paper's algorithms may itself step between ticks, up to the guard's limit.
     if (other == default_algorithm().id.name) {
       EXPECT_LT(step_N_, 0.3);
     }

@@ -18,7 +18,7 @@ namespace {
 using State = DeviceReport::State;
 constexpr double kTick_s = 1e-3;
 constexpr int kBlend = 110;
-// kHandWrenchRates in a tick.
+// Change allowed by kHandWrenchRates in a tick.
 constexpr double kMaxStep_N = 4 + 1e-6;
 const Pose kStart{{5, 6, 7}, quaternion_from_rotation_vector({0, 0.3, 0})};
 
@@ -28,10 +28,10 @@ class ConnectedDeviceTest : public ::testing::Test {
     device_.put_at(kStart);
     run(kBlend);
   }
-  // A tick of the haptic thread, unless it hangs, and a round of the device's.
+  // Runs a tick of the haptic thread, unless it hangs, and a round of the device's thread.
   void tick() {
     hardware_.now_s += kTick_s;
-    // A hand trembles.
+    // Simulates hand tremor.
     hardware_.input.X_BH.position_mm.x() += trembles_ ? 1e-3 * std::sin(300 * hardware_.now_s) : 0;
     if (!hangs_) {
       pose_ = device_.read_pose();
@@ -59,7 +59,7 @@ TEST_F(ConnectedDeviceTest, MovesTheToolFromWhereItWasPutAndTurnsTheWrenchBack) 
   run(2);
   const Vec3 before_mm = pose_.position_mm;
   hardware_.input.X_BH.position_mm += Vec3(0, 1, 0);
-  // Up on the screen is up on the patient, and the force of the bone below is up as well.
+  // Up on the screen is up on the patient; the force of bone below also points up.
   asked_.force_N = {0, 0, 3};
   run(3);
   EXPECT_NEAR((pose_.position_mm - before_mm - Vec3(0, 0, 1)).norm(), 0, 1e-12);
@@ -95,7 +95,7 @@ TEST_F(ConnectedDeviceTest, WithoutInputThereIsNoPose) {
   EXPECT_EQ(device_.report().faults, 1u);
 }
 
-// 20 inputs a second are no haptic device.
+// 20 inputs per second are too slow for haptics.
 TEST_F(ConnectedDeviceTest, SoIsItForADeviceThatIsTooSlow) {
   int poses = 0;
   for (int n = 0; n < 1000; ++n) {
@@ -122,7 +122,7 @@ TEST_F(ConnectedDeviceTest, APoseThatIsNoneIsNotHandedOn) {
   }
 }
 
-// Encoders have steps.
+// A handle at rest returns identical readings because encoders have steps.
 TEST_F(ConnectedDeviceTest, AHandleThatIsHeldStillIsFelt) {
   trembles_ = false;
   asked_.force_N = {0, 0, 2};
@@ -131,7 +131,7 @@ TEST_F(ConnectedDeviceTest, AHandleThatIsHeldStillIsFelt) {
   EXPECT_NEAR(felt_N(), 2, 1e-9);
 }
 
-// In the tick that meets bone, milling is paid with the share that was given before.
+// In the first tick in contact with bone, milling uses the fraction delivered before.
 TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesNothingInTheAirEither) {
   EXPECT_EQ(device_.delivered_fraction(), 1);
   hardware_.input.not_driven = "is not calibrated";
@@ -158,7 +158,7 @@ TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesPosesAndGetsZeroUntilItMay) {
   expect_no_step();
 }
 
-// However shortly it was not: the haptic thread hears of it in the next tick.
+// The haptic thread is notified in the next tick, however short the interruption.
 TEST_F(ConnectedDeviceTest, WhetherItIsDrivenIsToldEveryTick) {
   EXPECT_TRUE(device_.is_driven());
   const auto ticks_not_driven = [&](int ticks) {
@@ -170,7 +170,7 @@ TEST_F(ConnectedDeviceTest, WhetherItIsDrivenIsToldEveryTick) {
     return count;
   };
   hardware_.input.not_driven = "has braked";
-  EXPECT_EQ(ticks_not_driven(20), 19);  // the tick before had heard nothing of it
+  EXPECT_EQ(ticks_not_driven(20), 19);  // the first tick still read the previous input
   hardware_.input.not_driven = nullptr;
   EXPECT_EQ(ticks_not_driven(20), 2);
   hardware_.input.not_driven = "has braked";
@@ -201,7 +201,7 @@ TEST_F(ConnectedDeviceTest, WhatItSaysOfItselfIsSaidThoughItIsALittleSlow) {
   EXPECT_EQ(device_.report().state, State::silent);
 }
 
-// Such a device lets go by itself.
+// The device's own watchdog switches to zero.
 TEST_F(ConnectedDeviceTest, AfterALapseOfItsOwnTheForceComesUpSlowly) {
   hardware_.can.watchdog_s = 5e-3;
   asked_.force_N = {0, 0, 10};
@@ -239,7 +239,7 @@ TEST_F(ConnectedDeviceTest, WhatElseThereIsToKnowIsSaidWhileItIsFelt) {
   EXPECT_EQ(device_.report().complaint(), "changes forces");
 }
 
-// It takes every third wrench: the step is between those that it took.
+// The device accepts every third wrench; the step limit applies between accepted ones.
 TEST_F(ConnectedDeviceTest, ADeviceThatIsBusyFeelsNoLargerSteps) {
   hardware_.got.clear();
   for (int n = 0; n < 300; ++n) {
@@ -350,7 +350,7 @@ TEST_F(ConnectedDeviceTest, LetGoOfItGetsZeroForGood) {
   EXPECT_TRUE(device_.disengage());
   run(20);
   EXPECT_EQ(felt_N(), 0);
-  // Unless the program goes on after all.
+  // Unless the program continues.
   device_.engage();
   run(10);
   EXPECT_GT(felt_N(), 0);
@@ -358,10 +358,10 @@ TEST_F(ConnectedDeviceTest, LetGoOfItGetsZeroForGood) {
   expect_no_step();
 }
 
-// With its thread and the real clock.
+// Runs the device's thread with the real clock.
 class RunningDevice : public ::testing::Test {
  protected:
-  // Answers as a device does at about 1 kHz.
+  // Answers at about 1 kHz, like a device.
   class StubConnection final : public Connection {
    public:
     explicit StubConnection(RunningDevice& test) : test_(test) { can_.name = "running"; }

@@ -18,8 +18,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Stands in for spacenavd: eight words an event, as its first protocol has them. It leaves the newer protocol
-// that clients ask for unanswered, as old daemons do.
+// Stands in for spacenavd with its first protocol: eight words per event. Does not answer requests for the
+// newer protocol, like old daemons.
 class Daemon {
  public:
   Daemon() : path_(::testing::TempDir() + "/osteomill_spnav_" + std::to_string(getpid())) {
@@ -63,7 +63,7 @@ TEST(SpaceMouse, PushesTwistsAndButtonsComeThrough) {
   EXPECT_NEAR((state.push - Vec3(0.5, -1, -0.2)).norm(), 0, 1e-12);
   EXPECT_NEAR((state.twist - Vec3(0.1, 0, 1)).norm(), 0, 1e-12);
   EXPECT_EQ(state.presses, 1);
-  // Held, it says nothing new and is still pushed.
+  // Held still, the device sends no events but remains deflected.
   EXPECT_NEAR(mouse.read().push.x(), 0.5, 1e-12);
   EXPECT_EQ(mouse.read().presses, 0);
 }

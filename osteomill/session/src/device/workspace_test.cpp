@@ -32,7 +32,7 @@ Workspace anchored(int driven, const WorkspaceSettings& settings) {
   return workspace;
 }
 
-// Work by small motions of the hand: there and on the tool.
+// Compares the work of small hand motions at the hand and at the tool.
 TEST(Workspace, PowerAtTheHandIsThatAtTheToolTimesTheSetting) {
   const WorkspaceSettings settings{0.4, 1.7, {10, 20, -30}};
   const Workspace workspace = anchored(6, settings);
@@ -63,7 +63,7 @@ TEST(Workspace, AnAnchorLeavesTheToolWhereItIsAndWhatFollowsMovesIt) {
   const Pose elsewhere{{-7, 5, 9}, quaternion_from_rotation_vector({0.9, 0.2, 0.1})};
   workspace.anchor(kToolStart, elsewhere);
   Pose right = elsewhere;
-  // To the operator's right, as the device stands.
+  // To the operator's right, for the device's placement.
   right.position_mm += device(6).R_VB.conjugate() * Vec3(3, 0, 0);
   const Pose moved = workspace.tool_pose(right);
   EXPECT_NEAR((moved.position_mm - (kToolStart.position_mm + kView * Vec3(6, 0, 0))).norm(), 0, 1e-12);
@@ -80,7 +80,7 @@ TEST(Workspace, WithoutAWindowUpIsUpAndTheOperatorLooksAtTheFront) {
               1e-12);
 }
 
-// Placed askew; the hand's moves are not quite straight.
+// A rotated device, and hand motions that are not quite perpendicular.
 TEST(Workspace, TwoMovesTellHowADeviceStands) {
   const DeviceCapabilities can = device(6);
   const Vec3 turned_deg(20, -110, 45);
@@ -99,18 +99,18 @@ TEST(Workspace, LimitsAreTheDevicesAtTheTool) {
   EXPECT_DOUBLE_EQ(anchored(6, {0.5, 2}).limits_W(session).force_N, 6);
   EXPECT_DOUBLE_EQ(anchored(6, {0.5, 2}).limits_W(session).torque_Nmm, 50);
   EXPECT_DOUBLE_EQ(anchored(6, {0.1, 1}).limits_W(session).force_N, 20);
-  // A torque that is not driven is recorded as it is.
+  // A torque that is not driven is not limited by the device.
   EXPECT_DOUBLE_EQ(anchored(3, {1, 2}).limits_W(session).torque_Nmm, 500);
 }
 
 TEST(Workspace, ADeviceOfForceAloneGetsNoTorqueAndWhatTurnsTheShaftOnlyWhenAsked) {
   const Vec3 shaft_W(0, 0, 1);
-  // Bone 10 mm up the shaft pushes it by 2 N to the right.
+  // Bone 10 mm up the shaft pushes it to the right with 2 N.
   const Wrench leaning{{2, 0, 0}, Vec3(0, 0, 10).cross(Vec3(2, 0, 0))};
   const Wrench plain = anchored(3, {}).wrench_B(leaning, shaft_W);
   EXPECT_EQ(plain.torque_Nmm, Vec3::Zero());
   EXPECT_NEAR(plain.force_N.norm(), 2, 1e-12);
-  // About a hand at 40 mm that is as a quarter less at the burr.
+  // With the hand at 40 mm, the equivalent force at the burr is a quarter smaller.
   WorkspaceSettings settings;
   settings.shaft_lever_mm = 40;
   const Wrench levered = anchored(3, settings).wrench_B(leaning, shaft_W);

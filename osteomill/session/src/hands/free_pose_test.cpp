@@ -12,7 +12,7 @@ namespace {
 using testing_support::centred_cube;
 using testing_support::shape_volume;
 
-// The least way from the tool to bone, voxel by voxel.
+// Returns the minimum distance from the tool to bone, computed voxel by voxel.
 double room_mm(const Volume& volume, const MillingTool& tool, const Pose& X_WT) {
   double least = 1e9;
   const auto& dims = volume.geometry().dims;
@@ -44,7 +44,7 @@ TEST(FreePose, StandsBeforeABallWithTheShaftUpwards) {
   EXPECT_GT((X_WT.orientation * Vec3::UnitZ()).z(), 0.3);
 }
 
-// At the bottom of a hole that hardly holds the burr the tool stands before the hole, or straight in it.
+// For a point at the bottom of a narrow hole, the tool is in front of the hole or straight in it.
 TEST(FreePose, ComesOutOfWhatIsTooNarrow) {
   for (const double radius_mm : {2.0, 3.0, 6.0}) {
     const Volume bone = shape_volume(centred_cube(61, 0.4), [&](const Vec3& p) {
@@ -56,7 +56,6 @@ TEST(FreePose, ComesOutOfWhatIsTooNarrow) {
   }
 }
 
-// No algorithm that begins at the pose feels anything.
 TEST(FreePose, NoAlgorithmFeelsAnythingThere) {
   const Volume bone = shape_volume(centred_cube(41, 0.5), testing_support::ball(Vec3::Zero(), 6));
   const Pose X_WT = free_pose_before(bone, {}, {0, -6, 0}, -Vec3::UnitY(), Vec3::UnitZ());

@@ -39,13 +39,13 @@ TEST(Hand, TheSpringNeverPushesHarderThanItsLimitAndKeepsItsDirection) {
   }
   const Wrench far = hand_wrench(hand, turned({100, 0, 0}, {0, 0, 1.0}), {}, {}, {});
   EXPECT_NEAR(far.torque_Nmm.norm(), 15.0, 1e-12);
-  // The damper is not part of the push.
+  // The push limit does not apply to the damper.
   const Wrench fast =
       hand_wrench(hand, turned({100, 0, 0}, Vec3::Zero()), {}, {}, {{-400, 0, 0}, Vec3::Zero()});
   EXPECT_NEAR(fast.force_N.x(), 1.5 + 2.0, 1e-12);
 }
 
-// A scene described in turned axes must give the same wrench, turned.
+// Rotating the scene must rotate the wrench.
 TEST(Hand, TurningEverythingTurnsTheWrench) {
   const Pose turn = turned({3, -4, 5}, {0.4, -0.8, 0.3});
   const Pose target = turned({1, 2, 0.5}, {0.01, 0.02, -0.005});

@@ -68,7 +68,7 @@ TEST(PlaceEntry, TheLateralSideIsTheHighestRim) {
 }
 
 TEST(PlaceEntry, ARingIsEnteredFromItsHighestVoxel) {
-  // A ring about z: from above, its middle is a hole through which no bone is met.
+  // A ring about z: a line down through its centre meets no bone.
   const auto ring = [](const Vec3& p) {
     return std::hypot(std::hypot(p.x(), p.y()) - 6, p.z() - 0.05 * p.x()) - 2;
   };
@@ -84,8 +84,7 @@ TEST(PlaceEntry, APitTooNarrowForTheToolIsEnteredFromItsHighestVoxel) {
   };
   const auto narrow_tube = [&](const Vec3& p) { return std::max(pit(p), std::hypot(p.x(), p.y()) - 5); };
   const Volume volume = shape_volume(centred_cube(60, 0.5), narrow_tube);
-  // The pit is 4.4 mm wide and 5 mm deep, room for the default burr; a burr of 6 mm does not get near its
-  // floor.
+  // The pit is 4.4 mm wide and 5 mm deep: the default burr fits, a 6 mm burr does not.
   EXPECT_LT(place_entry(volume, kTool).point_W.z(), 4.0);
   EXPECT_GT(place_entry(volume, {3.0, 1.0, 25.0}).point_W.z(), 7.4);
 }
@@ -110,7 +109,7 @@ TEST(PlaceEntry, SaysWhyThereIsNoEntry) {
 }
 
 TEST(PlaceEntry, BoneInTheWayOfTheToolIsSaid) {
-  // Two balls, one above the other: from between them there is no way down through the upper one.
+  // Two balls, one above the other; the entry is between them, and the upper one blocks the tool.
   const auto two = [](const Vec3& p) {
     return std::min((p - Vec3(0, 0, 8)).norm(), (p + Vec3(0, 0, 8)).norm()) - 5;
   };
@@ -120,7 +119,7 @@ TEST(PlaceEntry, BoneInTheWayOfTheToolIsSaid) {
   EXPECT_NO_THROW(place_entry(volume, kTool, Vec3(-12, 0, -8), Vec3(1, 0, 0)));
 }
 
-// Scan and direction turned together must give the turned entry.
+// Rotating scan and direction must rotate the entry.
 TEST(PlaceEntry, TurningTheScanTurnsTheEntry) {
   GridGeometry turned = centred_cube(60, 0.5);
   const Quat turn = quaternion_from_rotation_vector({0.5, -0.3, 0.9});
@@ -143,7 +142,7 @@ TEST(PlaceEntry, TheToolStandsAboveTheEntryAlongTheDirection) {
   EXPECT_TRUE(shaft_direction(pose).isApprox(Vec3(0, 0, -1), 1e-12));
 }
 
-// A skull's vault whose top lies beyond the scan: the highest voxels are the cut edge of a wall.
+// A skull vault whose top is outside the scan: the highest voxels are on the cut edge of a wall.
 TEST(PlaceEntry, WhereTheVolumeCutsTheBoneOffAnotherPlaceIsFound) {
   const auto vault = [](const Vec3& p) { return std::abs(p.norm() - 20) - 3; };
   GridGeometry geometry = centred_cube(60, 1);
@@ -154,7 +153,7 @@ TEST(PlaceEntry, WhereTheVolumeCutsTheBoneOffAnotherPlaceIsFound) {
   EXPECT_TRUE(entry_warnings(volume, kTool, entry).empty());
   EXPECT_NEAR(entry.point_W.norm(), 23, 0.5) << "outside, not in the hollow";
   EXPECT_GT(-entry.direction_W.dot(entry.point_W.normalized()), 0.4);
-  // Asked for, the edge is entered all the same, and said to be one.
+  // If given explicitly, the edge is used, with a warning.
   const MillingEntry edge = place_entry(volume, kTool, Vec3(17, 0, 30), Vec3(0, 0, -1));
   ASSERT_EQ(entry_warnings(volume, kTool, edge).size(), 1u);
   EXPECT_NE(entry_warnings(volume, kTool, edge).front().find("cuts the bone off"), std::string::npos);

@@ -106,7 +106,7 @@ TEST(MillingScript, FeedsWithNineTenthsOfThePushUntilTheHoleIsThreeMillimetresDe
     OperatorSettings settings = without_tremor();
     settings.hand.push_N = push_N;
     const MillingEntry entry = on_a_ball();
-    // Bone the harder, the heavier the hand: the hole grows at the same speed.
+    // Bone as much harder as the hand pushes harder, so that the hole grows at the same speed.
     const AnalyticHole hole(entry, kTool.burr_radius_mm, AnalyticHole::Kind::direct, 0.5 / push_N);
     const auto samples = run(settings, entry, hole);
     const std::size_t lean = first_of(samples, ScriptStage::lean);
@@ -114,7 +114,7 @@ TEST(MillingScript, FeedsWithNineTenthsOfThePushUntilTheHoleIsThreeMillimetresDe
     EXPECT_NEAR(samples[lean].shown_tip_mm, 3.0, 0.02);
     const double until_s = samples[lean].time_s;
     const auto push_along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
-    // The floor gives way, so that the feed follows a little behind nine tenths.
+    // The floor recedes, so the push lags slightly behind nine tenths.
     EXPECT_NEAR(mean_between(samples, until_s - 1, until_s, push_along) / push_N, 0.87, 0.04);
     for (const Sample& s : samples) EXPECT_LT(s.hand.force_N.norm(), push_N + 0.1) << s.time_s;
   }
@@ -125,7 +125,7 @@ TEST(MillingScript, LeansAtItsRateUntilTheTorqueIsThereAndKeepsItWithTheSpindleO
   const auto samples = run(without_tremor(), entry, yielding_hole(entry));
   const double from_s = samples[first_of(samples, ScriptStage::lean)].time_s;
   EXPECT_LT(from_s, 12.0);
-  // From rest to 0.7 of the play, free: 8 degrees a second.
+  // Free leaning from rest: 8 degrees per second.
   const auto lean = [](const Sample& s) { return s.lean_rad; };
   EXPECT_NEAR(mean_between(samples, from_s + 1.0, from_s + 1.001, lean), 0.14, 0.01);
   const auto torque = [](const Sample& s) { return s.hand.torque_Nmm.norm(); };
@@ -157,7 +157,7 @@ TEST(MillingScript, HoldsStillWithTheSpindleOffAndTheShaftAgainstTheRim) {
   EXPECT_NEAR(mean_between(samples, 22, 40, along), 0.5 * 1.5, 0.05);
 }
 
-// A wall that gives way is not leant into until it has the torque: not further than a firm one.
+// The hand leans into a yielding wall no farther than into a firm one, although it does not reach the torque.
 TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 8;
@@ -172,7 +172,7 @@ TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
       const Vec3 turn =
           rotation_vector(device.orientation * pose_above({}, kTool, 0).orientation.conjugate());
       const double beyond_rad = std::max(0.0, turn.norm() - kWall_rad);
-      // Bone below, in which the hole is deep enough from the start.
+      // Bone below; the hole is deep enough from the start.
       person.write_wrench(
           {{0, 0, std::max(0.0, 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z()))},
            beyond_rad > 0 ? Vec3(-wall_Nmm_per_rad * beyond_rad * turn.normalized()) : Vec3(Vec3::Zero())});
@@ -186,7 +186,7 @@ TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
   EXPECT_LT(leant_rad(50), 1.2 * twist_rad);
 }
 
-// The floor goes from under the tool while it leans, as when it leaves the tooth at its side.
+// The floor disappears under the tool while it leans, as if it left the tooth sideways.
 TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 8;
@@ -208,12 +208,12 @@ TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
   EXPECT_FALSE(person.shortfall().hardly_leant || person.shortfall().unsettled)
       << "that it was lost says all";
   EXPECT_NEAR(person.time_s(), lean_s + 1 + 1 + 4, 0.1) << "it is not milled on for";
-  // A second at the speed at which it feeds, and the spring that nothing stretches any more.
+  // At most 1.01 s at feed speed plus the stretch of the released spring.
   EXPECT_GT(person.read_pose().position_mm.z(), last_touched_W.z() - 2 * 1.01 - 1.5 / 0.5);
 }
 
-// The first algorithm meets the bone with the device's centre, 1.5 mm deeper than the burr that is shown, and
-// then sinks by force over stiffness: the hole is judged by what is shown.
+// The first algorithm touches bone with the device's centre, 1.5 mm deeper than the shown burr, and then
+// sinks in by force / stiffness. The script judges the hole by the shown burr.
 TEST(MillingScript, JudgesTheHoleByTheShownToolAndNotByTheDevice) {
   const MillingEntry entry = on_a_plane();
   const auto samples = run(without_tremor(), entry, yielding_hole(entry, AnalyticHole::Kind::line_proxy));
@@ -249,7 +249,7 @@ TEST(MillingScript, InEmptyAirTheTargetKeepsWithinItsBounds) {
   EXPECT_NEAR(person.time_s(), 6.0, 1e-9);
 }
 
-// A hand that never feels the wall mills and settles as long as it may; one that does as long as it must.
+// Without feeling the wall the hand mills and settles for the maximum time, otherwise for the minimum.
 TEST(MillingScript, MillsUntilTheShaftHasLeantAndHoldsWhatItFeels) {
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 8;
@@ -260,7 +260,7 @@ TEST(MillingScript, MillsUntilTheShaftHasLeantAndHoldsWhatItFeels) {
     double milled_s = 0;
     while (!person.finished()) {
       const Pose device = person.read_pose();
-      // Bone below, and a wall that resists the shaft's turning.
+      // Bone below, and a wall that resists rotation of the shaft.
       const Vec3 turn =
           rotation_vector(device.orientation * pose_above({}, kTool, 0).orientation.conjugate());
       person.write_wrench({{0, 0, std::max(0.0, 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z()))},
@@ -291,7 +291,7 @@ TEST(MillingScript, TurningEverythingTurnsTheIntent) {
     const Pose device{target.position_mm - Vec3(0.3, 0.1, 0.2),
                       quaternion_from_rotation_vector({0.002, 0.003, 0}) * target.orientation};
     const Pose device_turned = turn * device;
-    // From a while on the shaft is at a wall.
+    // From step 13000 on the shaft touches a wall.
     const Wrench felt{{0, 0, 1}, n < 13000 ? Vec3::Zero() : Vec3(2, -1, 0.5)};
     const Wrench felt_turned{turn.orientation * felt.force_N, turn.orientation * felt.torque_Nmm};
     one.step(n * kTick_s, kTick_s, device, device, felt);

@@ -37,14 +37,14 @@ TEST(SimulatedHandle, AConstantForceGivesHalfATimesTSquared) {
   const Vec3 turned = rotation_vector(handle.pose().orientation);
   EXPECT_NEAR(turned.y(), 0.5 * 10 * 0.25, 2e-4);
   EXPECT_NEAR(turned.x(), 0, 1e-12);
-  // Work done: force times way, plus torque times angle.
+  // Work: force times distance plus torque times angle.
   EXPECT_NEAR(handle.kinetic_energy_Nmm(), 0.6 * 250 + 0.3 * 125 + 3.0 * 1.25, 0.05);
 }
 
 struct Oscillator {
   double natural_rad_s;
   double damping_ratio;
-  // From `start` at rest towards 0.
+  // Returns the free oscillation from `start` at rest towards 0.
   double at(double start, double time_s) const {
     const double damped_rad_s = natural_rad_s * std::sqrt(1 - damping_ratio * damping_ratio);
     const double angle = damped_rad_s * time_s;
@@ -67,7 +67,7 @@ TEST(SimulatedHandle, InAHandItSwingsAsTheAnalyticSpringMassDamperDoes) {
   }
 }
 
-// The integrator itself must not feed or drain a swing: what a measurement sees grow is the loop's doing.
+// The integrator must not add or remove energy, so that growth in a measurement is due to the loop.
 TEST(SimulatedHandle, AnUndampedSpringKeepsItsEnergyForAMinute) {
   constexpr double kStiffness = 40.0;  // N/mm
   SimulatedHandle handle(exact_encoder(), {{0.1, 0, 0}, Quat::Identity()});
@@ -145,10 +145,10 @@ TEST(SimulatedHandle, TheEncoderReadsWholeSteps) {
     before = read;
   }
   EXPECT_GT(different_readings, 10);
-  EXPECT_LT(different_readings, 600);  // far from one a substep: it stands still between steps
+  EXPECT_LT(different_readings, 600);  // far fewer than substeps: readings repeat between encoder steps
 }
 
-// A handle with the hand's damper but nothing that holds it, against a penalty wall below z = 0.
+// A handle with only the hand's damper, thrown against a penalty wall below z = 0.
 class ReleasedHandle {
  public:
   ReleasedHandle(const HandleSettings& settings, double damping_N_s_per_m, double height_mm,
@@ -157,11 +157,11 @@ class ReleasedHandle {
     hand_.stiffness_N_per_mm = 0;
     hand_.torsional_stiffness_Nmm_per_rad = 0;
     hand_.damping_Ns_per_mm = damping_N_s_per_m / 1000;
-    // One substep of the force that brings it to speed.
+    // Accelerates it to its speed within one substep.
     const double force_N = settings.mass_kg * speed_mm_s / 1000 / settings.substep_s;
     handle_.advance({{0, 0, -force_N}, Vec3::Zero()});
   }
-  // `both_ways`: a spring to z = 0 on both sides of it, as when the handle never leaves the wall.
+  // `both_ways`: a spring on both sides of z = 0, as if the handle never left the wall.
   void tick(double wall_N_per_mm, bool both_ways) {
     const double z_mm = handle_.read().position_mm.z();
     handle_.command(
@@ -177,13 +177,13 @@ class ReleasedHandle {
   HandSettings hand_;
 };
 
-// Colgate and Schenkel: a sampled wall is passive while K < 2 b / (T + 2 tau), tau the force's delay.
+// Colgate and Schenkel: a sampled wall is passive while K < 2 b / (T + 2 tau), with force delay tau.
 constexpr double kDamping_Ns_per_m = 5.0;
 constexpr double kPassiveLimit_N_per_mm = 2 * kDamping_Ns_per_m / (1e-3 + 2 * 0.3e-3) / 1000;
 
 TEST(SimulatedHandle, APassiveWallNeverGivesBackMoreEnergyThanCame) {
   for (int drop = 0; drop < 50; ++drop) {
-    // Heights in steps that do not fit the way of a tick: the wall is met at every phase of the sampling.
+    // Height steps incommensurate with the motion per tick, so that impacts occur at every sampling phase.
     ReleasedHandle released({}, kDamping_Ns_per_m, 0.5 + 0.0037 * drop, 60);
     while (released.handle().pose().position_mm.z() > 0) released.tick(0.9 * kPassiveLimit_N_per_mm, false);
     const double came = released.handle().kinetic_energy_Nmm();

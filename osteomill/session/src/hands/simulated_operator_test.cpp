@@ -18,8 +18,8 @@ std::atomic<long> allocations{0};
 
 }  // namespace
 
-// Counts what this test program allocates, so that a tick can be shown to allocate nothing. Inlined, GCC
-// takes free for the wrong match of new.
+// Counts allocations, to show that a tick allocates nothing. Not inlined, because GCC would warn of a
+// mismatch of new and free.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
@@ -80,7 +80,7 @@ TEST(SimulatedOperator, TheSameSettingsGiveTheSameBitsAndAnotherSeedDoesNot) {
 }
 
 TEST(SimulatedOperator, TheHandDoesTheSameWhateverTheTicksRate) {
-  // In free air, before anything is touched: 1 kHz, 500 Hz, 4 kHz.
+  // In free space, before contact: 1 kHz, 500 Hz, 4 kHz.
   for (double tick_s : {2e-3, 0.25e-3}) {
     SimulatedOperator one(short_run(), kTool, {});
     SimulatedOperator other(short_run(), kTool, {});
@@ -150,7 +150,7 @@ TEST(SimulatedOperator, ATickAllocatesNothing) {
     person.tick_done(step.X_WT, 1e-3);
   }
   EXPECT_EQ(allocations - before, 0);
-  // The counter does count (a direct call, which unlike a new-expression may not be left out).
+  // The counter works (a direct call, because a new-expression may be optimized away).
   ::operator delete(::operator new(1));
   EXPECT_GT(allocations - before, 0);
 }

@@ -30,7 +30,7 @@ TEST(Tremor, HasTheRootMeanSquareAskedForAlongEachAxis) {
   }
 }
 
-// Returns the signal's power by a plain Fourier sum over 20 s, independent of how the signal is made.
+// Returns the power in a band by a plain Fourier sum, independent of the implementation.
 double power_between(const std::vector<double>& signal, double rate_hz, double lowest_hz, double highest_hz) {
   const double length_s = static_cast<double>(signal.size()) / rate_hz;
   double power = 0;
@@ -71,7 +71,7 @@ TEST(Tremor, TheSeedAloneSaysWhatItIs) {
   EXPECT_GT(difference / 1000, 0.5 * kRms_mm);
 }
 
-// Asked at 1 kHz or at 400 Hz, in any order: what it is at a time does not depend on what was asked before.
+// The value at a time does not depend on the sampling rate or order.
 TEST(Tremor, IsTheSameSignalAtAnyRate) {
   const Tremor tremor(3, kRms_mm);
   std::vector<Vec3> fine;

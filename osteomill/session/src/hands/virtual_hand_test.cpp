@@ -30,7 +30,7 @@ TEST(VirtualHand, GoesWhereItIsPulledWithoutSwingingOver) {
   EXPECT_LT(max_distance_mm, 6.05);
 }
 
-// A wall of 2 N/mm at z = 3, as the device's motors render it: the hand pushes down with all it has.
+// The motors render a wall of 2 N/mm at z = 3; the hand pushes down with its maximum force.
 TEST(VirtualHand, PushesNoHarderThanItsLimit) {
   for (const double push_N : {2.5, 1.0}) {
     HandSettings settings = pointing_hand();

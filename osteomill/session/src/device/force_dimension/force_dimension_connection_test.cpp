@@ -57,12 +57,12 @@ TEST_F(ForceDimension, SaysWhatItCan) {
   EXPECT_EQ(can.limits.force_N, 20);
   EXPECT_EQ(device_->max_force_N, 20);
   EXPECT_EQ(device_->max_torque_Nm, 0.4);
-  // The longest that there is, 255 steps of 125 us; only an expert may set it.
+  // The maximum, 255 steps of 125 us; can be set in expert mode only.
   EXPECT_EQ(device_->watchdog, 255);
   EXPECT_FALSE(device_->is_expert);
   EXPECT_NEAR(can.watchdog_s, 0.032, 1e-3);
   EXPECT_TRUE(device_->emulates_button);
-  // Its x points to the operator, its y to the right, its z up.
+  // B: x towards the operator, y to the right, z up.
   EXPECT_TRUE((can.R_VB * Vec3::UnitX()).isApprox(Vec3::UnitZ()));
   EXPECT_TRUE((can.R_VB * Vec3::UnitY()).isApprox(Vec3::UnitX()));
 }
@@ -81,8 +81,8 @@ TEST_F(ForceDimension, EveryModelHasLimits) {
   }
 }
 
-// Once it is calibrated it gets force, and again after its watchdog; what its operator or its brakes switched
-// off is not switched on again.
+// Force is switched on after calibration and again after a watchdog timeout, but not if the operator or the
+// brakes switched it off.
 TEST_F(ForceDimension, IsDrivenWhereItIsCalibratedAndHasItsForceOn) {
   enum { kReset = 3, kForce = 5, kBrake = 6, kCause = 14 };
   device_->status[kReset] = 1;
@@ -105,12 +105,12 @@ TEST_F(ForceDimension, IsDrivenWhereItIsCalibratedAndHasItsForceOn) {
     device_->status[kCause] = cause;
     EXPECT_NE(why_not().find(said), std::string::npos) << input.not_driven;
     EXPECT_EQ(device_->status[kForce], 0);
-    // Its operator does.
+    // The operator switches it on.
     device_->status[kForce] = 1;
     device_->status[kBrake] = 0;
     EXPECT_EQ(why_not(), "");
   }
-  // The watchdog's is said once, and switched on again once zero was sent.
+  // A watchdog timeout is reported; force is switched on again only after zero was sent.
   connection->write({{0, 0, 5}, Vec3::Zero()});
   device_->status[kForce] = 0;
   device_->status[kCause] = 3;
@@ -147,7 +147,7 @@ TEST_F(ForceDimension, AFunctionThatDoesNotReturnIsNamedAndLeftBehind) {
     EXPECT_NE(device.close().find(std::string(kFunction) + " does not return"), std::string::npos);
     EXPECT_EQ(device.close(), "");
   }
-  // Its thread ends if it returns after all.
+  // The detached thread ends once the call returns.
   hang.in = nullptr;
   EXPECT_TRUE(testing_support::comes_true([&] { return hang.closed > closed; }));
 }
@@ -166,7 +166,7 @@ TEST_F(ForceDimension, OpenedAgainItLeavesOffWhatItsOperatorSwitchedOff) {
   }
 }
 
-// The maker's own library, with whatever device it has or simulates: it is read, and gets nothing.
+// Reads from the maker's real library, with a real or simulated device; sends nothing.
 TEST(ForceDimensionLibrary, TheMakersOwnIsRead) {
   const char* const library = std::getenv("OSTEOMILL_LIBDHD");
   if (library == nullptr) GTEST_SKIP() << "OSTEOMILL_LIBDHD does not name the maker's library";

@@ -31,7 +31,7 @@ class Haply : public ::testing::Test {
       return error.what();
     }
   }
-  // Reads as the device's thread does until the wanted status comes, for a short time at most.
+  // Writes and reads like the device's thread until the status is `wanted`, at most 5 s.
   ConnectionStatus go_on_until(ConnectionStatus wanted, DeviceInput& input) {
     const auto until = std::chrono::steady_clock::now() + 5s;
     ConnectionStatus status = connection_->read(input);
@@ -59,7 +59,7 @@ TEST_F(Haply, SaysWhatItCan) {
   EXPECT_EQ(can.name, "Haply Inverse3 049D");
   EXPECT_EQ(can.sensed, 6);
   EXPECT_EQ(can.driven, 3);
-  // Its y points away from the operator, its z up.
+  // B: y away from the operator, z up.
   EXPECT_TRUE((can.R_VB * Vec3::UnitY()).isApprox(-Vec3::UnitZ()));
   EXPECT_TRUE((can.R_VB * Vec3::UnitZ()).isApprox(Vec3::UnitY()));
 }
@@ -119,7 +119,7 @@ TEST_F(Haply, ThatForcesAreChangedOnTheirWayIsSaid) {
   EXPECT_EQ(std::string(input.remark).substr(0, 18), "gives other forces");
 }
 
-// Consecutive forces of a slow service, as its thread sends them.
+// Consecutive forces received by a slow service.
 TEST_F(Haply, ASlowServiceGetsNoLargerSteps) {
   service_.is_held = true;
   for (const int delay_ms : {2, 3}) {
@@ -268,7 +268,7 @@ TEST_F(Haply, AServiceThatIsMuteIsSilentThenLostAndSoIsOneThatCloses) {
   EXPECT_EQ(connection_->write({}), ConnectionStatus::lost);
 }
 
-// It has no wrenches of long ago to work off, however slow it is.
+// However slow the service is, no outdated wrenches queue up.
 TEST_F(Haply, OneCommandIsOnItsWayAtAnyLatencyAndThatItIsTooLongIsSaid) {
   service_.delay_ms = 30;
   open();
@@ -282,7 +282,7 @@ TEST_F(Haply, OneCommandIsOnItsWayAtAnyLatencyAndThatItIsTooLongIsSaid) {
   ASSERT_GT(answered, 3u);
   ASSERT_NE(input.remark, nullptr);
   EXPECT_EQ(std::string(input.remark).substr(0, 14), "answers after ");
-  // No longer if it answers soon.
+  // The remark disappears once it answers quickly.
   service_.delay_ms = 0;
   for (int n = 0; n < 2000 && input.remark != nullptr; ++n) go_on_until(ConnectionStatus::fresh, input);
   EXPECT_EQ(input.remark, nullptr);

@@ -27,7 +27,7 @@ class Touch : public ::testing::Test {
     device_ = reinterpret_cast<HdStandIn* (*)()>(dlsym(library_, "hd_stand_in"))();
     device_->is_held = true;
   }
-  // Unloaded, so that the next test finds it as it was built.
+  // Unloads the library, so that the next test starts with fresh state.
   void TearDown() override {
     connection_.reset();
     dlclose(library_);
@@ -42,14 +42,14 @@ class Touch : public ::testing::Test {
       return error.what();
     }
   }
-  // Until a frame has begun since now and one more is done.
+  // Waits until a whole frame has run since the call.
   void await_frame() {
     const int before = device_->frames;
     EXPECT_TRUE(testing_support::comes_true([&] { return device_->frames >= before + 2; }));
   }
   Vec3 force() const { return {device_->force[0], device_->force[1], device_->force[2]}; }
   Vec3 torque() const { return {device_->torque[0], device_->torque[1], device_->torque[2]}; }
-  // Until it was sent: on a busy machine it may lapse first.
+  // Writes until the device has the wrench; on a busy machine it may lapse first.
   void write_until_it_is(const Wrench& wrench, const Vec3& force_wanted, const Vec3& torque_wanted) {
     for (int n = 0; n < 200 && !(force().isApprox(force_wanted) && torque().isApprox(torque_wanted)); ++n) {
       connection_->write(wrench);
@@ -109,7 +109,7 @@ TEST_F(Touch, IsDrivenOnceItIsCalibrated) {
     EXPECT_EQ(force(), Vec3::Zero());
   }
   EXPECT_FALSE(device_->has_force);
-  // In its inkwell.
+  // The stylus is in the inkwell.
   device_->calibration = 0x5001;
   await_frame();
   EXPECT_EQ(device_->updated_style, 4u);
@@ -180,7 +180,7 @@ TEST_F(Touch, AWrenchThatIsNotRenewedLapses) {
 TEST_F(Touch, OneThatHangsIsSilentAndOneThatFailsLost) {
   open();
   DeviceInput input;
-  // Warm motors are no reason.
+  // Warm motors do not count as a failure.
   device_->error = 0x0200;
   await_frame();
   EXPECT_EQ(read_until_it_is(ConnectionStatus::fresh, input), ConnectionStatus::fresh);

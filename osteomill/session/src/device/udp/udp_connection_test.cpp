@@ -21,7 +21,7 @@
 
 static std::atomic<bool> name_server_answered{false};
 
-// A name server that does not answer.
+// Simulates a name server that does not answer.
 extern "C" int getaddrinfo(const char* host, const char* service, const addrinfo* hints, addrinfo** found) {
   if (host != nullptr && std::strcmp(host, "unanswered.invalid") == 0) {
     std::this_thread::sleep_for(std::chrono::seconds(5));
@@ -36,7 +36,7 @@ namespace {
 
 using namespace udp;
 
-// The device's side, on a free port of this machine, as wrong as a test wants it.
+// The device's end on a free local port; tests can make it misbehave.
 class StubDevice {
  public:
   StubDevice() : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
