@@ -131,7 +131,7 @@ TEST(BurrAdvance, SpendsTheBudgetAndNoMore) {
         << budget << ", up to the rounding of floats";
   }
   const BurrAdvance more = advance_within(3 * (all.leading + all.trailing), g.voxels, 0, -1, 0.2);
-  EXPECT_EQ(more.ahead_mm, 0.2) << "all that is in reach";
+  EXPECT_EQ(more.ahead_mm, 0.2) << "the limit";
   EXPECT_NEAR(g.voxels.find_lowered(more.ahead_mm, more.shares), all.leading + all.trailing, 1);
 }
 

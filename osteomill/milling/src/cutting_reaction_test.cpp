@@ -78,7 +78,7 @@ TEST(CuttingReaction, TheBurrWalksOffAgainstItsTurning) {
 TEST(CuttingReaction, ThePoleCutsLessThanTheEquator) {
   EXPECT_NEAR(paying_force_W_N(settings(), upright(), {2, 0, 0}, true).norm(), 1.5, 1e-12);
   EXPECT_NEAR(paying_force_W_N(settings(), upright(), {0, 0, -2}, true).norm(), 1.0, 1e-12);
-  EXPECT_NEAR(settled({0, 0, -2}).force_N.norm(), 0, 1e-12) << "no side is pulled more than another";
+  EXPECT_NEAR(settled({0, 0, -2}).force_N.norm(), 0, 1e-12) << "lateral forces cancel";
 }
 
 TEST(CuttingReaction, WithoutItAllOfTheForcePaysAndNothingIsFelt) {

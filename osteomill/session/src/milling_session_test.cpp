@@ -182,7 +182,7 @@ TEST_F(MillingSessionTest, OneCallIsTheWholeTickOfADevice) {
   device.asked.clear();
   device.passed_s = 0;
   EXPECT_EQ(session_->tick(device, {.dt_s = 0.5e-3, .late_s = 2e-3}).dt_s, 2.5e-3);
-  EXPECT_EQ(device.asked, "done pose wrench done ") << "time passes before the pose is read, too";
+  EXPECT_EQ(device.asked, "done pose wrench done ") << "missed time passes before the pose is read";
   EXPECT_EQ(device.passed_s, 2.5e-3);
 }
 

@@ -77,7 +77,7 @@ TEST(WrenchGuard, AHandThatBeginsToBeDrivenFeelsNothingUntilItIsOutOfBone) {
     for (int n = 0; n < 200; ++n) {
       ASSERT_TRUE(held(*guard, down(6), true));
       ASSERT_TRUE(held(*guard, {{0, 0, 0.4}, {0, 13, 0}}, true));
-      ASSERT_TRUE(held(*guard, down(0.4), false)) << "in bone some algorithms find nothing to push against";
+      ASSERT_TRUE(held(*guard, down(0.4), false)) << "in bone some algorithms give no force";
     }
     EXPECT_EQ(guard->energy_given_Nmm(), 0);
     EXPECT_NEAR(guard->filter(down(0.4), kHere, kTick_s).wrench.force_N.norm(), 0.004, 1e-9);

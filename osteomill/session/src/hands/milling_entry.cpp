@@ -32,7 +32,7 @@ BoundingBall ball_around(const GridGeometry& geometry) {
 }
 
 // Returns the first bone surface from `from_W` along the direction; if `from_W` is inside bone, the surface
-// behind it. Nothing if the line misses the bone.
+// found going back. Nothing if the line misses the bone.
 std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, const Vec3& direction_W) {
   const BoundingBall ball = ball_around(volume.geometry());
   const double middle_mm = direction_W.dot(ball.centre_W - from_W);

@@ -206,8 +206,8 @@ TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
   }
   EXPECT_TRUE(person.shortfall().lost);
   EXPECT_FALSE(person.shortfall().hardly_leant || person.shortfall().unsettled)
-      << "that it was lost says all";
-  EXPECT_NEAR(person.time_s(), lean_s + 1 + 1 + 4, 0.1) << "it is not milled on for";
+      << "only the lost tool is reported";
+  EXPECT_NEAR(person.time_s(), lean_s + 1 + 1 + 4, 0.1) << "milling ends when the tool is lost";
   // At most 1.01 s at feed speed plus the stretch of the released spring.
   EXPECT_GT(person.read_pose().position_mm.z(), last_touched_W.z() - 2 * 1.01 - 1.5 / 0.5);
 }

@@ -30,7 +30,7 @@ struct DeviceInput {
   /// One bit per button; the first requests the spindle.
   unsigned buttons = 0;
   /// Reason why the device may not be driven now, and the remedy, as a phrase that follows "it" ("is not
-  /// calibrated: ..."); null if it may be. Otherwise zero is sent.
+  /// calibrated: ..."); null if it may be driven. While set, zero is sent.
   const char* not_driven = nullptr;
   /// Remark for the operator, in the same form; null if there is none.
   const char* remark = nullptr;

@@ -8,8 +8,8 @@
 
 namespace osteomill {
 
-/// Returns the component of `sent` along `asked` as a fraction of `asked`, clamped to [0, 1]. Safe in the
-/// haptic tick.
+/// Returns the component of `sent` along `asked` as a fraction of `asked`, clamped to [0, 1]; 1 if `asked` is
+/// zero. Safe in the haptic tick.
 inline double sent_fraction(const Vec3& asked, const Vec3& sent) noexcept {
   // Also 0 if the square of a tiny vector underflows.
   const double square = asked.squaredNorm();

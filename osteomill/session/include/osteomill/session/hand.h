@@ -61,8 +61,8 @@ HandSettings random_hand(std::uint64_t seed);
 HandSettings gripping(HandSettings hand, double firmness);
 
 /// Hand tremor as a displacement or rotation vector in W, a function of time only. Along each axis a sum of
-/// sines with seeded frequencies and phases: 90 % of the power between 8 and 12 Hz (physiological tremor), 10
-/// % spread over 1 to 30 Hz; equal amplitudes within each band. The same seed gives the same signal at any
+/// sines with seeded frequencies and phases: 90 % of the power between 8 and 12 Hz (physiological tremor),
+/// the rest over 1 to 30 Hz; equal amplitudes within each band. The same seed gives the same signal at any
 /// tick rate, bit-identical on every machine (only sums and products, no library sine).
 class Tremor {
  public:

@@ -26,11 +26,12 @@ struct MillingEntry {
 /// Chooses where to enter the bone. `direction` may have any length; the default is -z of W.
 ///
 /// If `entry` is given, the point is the first bone surface from there along the direction; if `entry` is
-/// inside bone, the surface behind it. Otherwise it is the top of the bone, seen against the direction: the
-/// first bone along the direction above the centroid of all bone within 4 mm of the highest voxel. If there
-/// is no bone below the centroid (a ring) or the tool does not fit above it, it is the highest voxel. If the
-/// tool could not stay in bone there (the border of the volume cuts the bone off, or it is a thin edge), it
-/// is the highest point at which it can, trying other directions as well if none was given.
+/// inside bone, the surface found going back against the direction. Otherwise it is the top of the bone, seen
+/// against the direction: the first bone along the direction above the centroid of all bone within 4 mm of
+/// the highest voxel. If there is no bone below the centroid (a ring) or the tool does not fit above it, it
+/// is the highest voxel. If the tool could not stay in bone there (the border of the volume cuts the bone
+/// off, or it is a thin edge), it is the highest point at which it can, trying other directions as well if
+/// none was given.
 ///
 /// Throws InputError if the scan (called `scan` in the message) has no bone, `entry` or `direction` is not
 /// finite, `direction` is zero, the line from a given entry misses the bone, or bone blocks the tool above a

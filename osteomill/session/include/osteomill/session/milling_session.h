@@ -63,8 +63,8 @@ struct TickInput {
 /// bone. The wrench is sent before bone is removed, so that milling does not delay it.
 class MillingSession {
  public:
-  /// Prepares the algorithm, which may take long. While this session exists, no other session may mill the
-  /// same bone, because an algorithm follows only the milling of its own session. Throws
+  /// Prepares the algorithm, which may take long. While this session exists, no earlier session may tick on
+  /// the same bone, because an algorithm follows only the milling of its own session. Throws
   /// std::invalid_argument if a setting is out of range, the tool cannot work (`require_workable`), or
   /// structures of the bone have a guard that the algorithm does not support.
   MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
@@ -104,7 +104,7 @@ class MillingSession {
   const std::optional<Vec3>& intersection_W() const { return intersection_W_; }
   /// Returns the bone removed since the start, in mm^3 of reference density.
   double removed_mm3() const { return removed_mm3_; }
-  /// Sets the volume already removed from this bone, from which counting continues.
+  /// Sets the bone already removed, mm^3 of reference density; counting continues from there.
   void count_removed_from(double removed_mm3) { removed_mm3_ = removed_mm3; }
 
   const Volume& volume() const { return *volume_; }

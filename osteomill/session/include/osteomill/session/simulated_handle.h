@@ -12,9 +12,9 @@ struct HandleSettings {
   double mass_kg = 0.3;
   /// About every axis through the burr's centre, where the centre of mass is assumed.
   double inertia_kg_m2 = 3e-4;
-  /// Resolution of the encoder; 0 for none.
+  /// Step of the encoder; 0 reads without rounding.
   double position_step_mm = 0.005;
-  /// Angular resolution of the encoder: the step above at a lever arm of 50 mm. 0 for unlimited resolution.
+  /// Angular step of the encoder: the step above at a lever arm of 50 mm. 0 reads without rounding.
   double rotation_step_rad = 1e-4;
   /// Delay from a command to its effect; rounded to whole substeps.
   double force_delay_s = 0.3e-3;

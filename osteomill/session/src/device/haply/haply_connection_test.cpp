@@ -79,7 +79,7 @@ TEST_F(Haply, AnInverse3BehindAMinverseIsFoundAndDriven) {
 
 TEST_F(Haply, LookingForItTellsItNothing) {
   EXPECT_EQ(hardware_named("haply")->find(service_.address()).text, "Haply Inverse3 049D");
-  EXPECT_TRUE(service_.heard().empty()) << "who drives it would feel that";
+  EXPECT_TRUE(service_.heard().empty()) << "the program that drives it would feel it";
 }
 
 TEST_F(Haply, TheHubIsToldOnceWhoThisIs) {
@@ -293,7 +293,7 @@ TEST_F(Haply, OneThatAnotherProgramHasIsRefused) {
   EXPECT_EQ(refusal(), "haply:" + service_.address() + ": another program has the Inverse3 049D in use");
   EXPECT_EQ(hardware_named("haply")->find(service_.address()).text,
             "Haply Inverse3 049D, in use by another program");
-  EXPECT_TRUE(service_.heard().empty()) << "who drives it would feel that";
+  EXPECT_TRUE(service_.heard().empty()) << "the program that drives it would feel it";
 }
 
 TEST_F(Haply, WhyThereIsNoneIsSaid) {
