@@ -10,8 +10,8 @@ namespace osteomill {
 
 /// The ball in the form that the kernels below take. They use vector instructions chosen at run time; all
 /// instruction sets give bit-identical results. All distances are relative to the ball's centre, in the
-/// grid's axes, mm. Lists are processed in whole groups of up to `kLanes` entries and therefore read beyond
-/// their ends.
+/// grid's axes, mm. Lists are processed in whole groups of up to `kLanes` entries, so their padding is read
+/// and written too.
 struct CutKernelBall {
   float radius;
   /// Unit vector.
