@@ -9,7 +9,7 @@ namespace osteomill {
 
 namespace {
 
-// A sum for each label, by its place.
+// One sum per label, indexed by label place.
 std::vector<double> no_drops(const Volume& bone) {
   return std::vector<double>(bone.labels() ? bone.labels()->labels().size() + 1 : 0);
 }
@@ -40,7 +40,7 @@ void BoneCopy::load_milled(const std::vector<DensityBlock>& milled, const std::v
     EditableVolume(*bone_).swap(same);
     if (put(block)) history_.save(block);
   }
-  // Those of another label map mean nothing here.
+  // Sums of another label map do not apply here.
   if (piece_drops.size() == no_drops(*copy_).size()) history_.set_piece_drops(piece_drops);
 }
 
@@ -67,14 +67,14 @@ VoxelBox BoneCopy::drain_queue(DensityHandover& handover) {
   return arrived;
 }
 
-// Leaves in the block the densities that were there before. Returns whether any changed.
+// Swaps the block's densities with the copy's. Returns whether any changed.
 bool BoneCopy::put(DensityBlock& block) {
   const VoxelBox changed = EditableVolume(*copy_).swap(block);
   if (!changed.empty()) changed_(changed);
   return !changed.empty();
 }
 
-// `differing_` holds afterwards what was there, so that a second call takes the first one back.
+// Also swaps the densities, so a second call undoes the first.
 void BoneCopy::put_differing() {
   for (DensityBlock& block : differing_) put(block);
 }
@@ -96,7 +96,7 @@ BoneCopy::NextBone BoneCopy::without_last_cut(double removed_mm3) {
 }
 
 BoneCopy::NextBone BoneCopy::with_undone_cut(double removed_mm3) {
-  // Something may have been cut since the user asked for it.
+  // Something may have been cut since the user requested the redo.
   if (history_.undone_cuts() == 0) return {copy_, removed_mm3, {}};
   return with(history_.state_after_undone_cut(), Step::redo, removed_mm3);
 }
@@ -141,7 +141,7 @@ void BoneCopy::note_step() {
 }
 
 void BoneCopy::exchange() {
-  // The haptic thread has the other bone already, so nothing that may throw comes before.
+  // The haptic thread already uses the other bone, so nothing before this line may throw.
   std::swap(bone_, copy_);
   const Volume& bone = *bone_;
   EditableVolume copy(*copy_);

@@ -15,35 +15,34 @@
 
 namespace osteomill {
 
-/// The copy of a bone that is milled, what was milled of it, and the exchange by which the copy, changed,
-/// becomes the bone. For one thread at a time; none of it is for the haptic one.
+/// The copy of a bone that is milled, the milling history, and the exchange by which the modified copy
+/// becomes the bone. For one thread at a time, never the haptic one.
 class BoneCopy {
  public:
   using NextBone = BoneFollower::NextBone;
-  /// `changed` is called with voxels of the copy whose densities have just changed.
+  /// Calls `changed` with the voxels of the copy whose densities have just changed.
   BoneCopy(std::shared_ptr<Volume> bone, std::size_t undo_bytes,
            std::function<void(const VoxelBox&)> changed);
 
   const Volume& volume() const { return *copy_; }
   const CutHistory& history() const { return history_; }
-  /// Returns as BoneFollower::drops_by_label does.
+  /// See BoneFollower::drops_by_label.
   std::vector<double> drops_by_label() const;
-  /// The bone that is milled: the haptic thread alone reads and writes its densities.
+  /// Returns the milled bone, whose densities only the haptic thread reads and writes.
   const std::shared_ptr<Volume>& bone() const { return bone_; }
 
-  /// Puts blocks that were milled at another time into bone and copy, as one cut, of which `piece_drops` is
-  /// pieces. Before the first tick.
+  /// Applies earlier milling to bone and copy, as one cut of which `piece_drops` was removed as pieces. Call
+  /// before the first tick.
   void load_milled(const std::vector<DensityBlock>& milled, const std::vector<double>& piece_drops);
-  /// Puts what has arrived into the copy, at most as many blocks as can be on their way. Returns the voxels
-  /// that it changed.
+  /// Applies queued blocks to the copy, at most as many as the queue holds. Returns the changed voxels.
   VoxelBox drain_queue(DensityHandover& handover);
   void begin_cut(double removed_mm3) { history_.begin_cut(removed_mm3); }
 
   /// Sets the copy's isovalue, not the bone's.
   void set_isovalue(double isovalue);
-  /// Makes the copy the bone that is to be next; `exchange` or `discard_next` ends that. Each is as the
-  /// function of the same name of BoneFollower (`exchange` as its `swap`); the last one lowers what milling
-  /// had emptied once the copy has its isovalue, at which `densities` were estimated.
+  /// Prepare the copy to become the bone, until `exchange` or `discard_next`. See the functions of the same
+  /// name in BoneFollower (`exchange` is its `swap`). `with_emptied` lowers the voxels that milling had
+  /// emptied; call it once the copy has its new isovalue, at which `densities` were estimated.
   NextBone without_last_cut(double removed_mm3);
   NextBone with_undone_cut(double removed_mm3);
   NextBone without_all_cuts();
@@ -53,7 +52,7 @@ class BoneCopy {
   void discard_next();
 
  private:
-  // Names what the exchange means for the history.
+  // Effect of the exchange on the history.
   enum class Step { none, undo, redo, reset, pieces };
 
   bool put(DensityBlock& block);
@@ -65,11 +64,12 @@ class BoneCopy {
   std::shared_ptr<Volume> copy_;
   std::function<void(const VoxelBox&)> changed_;
   CutHistory history_;
-  // While the copy is to become the bone: how the two differ, by what step, and what is removed of the bone.
+  // While the copy is to become the bone: the bricks that differ, the step that causes it, and the volume
+  // removed from the bone.
   std::vector<DensityBlock> differing_;
   Step step_ = Step::none;
   double removed_mm3_ = 0;
-  // The highest density that a voxel milled empty may have kept, at this isovalue or one before.
+  // Highest density that a voxel emptied by milling may have kept, at this or an earlier isovalue.
   float emptied_ = std::numeric_limits<float>::lowest();
 };
 

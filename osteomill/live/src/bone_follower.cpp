@@ -30,12 +30,12 @@ struct BoneFollower::Parts {
   std::atomic<std::uint64_t> version{1};
   SurfaceMesher surface;
 
-  // Never taken by the haptic thread. A thread that writes into the copy, or receives from the haptic thread,
-  // holds it alone.
+  // Never locked by the haptic thread. Locked exclusively to write to the copy or to receive from the haptic
+  // thread.
   mutable std::shared_mutex mutex;
   BoneCopy copy;
-  VoxelBox arrived;  // since the follower's thread last looked
-  // Last, so that it ends before all that it uses.
+  VoxelBox arrived;  // since the follower's thread last checked
+  // Last, so that the thread ends before the members it uses are destroyed.
   std::jthread thread;
 
   void drain_queue() {
@@ -55,7 +55,7 @@ struct BoneFollower::Parts {
     }
     milled->prefault_around(where);
   }
-  // Other threads may read meanwhile; none marks what is to be meshed while one holds the lock.
+  // Other threads may read meanwhile; none marks bricks while another thread holds the lock.
   void mesh() {
     const std::shared_lock lock(mutex);
     surface.mesh(copy.volume());
@@ -71,7 +71,7 @@ struct BoneFollower::Parts {
         surface.wait(stop);
       }
     } catch (const WorkStopped&) {
-      // The whole bone was being meshed.
+      // Stopped while meshing the whole bone.
     }
   }
 };
@@ -174,7 +174,7 @@ BoneFollower::NextBone BoneFollower::with_undone_cut(double removed_mm3) {
 }
 
 BoneFollower::NextBone BoneFollower::without_pieces(const PieceRemoval& removal, double removed_mm3) {
-  // Goes through every voxel, while others read.
+  // Scans every voxel while others read.
   const Volume& bone = parts_->copy.volume();
   std::vector<DensityBlock> without =
       bricks_without(bone.grid(), bone.isovalue(), removal, parts_->copy.history().max_bricks());
@@ -193,7 +193,7 @@ BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double surro
     parts_->copy.set_isovalue(isovalue);
   }
   show_isovalue(isovalue);
-  // Goes through every voxel, while others read.
+  // Scans every voxel while others read.
   const BoneDensities densities = estimate_densities(parts_->copy.volume());
   const std::lock_guard lock(parts_->mutex);
   return parts_->copy.with_emptied(surroundings, removed_mm3, densities);

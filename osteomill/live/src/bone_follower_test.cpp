@@ -32,7 +32,7 @@ Volume ball_of_bone() {
   return shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
 }
 
-// A burr going round on the ball, pressed in.
+// A burr moving around on the ball, pressed in.
 class Miller {
  public:
   explicit Miller(Volume& volume) : mill_(volume, 1.5, {0.0, 1000.0}, {}) {}
@@ -47,7 +47,7 @@ class Miller {
   double angle_ = 0;
 };
 
-// Keeps what changed, as a window would.
+// Collects the changed bricks, as a window would.
 struct Collected {
   explicit Collected(const SurfaceBricks& layout) : mesh{layout, {}} { mesh.bricks.resize(layout.count()); }
   void take(const ChangedBricks& changed) {
@@ -60,7 +60,7 @@ bool same_surface(const SurfaceMesh& mesh, const Volume& volume, double isovalue
   return mesh.bricks == mesh_surface({volume.grid(), volume.ranges(), isovalue}).bricks;
 }
 
-// Ticks without milling until the surface is that of the volume, for at most 20 s.
+// Ticks without milling until the surface matches the volume, for at most 20 s.
 bool settles(BoneFollower& follower, Collected& collected, const Volume& volume, double isovalue) {
   for (int n = 0; n < 2000; ++n) {
     for (int tick = 0; tick < 10; ++tick) follower.bone_changed(volume, {});
@@ -77,7 +77,7 @@ CopyOnWriteFloats densities_of(const BoneFollower& follower) {
   return densities;
 }
 
-// The copy's ranges hold every density, or the surface would have holes.
+// Every density must lie within the copy's ranges; otherwise the surface would have holes.
 bool ranges_hold(const BoneFollower& follower) {
   bool hold = true;
   follower.read([&](const Volume& copy) {
@@ -96,7 +96,7 @@ bool ranges_hold(const BoneFollower& follower) {
   return hold;
 }
 
-// A ball of bone with its follower, milled without other threads than the follower's.
+// A ball of bone with its follower, milled without other threads than the follower's own.
 class BoneFollowerTest : public ::testing::Test {
  protected:
   void mill(int ticks) {
@@ -105,7 +105,7 @@ class BoneFollowerTest : public ::testing::Test {
   void catch_up() {
     while (!follower_.catch_up()) follower_.bone_changed(*bone_, {});
   }
-  // Mills the prepared bone from now on, as a live session does.
+  // Continues milling on the prepared bone, as a live session does.
   void swap(const BoneFollower::NextBone& next) {
     EXPECT_NE(bone_, next.bone);
     bone_ = next.bone;
@@ -133,7 +133,7 @@ TEST_F(BoneFollowerTest, IsTheBoneOnceCaughtUp) {
 
 TEST_F(BoneFollowerTest, LosesNothingThatFindsNoRoom) {
   const Volume before = *bone_;
-  // More bricks than find room, again and again, while the reader keeps the follower from taking any.
+  // More bricks than the queue holds, repeatedly, while the reader blocks the follower.
   follower_.read([&](const Volume&) {
     for (int n = 0; n < 20; ++n) {
       mill(50);
@@ -167,7 +167,7 @@ TEST_F(BoneFollowerTest, TakesCutsBackInBothCopies) {
   EXPECT_TRUE(ranges_hold(follower_));
   EXPECT_TRUE(settles(follower_, collected_, *bone_, 500));
 
-  // Milling goes on in the other, and all is taken back.
+  // Milling continues in the other one, and all cuts are undone.
   mill(200);
   catch_up();
   EXPECT_EQ(densities_of(follower_), now());
@@ -215,7 +215,7 @@ TEST_F(BoneFollowerTest, AnotherIsovalueIsThatOfBothCopies) {
   EXPECT_THROW(follower_.with_isovalue(std::nan(""), 0, 0), std::invalid_argument);
 }
 
-// Ticks at full speed on one thread, drawing on another, the surface on its own; also with the thread
+// Ticks at full speed on one thread, drawing on another, meshing on a third; also run under the thread
 // sanitizer.
 TEST(BoneFollower, KeepsUpWithMillingAtFullSpeed) {
   const auto bone = std::make_shared<Volume>(ball_of_bone());

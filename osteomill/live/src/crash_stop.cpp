@@ -13,8 +13,8 @@
 
 namespace osteomill {
 
-// Entry through which handlers find a device. Entries are reused and never destroyed, so that a handler may
-// go through all of them whatever other threads do.
+// Entry through which handlers find a device. Entries are reused but never freed, so that a handler may walk
+// the list whatever other threads do.
 struct DeviceSlot {
   std::atomic<DrivenDevice*> driven{nullptr};
   DeviceSlot* next = nullptr;
@@ -22,7 +22,7 @@ struct DeviceSlot {
 
 namespace {
 
-// All whose default action ends or stops a process, but those that are never handed to it.
+// All signals whose default action ends or stops a process, except those that cannot be caught.
 constexpr std::array kSignals{SIGSEGV, SIGBUS,    SIGFPE,  SIGILL,  SIGABRT, SIGSYS,  SIGTRAP,
                               SIGQUIT, SIGTERM,   SIGHUP,  SIGINT,  SIGXCPU, SIGXFSZ, SIGPIPE,
                               SIGALRM, SIGVTALRM, SIGPROF, SIGUSR1, SIGUSR2, SIGPOLL, SIGSTKFLT,
@@ -39,10 +39,10 @@ constexpr timespec kWait{0, 1'000'000};
 constexpr std::size_t kStackBytes = 1 << 16;
 
 std::atomic<DeviceSlot*> device_slots{nullptr};
-// Number of handlers that are going through them.
+// Number of handlers that are walking the list.
 std::atomic<int> handlers_in_slots{0};
 
-// Holds the action of a signal before it was handled here.
+// Action of a signal before CrashStop handled it.
 struct SignalAction {
   struct sigaction before {};
   bool is_handled = false;
@@ -60,7 +60,7 @@ void wait_for(const Condition& condition) {
   for (int n = 0; n < kMaxWaits && !condition(); ++n) nanosleep(&kWait, nullptr);
 }
 
-// Gives a thread a stack for handlers until it ends, unless it has one already (from a sanitizer).
+// Gives a thread an alternate signal stack until it ends, unless it has one already (from a sanitizer).
 class SignalStack {
  public:
   SignalStack() {
@@ -88,7 +88,7 @@ class SignalStack {
 
 }  // namespace
 
-// Gives handlers access to all devices.
+// Gives signal handlers access to all devices.
 struct DrivenDevices {
   DrivenDevices() { handlers_in_slots.fetch_add(1); }
   ~DrivenDevices() { handlers_in_slots.fetch_sub(1); }
@@ -138,7 +138,7 @@ SignalAction& action_of(int signal) {
 }
 
 void pass_to(const struct sigaction& before, int signal, siginfo_t* info, void* context) {
-  // Resets the handler as the system would have done.
+  // Reset the handler as the system would have done.
   if ((before.sa_flags & static_cast<int>(SA_RESETHAND)) != 0) ::signal(signal, SIG_DFL);
   if ((before.sa_flags & SA_SIGINFO) != 0) {
     before.sa_sigaction(signal, info, context);
@@ -152,7 +152,7 @@ void end_devices() {
     DrivenDevices().end();
     has_ended.store(true);
   } else {
-    // Another thread is at it, and this signal may not end the process before.
+    // Another thread is ending the devices; this signal must not end the process before it is done.
     wait_for([] { return has_ended.load(); });
     wait_for([] { return has_ended.load(); });
   }
@@ -161,11 +161,11 @@ void end_devices() {
 void end_process(int signal) {
   end_devices();
   ::signal(signal, SIG_DFL);
-  // A fault comes again by itself when its handler returns; a signal that was sent does not.
+  // A fault recurs by itself when its handler returns; a sent signal does not.
   raise(signal);
 }
 
-// Only what is safe in a signal's handler from here on.
+// From here on only async-signal-safe code.
 void handle_signal(int signal, siginfo_t* info, void* context) {
   const int error = errno;
   const struct sigaction& before = action_of(signal).before;
@@ -194,7 +194,8 @@ bool can_be_handled(int signal, const struct sigaction& now) {
 
 void install_handler(int signal) {
   SignalAction& action = action_of(signal);
-  // One that the program has taken over since may pass it on to us, so we may not pass it back.
+  // If the program has since installed its own handler, that may chain to ours, so ours must not chain back
+  // to it.
   if (action.is_handled) return;
   struct sigaction now {};
   sigaction(signal, nullptr, &now);
@@ -202,7 +203,7 @@ void install_handler(int signal) {
   action = {now, true};
   struct sigaction own {};
   own.sa_sigaction = &handle_signal;
-  // One at a time in a thread.
+  // Block other signals, so that handlers do not nest within a thread.
   sigfillset(&own.sa_mask);
   own.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_RESTART;
   sigaction(signal, &own, nullptr);

@@ -33,7 +33,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Holds what another process can see of a device.
+// The part of a device's state that another process can see.
 struct SharedWrench {
   std::atomic<double> force_N;
   std::atomic<double> max_N;
@@ -66,8 +66,7 @@ class SharedDevice : public testing_support::ComingDown {
   std::atomic<bool> is_let_go_{false};
 };
 
-// Describes how a process ends: by a signal from another process, or by an action of the main or the haptic
-// thread.
+// How a process ends: by a signal from another process, or by an action of the main or the haptic thread.
 struct Ending {
   int signal;
   void (*main_thread)() = nullptr;
@@ -101,7 +100,7 @@ void overflow_the_stack() {
   const CrashStop crash_stop;
   SharedDevice device(sent, end.haptic_thread);
   std::unique_ptr<HapticThread> live = live_on(bone, device);
-  // Makes the new session while the old one is there, as a program does that opens another bone.
+  // Makes the new session while the old one exists, as a program does that opens another bone.
   if (end.replaces_its_session) {
     live->start();
     live = live_on(bone, device);
@@ -110,7 +109,7 @@ void overflow_the_stack() {
   live->start();
   for (int n = 0; n < 12000 && sent->max_N < kPressed_N; ++n) std::this_thread::sleep_for(5ms);
   if (end.main_thread != nullptr) end.main_thread();
-  // Longer than its turn to be ended may take on a busy machine.
+  // Longer than a busy machine may take until the process is ended.
   std::this_thread::sleep_for(120s);
   _exit(0);
 }
@@ -131,12 +130,12 @@ class CrashStopTest : public ::testing::Test {
     if (child == 0) run_live(&sent_[n], end);
     return child;
   }
-  // A minute, since ticks under a sanitizer come late.
+  // Up to a minute, because ticks under a sanitizer are late.
   void await_pressing(std::size_t n) const {
     for (int k = 0; k < 12000 && sent_[n].max_N < kPressed_N; ++k) std::this_thread::sleep_for(5ms);
   }
-  // Two processes run at a time. With all at once on a core or two, a thread sanitizer's ticks come so late
-  // that the last ones have ended by themselves before their turn.
+  // Runs two processes at a time. If all ran at once on one or two cores, ticks under a thread sanitizer
+  // would be so late that the last processes would time out before their turn.
   void expect_zero_after(std::span<const Ending> ends) {
     for (std::size_t n = 0; n < ends.size(); n += 2) {
       const std::size_t end = std::min(n + 2, ends.size());
@@ -191,7 +190,7 @@ TEST_F(CrashStopTest, ARequestToEndThatFirstRemovesLeftoversLeavesTheWrenchAtZer
   expect_zero_after(ends);
 }
 
-// Ctrl-Z, and what reads from or writes to its terminal in the background.
+// Ctrl-Z, and terminal access from a background process.
 TEST_F(CrashStopTest, WhileItIsStoppedTheWrenchIsZeroAndThenComesUpSlowly) {
   const int stops[] = {SIGTSTP, SIGTTIN, SIGTTOU};
   for (std::size_t n = 0; n < 3; ++n) {
@@ -228,7 +227,7 @@ void count_call(int) {
   host_calls.fetch_add(1);
 }
 
-// A host's own handler, put back at the end.
+// A host's own handler, restored at the end.
 class HostHandler {
  public:
   explicit HostHandler(int signal) : signal_(signal), before_(action_of(signal)) {
@@ -250,7 +249,7 @@ class HostHandler {
 
 class HostTest : public ::testing::Test {
  protected:
-  // Some ticks of a live session while `signals` come.
+  // Runs some ticks of a live session while `signals` sends signals.
   void run(const std::function<void()>& signals) {
     const std::unique_ptr<HapticThread> live = live_on(bone_, device_);
     live->start();
@@ -293,7 +292,7 @@ TEST_F(HostTest, AProfilersTimerLeavesTheLoopRunning) {
   run([] {
     const itimerval every_ms{{0, 1000}, {0, 1000}};
     setitimer(ITIMER_PROF, &every_ms, nullptr);
-    // The timer counts time on a processor.
+    // The timer counts CPU time.
     const auto start = std::chrono::steady_clock::now();
     while (host_calls < 10 && std::chrono::steady_clock::now() - start < 20s) {
     }

@@ -100,7 +100,7 @@ void CutHistory::take_back_last(const std::vector<DensityBlock>& were, double re
 void CutHistory::make_again(const std::vector<DensityBlock>& were, double removed_mm3) {
   if (undone_.empty()) return;
   const double removed_after_mm3 = undone_.back().removed_mm3;
-  // It is empty: what was undone is over once something is cut.
+  // `cuts_.back()` is empty: any new cut would have dropped the undone ones.
   cuts_.back() = std::move(undone_.back());
   undone_.pop_back();
   exchange(cuts_.back(), were, removed_mm3);

@@ -12,7 +12,7 @@
 namespace osteomill {
 namespace {
 
-// 20 voxels a side: the bricks at the upper sides reach beyond the grid.
+// 20 voxels a side, so that the last bricks extend beyond the grid.
 class CutHistoryTest : public ::testing::Test {
  protected:
   void mill(const VoxelIndex& voxel) {
@@ -49,7 +49,7 @@ class CutHistoryTest : public ::testing::Test {
                                                testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   const CopyOnWriteFloats before_ = bone_.grid().densities();
   CutHistory history_{std::size_t{1} << 20};
-  // Counted by some tests.
+  // Maintained by some tests only.
   double removed_mm3_ = 0;
 };
 
@@ -135,7 +135,8 @@ TEST_F(CutHistoryTest, NothingIsTouchedOnceTheOnlyCutIsTakenBack) {
   EXPECT_EQ(now(), before_);
 }
 
-// Inside bone of 1000: emptied to 300 and 0, cut in part to 400 and 700; and outside, which was not milled.
+// Inside bone of density 1000: two voxels emptied to 300 and 0, two partially cut to 400 and 700; one
+// outside, not milled.
 TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPartStaysAsItWas) {
   DensityGrid untouched = bone_.grid();
   const auto mill_to = [&](const VoxelIndex& voxel, float density) {
@@ -154,7 +155,7 @@ TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPa
   EditableVolume(bone_).swap(differing.front());
   milled.set({3, 4, 2}, -30);
   EXPECT_EQ(now(), milled.densities());
-  // The first cut's hole is still one when the second is taken back.
+  // The hole of the first cut must remain after undoing the second.
   undo();
   untouched.set({3, 4, 2}, -30);
   EXPECT_EQ(now(), untouched.densities());
@@ -162,7 +163,7 @@ TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPa
   EXPECT_EQ(now(), before_);
 }
 
-// Against whole copies of the bone in a plain list.
+// Compares with a plain list of whole copies of the bone.
 TEST_F(CutHistoryTest, UndoAndRedoInAnyOrderGiveTheBonesOfAListOfCopies) {
   std::mt19937 random(5);
   const auto any = [&](int count) { return std::uniform_int_distribution(0, count - 1)(random); };
@@ -241,7 +242,7 @@ TEST_F(CutHistoryTest, UndoneCutsTakeTheMemoryOfCutsAndAreOverOnceSomethingElseI
   EXPECT_EQ(history_.cuts(), 3u);
 }
 
-// A cut that was taken back holds voxels milled empty, which a lower isovalue must not bring back with it.
+// An undone cut holds emptied voxels, which a redo at a lower isovalue must not turn back into bone.
 TEST_F(CutHistoryTest, WhatIsMadeAgainAtALowerIsovalueStaysEmpty) {
   while (bone_.grid()[{3, 4, 3}] > 0) mill({3, 4, 3});
   DensityGrid milled = bone_.grid();
@@ -269,7 +270,7 @@ TEST_F(CutHistoryTest, DropsOfPiecesAreThoseThatAreRemovedNow) {
   EXPECT_EQ(history_.piece_drops(), (std::vector<double>{0, 1}));
   redo();
   EXPECT_EQ(history_.piece_drops(), (std::vector<double>{0, 3}));
-  // The first one cannot be taken back any more, and is gone all the same.
+  // The first removal can no longer be undone but still counts.
   remove(2, 4);
   EXPECT_EQ(history_.cuts(), 2u);
   EXPECT_EQ(history_.piece_drops(), (std::vector<double>{0, 7}));

@@ -12,34 +12,34 @@
 
 namespace osteomill {
 
-/// Copies of changed densities on their way from the thread that mills to one that keeps a copy of the
-/// volume. One thread marks and sends, one receives, and neither ever waits. A brick that finds no room, or
-/// exceeds what a tick may copy, stays marked and is sent later as it is then, so that once everything marked
-/// has been sent and received both sides are the same.
+/// Sends copies of changed densities from the milling thread to a thread that keeps a copy of the volume. One
+/// thread marks and sends, one receives, and neither ever waits. A brick that finds the queue full, or
+/// exceeds the limit per tick, stays marked and is sent later with its densities at that time. Once
+/// everything marked has been sent and received, both sides are equal.
 class DensityHandover {
  public:
-  /// 1 MiB: enough for all that is milled while the whole surface is meshed at a new isovalue.
+  /// 1 MiB: enough for all milling while the whole surface is meshed at a new isovalue.
   static constexpr std::size_t kMaxBricksInFlight = 511;
 
-  /// Makes room for `capacity` bricks (or a few more) on their way, 2 KiB each. Allocates everything.
+  /// Allocates the whole queue, for `capacity` bricks (or a few more) of 2 KiB.
   DensityHandover(const GridGeometry& geometry, std::size_t capacity);
 
-  /// Marks what changed to be sent. For the milling thread; safe in the haptic tick.
+  /// Marks changed voxels for sending. For the milling thread; safe in the haptic tick.
   void mark(const VolumeChange& change) noexcept;
-  /// Copies up to `max` of the bricks marked, the longest marked first. For the milling thread; safe in the
-  /// haptic tick.
+  /// Copies up to `max` marked bricks, in the order in which they were marked. For the milling thread; safe
+  /// in the haptic tick.
   void send(const Volume& volume, std::size_t max) noexcept;
-  /// Returns how many bricks are marked and not sent; all others can be received. From any thread.
+  /// Returns the number of bricks marked but not sent. Any thread.
   std::size_t waiting_count() const noexcept { return waiting_.load(std::memory_order_acquire); }
 
-  /// Returns the next brick, the receiving thread's own until `pop`; null if there is none.
+  /// Returns the next brick, which the receiving thread may use until `pop`; null if the queue is empty.
   DensityBlock* front() noexcept { return in_flight_.front(); }
   void pop() noexcept { in_flight_.pop(); }
 
  private:
   std::array<int, 3> brick_dims_;
 
-  // Bricks marked: a flag each, and their numbers in a ring in the order in which they were marked.
+  // Marked bricks: a flag for each, and a ring of brick numbers in the order of marking.
   std::vector<std::uint8_t> marked_;
   std::vector<std::uint32_t> order_;
   std::size_t next_ = 0;

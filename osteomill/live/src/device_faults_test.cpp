@@ -1,5 +1,5 @@
-// Everything that can go wrong between an algorithm and a hand, from the bone to what the hand got: a session
-// with its guard, a connected device, and hardware that fails, in simulated time.
+// Faults on the whole path from the bone to the hand: a session with its guard, a connected device, and
+// failing hardware, in simulated time.
 
 #include <algorithm>
 #include <cmath>
@@ -20,10 +20,10 @@ namespace osteomill {
 namespace {
 
 constexpr double kTick_s = 1e-3;
-// kHandWrenchRates in a millisecond.
+// kHandWrenchRates times 1 ms.
 constexpr double kMaxStep_N = 4 + 1e-6;
 constexpr double kMaxStep_Nmm = 100 + 1e-6;
-// How long it takes to know (an input or a wrench is old), and to come down.
+// Ticks until a stale input or wrench is detected, and until the wrench is zero.
 constexpr int kTicksToKnow = 5;
 constexpr int kTicksToZero = 5;
 
@@ -34,7 +34,8 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
     press();
   }
 
-  // Down onto the bone below z = 0, and into it; some feel the burr there, some the middle of it.
+  // Moves down onto the bone below z = 0 and into it; algorithms sense contact at the burr's surface or at
+  // its centre.
   void press() {
     for (int n = 0; n < 900 && (n == 0 || felt_N() < 2); ++n) {
       hardware_.input.X_BH.position_mm.y() -= 0.01;
@@ -62,11 +63,11 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
   void run(int ticks) {
     for (int n = 0; n < ticks; ++n) tick();
   }
-  // A device that is gone cannot be sent anything.
+  // Nothing can be sent to a disconnected device.
   Wrench felt() const { return hardware_.got.empty() ? Wrench{} : hardware_.last(); }
   double felt_N() const { return felt().force_N.norm(); }
 
-  // The fault, then what the hand got: zero in time and from then on as long as it lasts.
+  // Injects the fault and checks the wrench sent: zero in time, and from then on as long as the fault lasts.
   void expect_zero_after(const std::function<void()>& fault, int ticks_to_know) {
     hardware_.got.clear();
     fault();
@@ -77,7 +78,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
     }
     expect_no_step();
   }
-  // All is well again, and comes up slowly.
+  // Ends the fault; the wrench returns slowly.
   void expect_slow_return(const std::function<void()>& mend) {
     hardware_.got.clear();
     mend();
@@ -91,7 +92,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
     EXPECT_TRUE(is_finite(record_.X_WD));
     expect_no_step();
   }
-  // It is driven again, and the hand feels nothing of the bone until it has left it.
+  // Ends the fault; the hand feels no bone until it has left it.
   void expect_return_from_outside(const std::function<void()>& mend) {
     hardware_.got.clear();
     mend();
@@ -129,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, DeviceFaults, ::testing::ValuesIn(algor
 
 TEST_P(DeviceFaults, VanishesAndComesBack) {
   expect_zero_after([this] { hardware_.gone = true; }, 1);
-  // It cannot be sent anything while it is gone, and begins at zero.
+  // Nothing can be sent while it is disconnected; it then begins at zero.
   expect_return_from_outside([this] { hardware_.gone = false; });
   EXPECT_EQ(device_.report().reopened, 1u);
 }
@@ -140,19 +141,19 @@ TEST_P(DeviceFaults, FallsSilent) {
   expect_slow_return([this] { hardware_.silent = false; });
 }
 
-// A force that is not felt pays for nothing: no bone is milled meanwhile.
+// A force that is not rendered must not mill: no bone is removed meanwhile.
 TEST_P(DeviceFaults, IsNoLongerCalibrated) {
   const double before_mm3 = session_.removed_mm3();
   spindle_on_ = true;
   expect_zero_after([this] { hardware_.input.not_driven = "is not calibrated"; }, 1);
   EXPECT_TRUE(is_finite(record_.X_WD));
-  // The tick in which it came was felt.
+  // The force was still rendered in the tick of the fault.
   EXPECT_LT(session_.removed_mm3() - before_mm3, 0.01);
   spindle_on_ = false;
   expect_return_from_outside([this] { hardware_.input.not_driven = nullptr; });
 }
 
-// A service that answers every 8 ms.
+// A device service that answers every 8 ms.
 TEST_P(DeviceFaults, TakesAWrenchWithEveryPoseButRarely) {
   spindle_on_ = true;
   hardware_.got.clear();
@@ -161,12 +162,12 @@ TEST_P(DeviceFaults, TakesAWrenchWithEveryPoseButRarely) {
   for (int n = 0; n < 1000; ++n) {
     hardware_.silent = hardware_.busy = n % 8 != 0;
     tick();
-    // The force felt before has fallen to zero by then.
+    // The earlier force has fallen to zero by then.
     if (n == 50) before_mm3 = session_.removed_mm3();
     if (n > 50) max_N = std::max(max_N, felt_N());
   }
   EXPECT_LT(max_N, 1);
-  // A force of that size pays for at most this in a second.
+  // Maximum removal in one second for a force of that size.
   EXPECT_LE(session_.removed_mm3() - before_mm3,
             0.01 + max_N * removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm));
   expect_no_step();
@@ -180,7 +181,7 @@ TEST_P(DeviceFaults, GivesNumbersThatAreNone) {
   expect_slow_return([&] { hardware_.input.X_BH = before; });
 }
 
-// Deeper into the bone, where 20 N would be asked for.
+// Jumps deeper into the bone, to a penetration that would ask for 20 N.
 TEST_P(DeviceFaults, JumpsBy50mm) {
   const double before_N = felt_N();
   hardware_.got.clear();
@@ -188,7 +189,7 @@ TEST_P(DeviceFaults, JumpsBy50mm) {
   run(2);
   EXPECT_EQ(record_.fault, WrenchFault::pose_jumped);
   run(kTicksToZero);
-  // The returning force rises by a hundredth of the limit in each tick.
+  // The returning force rises by a hundredth of the limit per tick.
   EXPECT_LE(felt_N(), std::min(before_N, 20 * 0.01 * (kTicksToZero + 1)) + 1e-9);
   run(200);
   expect_no_step();
@@ -201,12 +202,12 @@ TEST_P(DeviceFaults, IsSlow) {
     hardware_.silent = n % 50 != 0;
     tick();
     if (n > kTicksToKnow + kTicksToZero) max_N = std::max(max_N, felt_N());
-    // Between two inputs it has come down.
+    // Between two inputs the force has fallen to zero.
     if (n > 50 && n % 50 > kTicksToKnow + kTicksToZero + 1) {
       EXPECT_EQ(felt_N(), 0) << n;
     }
   }
-  // In the few ticks of an input a blend only begins.
+  // A blend only begins in the few ticks of one input.
   EXPECT_LT(max_N, 1.5);
   expect_no_step();
 }
@@ -218,7 +219,7 @@ TEST_P(DeviceFaults, TheHapticThreadHangs) {
 
 TEST_P(DeviceFaults, TicksComeLateBy5ms) {
   hardware_.got.clear();
-  // The device's own thread goes on meanwhile.
+  // The device's own thread keeps running meanwhile.
   for (int late = 0; late < 20; ++late) {
     for (int n = 0; n < 5; ++n) {
       hardware_.now_s += kTick_s;

@@ -15,9 +15,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// However late a tick comes, no more time than this is simulated in it.
+// Upper bound on the time simulated in one tick, however late it comes.
 constexpr double kMaxTick_s = 0.02;
-// Records that wait for the commanding thread: 4 s at 4 kHz.
+// Capacity of the queue to the commanding thread: 4 s at 4 kHz.
 constexpr std::size_t kMaxRecords = 16384;
 
 }  // namespace
@@ -59,12 +59,12 @@ void HapticThread::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-// Commands swap what they replace into the commanding thread's hands, so that it is destroyed there.
+// Commands swap replaced objects into variables of the commanding thread, so that they are destroyed there.
 void HapticThread::run_between_ticks(const std::function<void()>& command) {
   command_.store(&command, std::memory_order_release);
   while (command_.load(std::memory_order_acquire) != nullptr) {
     if (!is_running()) {
-      // It may only just be ending.
+      // The thread may only just be ending.
       if (thread_.joinable()) thread_.join();
       run_pending_command();
     } else {
@@ -136,7 +136,7 @@ void HapticThread::run(const std::stop_token& stop) noexcept {
 }
 
 void HapticThread::tick_until(const std::stop_token& stop) {
-  // Sessions that follow each other have one rate.
+  // Consecutive sessions have the same rate.
   const double tick_s = session_->setup().tick_s;
   const Nanoseconds tick_ns = std::llround(tick_s * 1e9);
   NextDeadline next{clock_.now_ns() + tick_ns, 1};
@@ -158,8 +158,8 @@ std::optional<TickRecord> HapticThread::next_record() {
   return record;
 }
 
-// Again at every tick until one has placed the tool, since the session may be replaced meanwhile and the
-// device may give no pose for a while.
+// Called in every tick until one has placed the tool, because the session may be replaced meanwhile and the
+// device may return no pose for a while.
 void HapticThread::place_if_at_rest() {
   if (!fading_out_ || !session_->guard().is_at_rest()) return;
   device_.put_at(X_WD_place_);

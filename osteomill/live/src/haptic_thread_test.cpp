@@ -24,8 +24,8 @@ namespace {
 using namespace std::chrono_literals;
 using testing_support::comes_true;
 
-// Comes to hold the burr 0.3 mm deep in the bone below z = 0 and remembers what it was sent. Its members are
-// the haptic thread's while the session runs.
+// Moves the burr to 0.3 mm depth in the bone below z = 0 and stores what was sent. Its members belong to the
+// haptic thread while the session runs.
 class PressedDevice : public testing_support::ComingDown {
  public:
   PressedDevice() : ComingDown(1.2) {}
@@ -82,14 +82,14 @@ TEST_F(HapticThreadTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
   EXPECT_EQ(device_.sent.torque_Nmm, Vec3::Zero());
   const TimingSummary timing = live_.timing();
-  // A loaded machine misses ticks, and says so; for the device no more time passed than they take together,
-  // and less only if more than 20 were missed at once.
+  // A loaded machine misses ticks and counts them. The time simulated for the device is at most that of ticks
+  // and missed ticks together; less only if more than 20 were missed at once.
   const double ticked_s = 1e-3 * static_cast<double>(timing.ticks);
   EXPECT_GE(device_.time_passed_s, ticked_s - 1e-9);
   EXPECT_LE(device_.time_passed_s, ticked_s + 1e-3 * static_cast<double>(timing.missed_ticks) + 1e-9);
 }
 
-// On a clock that is set, so that it takes no time and holds to the nanosecond.
+// On a clock set by the test, so that it takes no time and is exact to the nanosecond.
 TEST(HapticThreadOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
   std::atomic<Nanoseconds> now_ns{0};
   const TickClock clock{[&] { return now_ns.load(); },
@@ -191,7 +191,7 @@ TEST_F(HapticThreadTest, APauseSendsZeroAndKeepsTheTool) {
   EXPECT_GT(state.record.X_WT.position_mm.z(), state.record.X_WD.position_mm.z());
 }
 
-// Without ticks the hand may have sunk.
+// The hand may have moved into the bone while no ticks ran.
 TEST_F(HapticThreadTest, StartedAgainInBoneItIsHeldBack) {
   live_.start();
   EXPECT_TRUE(pushes());

@@ -70,7 +70,7 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const ResumedRecor
   setup.guard = guard;
   auto session = std::make_unique<MillingSession>(std::move(bone), before.densities(), setup);
   session->count_removed_from(before.removed_mm3());
-  // No tool's pose if the device had given none by then.
+  // No tool pose if the device had not yet returned one.
   const SessionHandover handover{before.handover().X_WT, {}, true, before.handover().spindle_rpm};
   session->resume_from(handover);
   return {scan_hash, std::move(follower), std::move(session), handover, from.last.time_s + from.last.dt_s};
@@ -142,7 +142,8 @@ bool LiveMilling::remove_pieces(const PieceRemoval& removal) {
       setup(), [this, removal] { return follower_->without_pieces(removal, live_.session().removed_mm3()); });
 }
 
-// Another bone is the follower's copy, since that can be written while the bone is felt.
+// A changed bone is made from the follower's copy, which can be written while the haptic thread uses the
+// bone.
 bool LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
   if (is_preparing()) return false;
   const auto work = [this, make_bone = std::move(make_bone), setup] {
@@ -173,7 +174,7 @@ void LiveMilling::catch_up() {
   while (!follower_->catch_up()) {
     {
       const std::lock_guard lock(no_tick_mutex_);
-      // No tick hands anything over.
+      // Without ticks, hand over on behalf of the haptic thread.
       if (!live_.is_running()) follower_->bone_changed(live_.session().volume(), {});
     }
     std::this_thread::sleep_for(1ms);
@@ -249,7 +250,7 @@ void LiveMilling::describe_current(RunDescription& run) const {
   set_session_settings(run, settings_of(live_.session()), sample_points_);
 }
 
-// While nothing is milled.
+// Call only while nothing is milled.
 void LiveMilling::record_session_start(const SessionHandover& handover) {
   RunDescription run = recorded_;
   describe_current(run);
@@ -261,7 +262,7 @@ void LiveMilling::record_session_start(const SessionHandover& handover) {
 }
 
 std::filesystem::path LiveMilling::stop_recording() {
-  // One that was stopped before it could begin still begins.
+  // Start a recording that was stopped before its first session was installed.
   if (live_.session_number() < recorded_from_) finish_preparing();
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
   set_listener();

@@ -41,7 +41,7 @@ constexpr double kIsovalue = 500;
 std::shared_ptr<Volume> ball_of_bone() {
   auto bone = std::make_shared<Volume>(testing_support::shape_volume(
       testing_support::centred_cube(51, 0.25), testing_support::ball(Vec3::Zero(), 5.0)));
-  // Its left half, and its right.
+  // Labels the left and the right half.
   std::vector<LabelMap::LabelIndex> places;
   for (std::size_t n = 0; n < bone->geometry().voxel_count(); ++n) places.push_back(n % 51 < 25 ? 1 : 2);
   const GridGeometry& grid = bone->geometry();
@@ -50,7 +50,7 @@ std::shared_ptr<Volume> ball_of_bone() {
   return bone;
 }
 
-// A hand presses the burr into the top of a ball of bone.
+// A hand that presses the burr into the top of a ball of bone.
 class LiveMillingTest : public ::testing::Test {
  protected:
   LiveMillingTest() : LiveMillingTest(ball_of_bone()) {}
@@ -59,7 +59,7 @@ class LiveMillingTest : public ::testing::Test {
     hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
   }
 
-  // Mills for as long as it takes to remove that much more.
+  // Mills until `more_mm3` more is removed.
   void mill(double more_mm3) {
     const double before_mm3 = milling_.state().record.removed_mm3;
     milling_.set_spindle(true);
@@ -71,7 +71,7 @@ class LiveMillingTest : public ::testing::Test {
     EXPECT_GE(milling_.state().record.removed_mm3, before_mm3 + more_mm3);
   }
 
-  // A hand that begins to be driven feels nothing until the tool is out of bone.
+  // A restarted session renders no force until the tool is out of bone.
   void start_again() {
     const Pose X_W_out = pose_above(entry_, setup_.tool, 2.0);
     milling_.start();
@@ -83,7 +83,7 @@ class LiveMillingTest : public ::testing::Test {
     hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
   }
 
-  // Returns when the follower has all that was milled, however far it was behind: preparing anything waits
+  // Returns when the follower has received all milling, however far behind it was: every preparation waits
   // for that.
   void settle() {
     EXPECT_TRUE(milling_.change(milling_.setup()));
@@ -97,7 +97,7 @@ class LiveMillingTest : public ::testing::Test {
     return densities;
   }
 
-  // Returns whether the surface taken brick by brick becomes that of the bone.
+  // Returns whether the surface taken brick by brick converges to that of the bone.
   bool surface_is_the_bones() {
     for (int n = 0; n < 200; ++n) {
       for (const auto& [number, brick] : milling_.take_changed_bricks()) surface_[number] = mesh_of(brick);
@@ -119,7 +119,8 @@ class LiveMillingTest : public ::testing::Test {
   std::vector<BrickMesh> surface_ = std::vector<BrickMesh>(milling_.follower().layout().count());
 };
 
-// Catching up hands changes over while no tick does; a start in that moment must not make that two threads.
+// Catching up hands changes over while no ticks run; a start at that moment must not lead to two threads
+// doing so.
 TEST_F(LiveMillingTest, StartedWhileACutIsTakenBackChangesComeFromOneThread) {
   mill(0.3);
   for (int n = 0; n < 5; ++n) {
@@ -175,7 +176,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   EXPECT_TRUE(surface_is_the_bones());
 }
 
-// The follower shows what the haptic thread mills, also after several exchanges of the two.
+// The follower shows the bone that the haptic thread mills, also after several exchanges of the two.
 TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
   for (int n = 0; n < 3; ++n) {
     mill(0.2);
@@ -189,7 +190,7 @@ TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
   for (int n = 0; n < 400 && milling_.state().record.wrench.force_N.norm() < 1.0; ++n) {
     std::this_thread::sleep_for(5ms);
   }
-  // The burr rests on what is left: its lowest point is on the surface of the copy.
+  // The burr rests on the remaining bone: its lowest point is on the surface of the copy.
   const Pose X_WT = milling_.state().record.X_WT;
   const Vec3 lowest_W = X_WT.position_mm + setup_.tool.burr_radius_mm * entry_.direction_W;
   milling_.follower().read([&](const Volume& bone) {
@@ -214,7 +215,7 @@ TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
   other.tool.burr_radius_mm = 1.2;
   EXPECT_TRUE(milling_.change(other));
   EXPECT_TRUE(milling_.is_preparing());
-  EXPECT_FALSE(milling_.undo());  // nothing while that is prepared
+  EXPECT_FALSE(milling_.undo());  // refused during a preparation
   milling_.finish_preparing();
   EXPECT_FALSE(milling_.is_preparing());
   EXPECT_EQ(milling_.setup().algorithm.id, "surface-points");
@@ -239,7 +240,7 @@ TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
   mill(0.1);
 }
 
-// Mills a hole whose sides are cut in part, and changes the isovalue up and back over the bone's whole range.
+// Mills a hole with partially cut sides and changes the isovalue up and back over the bone's whole range.
 TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
   mill(0.3);
   const CopyOnWriteFloats milled = bone();
@@ -260,7 +261,7 @@ TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
   EXPECT_TRUE(surface_is_the_bones());
 }
 
-// A session with the ball of bone and a small one beside it.
+// A session with the ball of bone and a smaller ball beside it.
 class LiveMillingOfTwoPiecesTest : public LiveMillingTest {
  protected:
   static constexpr VoxelIndex kInSmall{47, 47, 47};
@@ -299,7 +300,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, PiecesGoAndComeBackLikeCutsAndDoNotCountAsMil
   for (std::size_t label = 0; label < 3; ++label)
     EXPECT_NEAR(milling_.removed_by_label()[label], of_label_mm3[label], 1e-9);
   EXPECT_TRUE(surface_is_the_bones());
-  // The haptic thread mills the bone without it, and that is a cut of its own.
+  // The haptic thread mills the bone without the piece; that is a cut of its own.
   mill(0.2);
   EXPECT_FALSE(has_small());
   EXPECT_EQ(milling_.follower().cuts(), 3u);
@@ -345,7 +346,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, ARemovalThatCannotBeLeavesAllAsItWas) {
   const CopyOnWriteFloats before = bone();
   EXPECT_TRUE(milling_.remove_pieces({PieceRemoval::Which::chosen, {0, 0, 0}}));
   EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
-  // There is no piece as small as that.
+  // No piece is that small.
   finish(milling_.remove_pieces({PieceRemoval::Which::smaller, {}, 0.1}));
   EXPECT_EQ(bone(), before);
   EXPECT_EQ(milling_.follower().cuts(), 0u);
@@ -353,7 +354,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, ARemovalThatCannotBeLeavesAllAsItWas) {
   mill(0.1);
 }
 
-// Pieces removed, taken back and removed again in a recording, with cuts between, come out to the bit.
+// Pieces removed, restored and removed again in a recording, with cuts between, replay to the bit.
 TEST_F(LiveMillingOfTwoPiecesTest, ARecordingHasTheBoneWithoutThemAndIsReplayedToTheBit) {
   const testing_support::TestFolder folder;
   mill(0.1);
@@ -385,7 +386,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, ARecordingHasTheBoneWithoutThemAndIsReplayedT
   Volume milled = *scan;
   repeat_milling(milled, recording);
   EXPECT_EQ(milled.grid().densities(), at_end);
-  // Played forwards and back, every session's bone is that which was milled.
+  // Playing forwards and back gives the bone of every session.
   RecordedBone played(*scan, recording);
   EXPECT_EQ(played.bone().grid().densities(), at_end);
   played.go_to(1);
@@ -393,7 +394,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, ARecordingHasTheBoneWithoutThemAndIsReplayedT
   played.go_to(recording.records.size());
   EXPECT_EQ(played.bone().grid().densities(), at_end);
 
-  // Milled on from its end, and from what a window keeps for its next start.
+  // Continues from the recording's end, and from the state that a window stores for its next start.
   const double end_s = recording.records.back().time_s;
   VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
   LiveMilling branch(prepare_milling(two_balls(), resume_recording(*scan, recording, end_s), {}), hand);
@@ -413,7 +414,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, ARecordingHasTheBoneWithoutThemAndIsReplayedT
   }
 }
 
-// The bone that an ended window had milled continues in another.
+// Bone milled in a closed window continues in another.
 TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   mill(0.3);
   const double removed_mm3 = milling_.state().record.removed_mm3;
@@ -444,7 +445,7 @@ TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   EXPECT_EQ(bone_again(), untouched_);
 }
 
-// Another hand takes over where the burr pressed on bone, and feels nothing before it lets it rest.
+// Another hand continues while the burr presses on bone, and feels nothing until it has moved off the bone.
 TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
   const testing_support::TestFolder folder;
   milling_.start_recording(folder / "a.h5", milling_.describe("ball", ""));
@@ -470,7 +471,7 @@ TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
   const Recording branch = read_recording(folder / "b.h5");
   const TickRecord& first = branch.records.front();
   EXPECT_EQ(first.time_s, pressing->time_s + pressing->dt_s);
-  // An encoder rounds it, and the tool is out of the bone.
+  // The pose is rounded by an encoder, and the tool is moved out of the bone.
   EXPECT_LT((first.X_WT.position_mm - pressing->X_WT.position_mm).norm(), 0.05);
   EXPECT_LT((first.X_WD.position_mm - pressing->X_WT.position_mm).norm(), 0.01);
   EXPECT_FALSE(first.driven);
@@ -481,7 +482,7 @@ TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
     const Vec3 step_N = branch.records[n].wrench.force_N - branch.records[n - 1].wrench.force_N;
     ASSERT_LE(step_N.norm(), 1e-3 * kHandWrenchRates.force_N_s + 1e-9) << "at tick " << n;
   }
-  // The branch holds all that it takes to replay and to measure it.
+  // The branch can be replayed and measured by itself.
   const Verification verified = verify_recording(*ball_of_bone(), branch);
   EXPECT_FALSE(verified.difference) << verified.difference->sentence();
   Volume milled = *ball_of_bone();
@@ -493,8 +494,8 @@ TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
   again.follower().read([&](const Volume& bone) { EXPECT_EQ(bone.grid().densities(), untouched_); });
 }
 
-// Pressed into the bone, deep in it, and far away: each algorithm lets go without a step and feels nothing at
-// the tool's new place.
+// Pressed into the bone, deep in it, and far away: every algorithm releases the force without a step and
+// renders none at the tool's new pose.
 TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
   const Pose X_W_free = pose_above(entry_, setup_.tool, 5.0);
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
@@ -504,13 +505,13 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
     for (const double above_mm : {-1.0, -4.0, 500.0}) {
       hand_.pull_to(pose_above(entry_, setup_.tool, above_mm));
       std::this_thread::sleep_for(300ms);
-      // On a busy machine a tick may come so late that zero is sent as fast as a hand may feel it.
+      // On a busy machine a tick may be so late that zero is sent at the maximum rate for a hand.
       double allowed_step_N = 0.4;
       const auto allow_for_late = [&](const TickRecord& record) {
         if (record.fault == WrenchFault::tick_late) allowed_step_N = 1e-3 * kHandWrenchRates.force_N_s + 1e-9;
       };
       while (const auto record = milling_.next_record()) allow_for_late(*record);
-      // Asked for before, the burr may mill until this thread has asked for its place.
+      // Switched on earlier, the burr could mill until `place` is called.
       milling_.place(X_W_free);
       milling_.set_spindle(true);
       ASSERT_TRUE(comes_true([&] { return !milling_.is_placing(); })) << "the tool was not placed";
@@ -535,8 +536,8 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
   }
 }
 
-// Begun in the middle of milling, over another algorithm, a cut taken back, a pause, another place, another
-// isovalue and a reset: it comes out again to the bit from the scan.
+// Starts in the middle of milling and continues across another algorithm, an undone cut, a pause, another
+// pose, another isovalue and a reset; replays to the bit from the scan.
 TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   const testing_support::TestFolder folder;
   const auto path = folder / "live.h5";

@@ -14,7 +14,7 @@ constexpr Nanoseconds kSpin_ns = 100'000;
 constexpr Nanoseconds kLate_ns = 1'000'000;
 constexpr double kUsPerNs = 1e-3;
 
-// One thread alone adds, so that no locked instruction is needed.
+// Only one thread adds, so no atomic read-modify-write is needed.
 template <typename T>
 void add_to(std::atomic<T>& counter, std::type_identity_t<T> count) {
   counter.store(counter.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
@@ -38,7 +38,7 @@ Nanoseconds wait_until(Nanoseconds deadline_ns) {
   const Nanoseconds wake_ns = deadline_ns - kSpin_ns;
   if (monotonic_now_ns() < wake_ns) {
     const timespec wake{wake_ns / kNsPerS, wake_ns % kNsPerS};
-    // A signal ends the sleep early; what is left is slept on.
+    // A signal interrupts the sleep; sleep again until the deadline.
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) != 0) {
     }
   }

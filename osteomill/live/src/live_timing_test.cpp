@@ -38,7 +38,7 @@ TEST(LiveTiming, StatisticsOfKnownDeadlines) {
   EXPECT_EQ(found.tick.max_us, 80);
 }
 
-// Every tick ends 2.5 ms after it was due, so that only every second deadline gets one.
+// Every tick ends 2.5 ms after its deadline, so that only every second deadline gets a tick.
 TEST(LiveTiming, ALoopThatCannotKeepUpShowsItsTrueRate) {
   LiveTiming timing;
   for (int n = 0; n <= 500; ++n) {
@@ -47,7 +47,7 @@ TEST(LiveTiming, ALoopThatCannotKeepUpShowsItsTrueRate) {
   }
   const TimingSummary found = timing.summary();
   EXPECT_NEAR(found.ticks_per_s, 500, 1e-9);
-  // Each is busy for 1.3 ms; that it is also woken late is another matter.
+  // Each tick works for 1.3 ms; its late wake-up does not count.
   EXPECT_NEAR(found.rate_hz, 1e3 / 1.3, 1e-9);
   EXPECT_EQ(found.late_ticks, 501u);
   EXPECT_EQ(found.missed_ticks, 500u);

@@ -21,7 +21,7 @@ using testing_support::TwoKinds;
 
 constexpr int kRuns = 10;
 
-// The densities of the built-in tooth, whose reference is dentine.
+// Densities of the built-in tooth; dentine is the reference.
 constexpr BoneDensities kTooth{0, 1500};
 constexpr double kDentine = 1500, kEnamel = 2800;
 
@@ -36,7 +36,7 @@ Volume tooth_plate(double density, double thickness_mm) {
   return Volume(DensityGrid(geometry, std::move(densities)), 750);
 }
 
-// One of kRuns hands.
+// One of kRuns simulated hands.
 struct Hand {
   int number;
   double varied(int factor) const { return (number * factor) % kRuns / static_cast<double>(kRuns); }
@@ -46,11 +46,11 @@ struct Hand {
 
 struct Sounds {
   std::vector<float> cutting;
-  // Since the burr met bone last, or nothing if it never ceased to.
+  // Times since the last contact with bone; empty if the burr never lost it.
   std::vector<float> through;
 };
 
-// The sounds of a session that presses a burr into a plate.
+// Returns the sounds of a session that presses a burr into a plate.
 Sounds heard(Volume bone, const Hand& hand, double max_s) {
   constexpr double kCutting_s = 0.5, kThrough_s = 1;
   MillingSetup setup;
@@ -82,8 +82,8 @@ double bright(const std::vector<float>& sound, const Hand& hand) {
   return testing_support::brightness(sound, hand.speed_rpm() / 60);
 }
 
-// Returns the share that is told by a threshold which was learnt from other runs; `brightness` gives that of
-// the two kinds in one run.
+// Returns the fraction of sounds classified correctly by a threshold learnt from other runs; `brightness`
+// gives the brightness of both kinds in one run.
 template <typename Brightness>
 double told_apart(const Brightness& brightness) {
   TwoKinds learnt, tried;

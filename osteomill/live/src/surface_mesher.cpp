@@ -9,8 +9,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The haptic thread wakes no other (that would be a system call), so the mesher looks by itself: oftener than
-// 30 times a second, seldom enough that a brick milled at every tick is not meshed at every tick.
+// The haptic thread does not wake other threads (that would be a system call), so the mesher polls: more than
+// 30 times a second, but rarely enough that a brick milled in every tick is not meshed in every tick.
 constexpr auto kPollInterval = 20ms;
 
 }  // namespace
@@ -30,7 +30,7 @@ void SurfaceMesher::mesh(const Volume& bone) {
   }
   ChangedBricks changed = upkeep_.remesh({bone.grid(), bone.ranges(), shown_isovalue_});
   const std::lock_guard lock(mutex_);
-  // If a brick is in both, the newer one stays.
+  // If a brick is in both, the newer one is kept.
   changed.merge(published_);
   published_ = std::move(changed);
 }

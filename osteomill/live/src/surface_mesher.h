@@ -11,29 +11,29 @@
 
 namespace osteomill {
 
-/// Keeps the surface of a bone up for the thread that draws. `mark` and `mesh` are for threads that keep each
-/// other out; `take` and `show_isovalue` are for any.
+/// Meshes the surface of a bone for the drawing thread. Callers must not run `mark` and `mesh` concurrently;
+/// `take` and `show_isovalue` may be called from any thread.
 class SurfaceMesher {
  public:
   SurfaceMesher(const SurfaceBricks& layout, double isovalue);
 
-  /// Notes voxels whose densities changed.
+  /// Marks voxels whose densities changed.
   void mark(const VoxelBox& voxels) { upkeep_.mark(voxels); }
-  /// Meshes what was marked, or all of the bone if another isovalue is to be shown.
+  /// Meshes the marked bricks, or the whole bone if another isovalue was requested.
   void mesh(const Volume& bone);
-  /// Waits until it is time to look for changes again, another isovalue is to be shown, or stop is requested.
+  /// Waits until the next check for changes is due, another isovalue was requested, or stop was requested.
   void wait(const std::stop_token& stop);
 
-  /// Lets the whole surface be meshed again at this isovalue, which need not be the bone's.
+  /// Requests remeshing of the whole surface at this isovalue, which may differ from the bone's.
   void show_isovalue(double isovalue);
-  /// Returns what was meshed since the last call.
+  /// Returns the bricks meshed since the last call.
   ChangedBricks take();
 
  private:
   SurfaceUpkeep upkeep_;
   double shown_isovalue_;
   std::mutex mutex_;
-  // The bricks that the drawing thread has not taken yet.
+  // Bricks that the drawing thread has not yet taken.
   ChangedBricks published_;
   std::optional<double> new_isovalue_;
   std::condition_variable_any woken_;

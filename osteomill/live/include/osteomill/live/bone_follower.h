@@ -16,94 +16,94 @@
 
 namespace osteomill {
 
-/// Follows a bone that is being milled, for every thread but the haptic one. It keeps the one copy of the
-/// bone's densities (which shares with the bone the memory of what was not milled); from the copy its own
-/// thread keeps the surface up, cuts are drawn and files saved, and in the copy cuts are taken back. The
-/// haptic thread hands over what changed and never waits. All others wait for each other no longer than a few
-/// changed bricks take to be put in place or meshed (the whole bone after another isovalue).
+/// Mirrors a bone that is being milled, for every thread but the haptic one. Holds the only copy of the
+/// bone's densities, which shares the memory of unmilled bone with the original. The follower's own thread
+/// meshes the copy; cuts are drawn, files saved and cuts undone from it. The haptic thread hands over changes
+/// and never waits. Other threads wait for each other at most as long as copying or meshing a few changed
+/// bricks takes (or meshing the whole bone after a change of isovalue).
 class BoneFollower {
  public:
-  /// The most bricks that a tick copies, 16 KiB. All that a burr of 3 mm changes is sent within 20 ticks.
+  /// Maximum bricks copied per tick, 16 KiB. The changes of a 3 mm burr are sent within 20 ticks.
   static constexpr std::size_t kBricksPerTick = 8;
-  /// The most memory for cuts that can be taken back.
+  /// Memory limit for cuts that can be undone.
   static constexpr std::size_t kUndoBytes = std::size_t{256} << 20;
 
-  /// Copies the bone and meshes all of it. From then on makes the memory that milling takes ready ahead of
-  /// the burr (Volume::prefault_around).
+  /// Copies the bone and meshes all of it. From then on pre-faults memory ahead of the burr
+  /// (Volume::prefault_around).
   explicit BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes = kUndoBytes);
   ~BoneFollower();
 
-  /// Puts what was milled of this bone at another time into bone and copy, as one cut, of which `piece_drops`
-  /// was removed as pieces. Before the first tick.
+  /// Applies earlier milling of this bone to bone and copy, as one cut. `piece_drops` is the part of it that
+  /// was removed as pieces. Call before the first tick.
   void load_milled(const std::vector<DensityBlock>& milled, const std::vector<double>& piece_drops = {});
 
-  /// Hands over what a tick changed of the bone. The haptic thread calls it at every tick, with an empty
-  /// change too: a part of what is to be copied may have been left to later ticks. Safe in the haptic tick:
-  /// copies at most a few bricks of 2 KiB, and never waits, allocates or throws.
+  /// Hands over the changes of a tick. The haptic thread calls this in every tick, also with an empty change,
+  /// because bricks may still wait from earlier ticks. Safe in the haptic tick: copies at most a few bricks
+  /// of 2 KiB and never waits, allocates or throws.
   void bone_changed(const Volume& bone, const VolumeChange& change) noexcept;
 
-  /// Returns the bricks of the surface.
+  /// Returns the brick layout of the surface.
   const SurfaceBricks& layout() const;
-  /// Returns what changed of the surface since the last call. The first call that brings anything brings the
-  /// whole surface. For one drawing thread; never waits for meshing.
+  /// Returns the surface changes since the last call; the first non-empty result is the whole surface. For
+  /// one drawing thread; never waits for meshing.
   ChangedBricks take_changed_bricks();
-  /// Lets the whole surface be meshed again at another isovalue; of several in short order, at the last one.
-  /// The bone's own isovalue stays. For any thread except the haptic one, as all functions below.
+  /// Requests remeshing of the whole surface at another isovalue; the last of several requests wins. Does not
+  /// change the bone's own isovalue. This and all functions below: any thread except the haptic one.
   void show_isovalue(double isovalue);
 
-  /// Lets `use` read the bone as last handed over, some ticks behind. The copy does not change meanwhile.
+  /// Calls `use` with the copy, which is some ticks behind the bone and does not change during the call.
   void read(const std::function<void(const Volume&)>& use) const;
-  /// Returns a number that grows with every change of what is read.
+  /// Returns the version of the copy, which increases with every change.
   std::uint64_t version() const;
 
-  /// Begins another cut, to which all that is milled from now on belongs; `removed_mm3` is what was removed
-  /// before it.
+  /// Begins another cut; all milling from now on belongs to it. `removed_mm3` is the volume removed before
+  /// it.
   void begin_cut(double removed_mm3);
-  /// Returns how many cuts can be taken back; the removal of pieces is one.
+  /// Returns the number of cuts that can be undone, removals of pieces included.
   std::size_t cuts() const;
-  /// Returns how many cuts that were taken back can be made again: none once something else was cut.
+  /// Returns the number of undone cuts that can be redone: 0 after any new cut.
   std::size_t undone_cuts() const;
-  /// Returns whether anything was milled, or a piece removed, since the beginning.
+  /// Returns whether anything was milled or a piece removed since the beginning.
   bool is_touched() const;
-  /// Returns every brick that was ever changed, as it is now.
+  /// Returns every brick that was ever changed, with its present densities.
   std::vector<DensityBlock> touched_bricks() const;
-  /// Returns by how much densities have fallen since the beginning times the voxels' volume, mm^3, summed
-  /// over each label's voxels, by its place; removed pieces do not count. Empty for a bone without labels.
+  /// Returns the decrease in density since the beginning times the voxel volume, mm^3, summed per label and
+  /// indexed by label place. Excludes removed pieces. Empty for a bone without labels.
   std::vector<double> drops_by_label() const;
-  /// Returns the same of the pieces that are removed; empty if there are none.
+  /// Returns the corresponding sums for removed pieces; empty if there are none.
   std::vector<double> piece_drops() const;
 
-  /// Puts what has arrived into the copy. Returns true if nothing is left to come, so that the copy is the
-  /// bone, provided that the bone is frozen (HapticThread::freeze_bone).
+  /// Applies queued changes to the copy. Returns true if none are left, so that the copy equals the bone,
+  /// provided that the bone is frozen (HapticThread::freeze_bone).
   bool catch_up();
 
-  /// The copy, made ready to become the bone.
+  /// The copy, prepared to replace the bone.
   struct NextBone {
     std::shared_ptr<Volume> bone;
-    /// The bone that is then removed of it, in mm^3 of reference density.
+    /// Bone removed in that state, mm^3 of reference density.
     double removed_mm3;
-    /// Given if another isovalue changes them.
+    /// Set only if the isovalue changes and with it the densities.
     std::optional<BoneDensities> densities;
   };
-  /// Returns the copy with the last cut taken back; `removed_mm3` is removed of the bone now. Call this, and
-  /// each of the next four, while the bone is frozen and the copy is caught up; from then until `swap` or
-  /// `discard_next` no thread writes into either. The surface shows the change at once; the cut is gone with
-  /// `swap`.
+  /// Returns the copy with the last cut undone; `removed_mm3` is the volume removed so far. Call this and the
+  /// next four functions only while the bone is frozen and the copy is caught up; from then until `swap` or
+  /// `discard_next` no thread may write to either. The surface shows the change at once; the cut leaves the
+  /// undo list with `swap`.
   NextBone without_last_cut(double removed_mm3);
-  /// Returns the copy with the cut made again that was taken back last.
+  /// Returns the copy with the last undone cut redone.
   NextBone with_undone_cut(double removed_mm3);
-  /// Returns the copy without some of its pieces, as another cut, which does not count as milled. Throws as
-  /// `bricks_without` does, with the bricks that `undo_bytes` has room for.
+  /// Returns the copy with pieces removed, as a cut of its own that does not count as milled. Throws as
+  /// `bricks_without` does; `undo_bytes` limits the number of bricks.
   NextBone without_pieces(const PieceRemoval& removal, double removed_mm3);
-  /// Returns the copy as the bone was at the beginning.
+  /// Returns the copy with the bone's original densities.
   NextBone without_all_cuts();
-  /// Returns the copy with another isovalue. Voxels that milling had emptied (cut down to `surroundings`)
-  /// stay empty. Throws std::invalid_argument if the isovalue is not finite.
+  /// Returns the copy with another isovalue. Voxels that milling had emptied (down to `surroundings`) stay
+  /// empty. Throws std::invalid_argument if the isovalue is not finite.
   NextBone with_isovalue(double isovalue, double surroundings, double removed_mm3);
-  /// Makes the copy the bone. The bone before it, which no tick uses any more, becomes the copy, so that
-  /// there are never more than the two.
+  /// Makes the copy the bone. The previous bone, which no tick may use any more, becomes the copy, so that no
+  /// third one is needed.
   void swap();
-  /// Makes the copy again what the bone is.
+  /// Restores the copy to the state of the bone.
   void discard_next();
 
  private:

@@ -20,9 +20,8 @@ namespace osteomill {
 template <typename T>
 class SpscQueue;
 
-/// A function that the haptic thread calls in every tick, after the wrench has gone out: with its record, the
-/// bone, and where it changed. Must keep to the rules of the tick: no allocation, lock, log, exception or
-/// system call.
+/// Called by the haptic thread in every tick, after the wrench was sent, with the tick's record, the bone and
+/// its changed voxels. Must follow the rules of the tick: no allocation, lock, log, exception or system call.
 using TickListener = std::function<void(const TickRecord&, const Volume&, const VolumeChange&)>;
 
 /// The state after a tick (HapticThread::state).
@@ -33,19 +32,18 @@ struct LiveState {
   std::optional<Vec3> intersection_W = {};
 };
 
-/// The thread that ticks a milling session in real time, at the rate of its setup (1 kHz), with real-time
-/// scheduling if the system allows it. Nothing that other threads do makes a tick wait. LiveMilling is what
-/// most programs want: it runs one of these and adds undo, recordings and changes of algorithm, tool and
-/// bone.
+/// Thread that ticks a milling session in real time, at the rate of its setup (1 kHz), with real-time
+/// scheduling if the system permits it. Other threads never make a tick wait. Most programs want LiveMilling
+/// instead, which runs a HapticThread and adds undo, recordings and changes of algorithm, tool and bone.
 ///
-/// One other thread commands and reads the state (the window's). Commands take effect between two ticks and
-/// return when they have, a tick or two later. On stopping, however it comes about, the device is sent a
-/// wrench of zero; so it is when the process ends by a signal, if the program has asked for that
+/// One other thread (the window's) sends commands and reads the state. Commands take effect between two ticks
+/// and return after that, a tick or two later. Whenever the thread stops, for whatever reason, the device is
+/// sent a zero wrench; also if a signal ends the process, provided that the program has enabled it
 /// (CrashStop).
 class HapticThread {
  public:
-  /// Takes the session over. `device` outlives this object; `time_s` is the time of the first tick. Does not
-  /// start yet.
+  /// Takes ownership of the session. `device` outlives this object; `time_s` is the time of the first tick.
+  /// Does not start the thread.
   HapticThread(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {},
                double time_s = 0);
   ~HapticThread();
@@ -53,49 +51,48 @@ class HapticThread {
   HapticThread& operator=(const HapticThread&) = delete;
 
   /// Starts the haptic thread and returns when it runs; does nothing if it runs already. Throws
-  /// std::system_error if the system gives no thread: the session is then not running, and can be started
-  /// again.
+  /// std::system_error if no thread can be created; the session is then not running and can be started again.
   void start();
-  /// Stops the haptic thread and returns when the last tick is over and zero has been sent. It can be started
+  /// Stops the haptic thread and returns after the last tick, when zero has been sent. It can be started
   /// again.
   void stop();
 
-  /// Switches the spindle. The device's own button or pedal turns it on as well.
+  /// Switches the spindle. The device's own button or pedal also turns it on.
   void set_spindle(bool on);
-  /// Begins or ends a pause, which sends zero and neither steps nor mills.
+  /// Pauses or resumes. While paused, zero is sent and neither the algorithm nor milling runs.
   void set_paused(bool paused);
-  /// Freezes or unfreezes the bone. While frozen, nothing is milled, though everything is felt, and other
-  /// threads may read the volume.
+  /// Freezes or unfreezes the bone. While frozen nothing is milled but forces continue, and other threads may
+  /// read the volume.
   void freeze_bone(bool frozen);
-  /// Goes on with another algorithm, tool, setting or bone, prepared beforehand. Returns the state in which
-  /// that began.
+  /// Continues with another algorithm, tool, setting or bone, prepared beforehand. Returns the state from
+  /// which the new session started.
   SessionHandover replace(std::unique_ptr<MillingSession> session);
-  /// Brings the tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which
-  /// nothing is milled, so that the hand feels no step; then the device is put there (Device::put_at), and
-  /// the algorithm begins again. One at a time: does nothing while `is_placing`.
+  /// Moves the tool to a pose free of bone, however far away. The wrench fades out over 100 ticks, in which
+  /// nothing is milled, so that the hand feels no step; then the device is moved there (Device::put_at) and
+  /// the algorithm is reset. Does nothing while `is_placing`.
   void place(const Pose& X_WD);
-  /// Returns whether the tool is being brought to the pose given to `place`.
+  /// Returns whether a `place` is under way.
   bool is_placing() const { return placing_.load(std::memory_order_acquire); }
-  /// Replaces the listener; an empty one for none.
+  /// Replaces the listener; an empty one removes it.
   void set_listener(TickListener listener);
 
   /// Returns the state after the last tick.
   const LiveState& state() { return state_.read(); }
-  /// Returns every tick's record in turn. The queue holds 4 s at 4 kHz; records that find it full are lost.
+  /// Returns the records of all ticks, one per call. The queue holds 4 s at 4 kHz; records are lost if it is
+  /// full.
   std::optional<TickRecord> next_record();
-  /// Returns how well the session keeps its time. From any thread.
+  /// Returns timing statistics. Any thread.
   TimingSummary timing() const { return timing_.summary(); }
-  /// Returns in one line what real-time scheduling the system refused; empty if nothing. Valid once started.
+  /// Returns one line on what real-time scheduling the system refused; empty if none. Valid once started.
   const std::string& refused_real_time() const { return refused_real_time_; }
   bool is_running() const { return running_.load(std::memory_order_acquire); }
-  /// Returns what ended the session by itself, as the device threw it; null while it runs, and if `stop` or a
-  /// signal ended it. For the commanding thread.
+  /// Returns the exception, thrown by the device, that ended the session; null while it runs, or if `stop` or
+  /// a signal ended it. For the commanding thread.
   std::exception_ptr failure() const { return is_running() ? nullptr : failure_; }
 
-  /// Returns the session now in use. Its volume's densities may be read only while frozen, or while not
-  /// running.
+  /// Returns the session in use. Read its volume's densities only while frozen or not running.
   const MillingSession& session() const { return *session_; }
-  /// Returns how many sessions were replaced before the one in use.
+  /// Returns how many sessions were replaced so far.
   std::uint32_t session_number() const { return session_number_; }
 
  private:
@@ -125,13 +122,13 @@ class HapticThread {
   bool fading_out_ = false;
   std::atomic<bool> placing_{false};
 
-  // Set by the commanding thread, which waits until the haptic one has done it and made it null.
+  // Set by the commanding thread, which then waits until the haptic thread has run it and reset this to null.
   std::atomic<const std::function<void()>*> command_{nullptr};
 
   std::unique_ptr<SpscQueue<TickRecord>> records_;
   LatestValue<LiveState> state_;
   LiveTiming timing_;
-  // Last, so that it ends before all that it uses.
+  // Last, so that the thread ends before the members it uses are destroyed.
   std::jthread thread_;
 };
 

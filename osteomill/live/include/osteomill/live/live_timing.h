@@ -15,33 +15,33 @@ namespace osteomill {
 /// Nanoseconds of the system's monotonic clock.
 using Nanoseconds = std::int64_t;
 
-/// Returns the time of that clock. Safe in the haptic tick.
+/// Returns the present time of that clock. Safe in the haptic tick.
 Nanoseconds monotonic_now_ns() noexcept;
 
-/// The deadline `periods` after an earlier one, met or not (next_deadline()).
+/// Result of next_deadline(): `periods` after the previous deadline, which was met or missed.
 struct NextDeadline {
   Nanoseconds deadline_ns;
   int periods;
 };
 
-/// Returns the next deadline of a loop of `period_ns`, at `now_ns` when the tick of `deadline_ns` is done:
-/// one period on, or, if that lies a whole period or more in the past, the last one that has passed. Ticks
-/// that were missed are not made up for: they would come in a burst, faster than any device takes them.
+/// Returns the next deadline of a loop of `period_ns` after the tick due at `deadline_ns`, which is done at
+/// `now_ns`: one period later or, if that is already a whole period or more ago, the latest deadline that has
+/// passed. Missed ticks are not made up for: they would come in a burst, faster than any device accepts them.
 NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseconds period_ns) noexcept;
 
-/// Sleeps until 100 us before the deadline (clock_nanosleep to an absolute time), then looks at the clock
-/// until it has come: waking from sleep is what is late. Returns the time at which it returns.
+/// Sleeps until 100 us before the deadline (clock_nanosleep to an absolute time), then polls the clock,
+/// because the wake-up from sleep is what causes lateness. Returns the time of its return.
 Nanoseconds wait_until(Nanoseconds deadline_ns);
 
-/// The time that a live session keeps: the system's, or one that a test sets.
+/// Clock of a live session: the system's, or a test's.
 struct TickClock {
   std::function<Nanoseconds()> now_ns = monotonic_now_ns;
   std::function<Nanoseconds(Nanoseconds deadline_ns)> wait_until = osteomill::wait_until;
 };
 
-/// Percentiles (distribution.h) of a histogram of times, microseconds. A time counts as the upper end
-/// of the bin it falls into (1 us wide up to 1 ms, 10 us up to 10 ms), or as the greatest time, if that is
-/// less. All zero if none was counted.
+/// Percentiles (distribution.h) of a histogram of times, microseconds. A time counts as the upper end of its
+/// bin (1 us wide up to 1 ms, 10 us up to 10 ms), or as the maximum if that is less. All zero if the
+/// histogram is empty.
 struct TimePercentiles {
   double p50_us = 0;
   double p99_us = 0;
@@ -49,11 +49,11 @@ struct TimePercentiles {
   double max_us = 0;
 };
 
-/// Counts times. One thread adds, safely in the haptic tick; any thread reads meanwhile, and may see some of
-/// the newest not yet.
+/// Histogram of times. One thread adds, safely in the haptic tick; any thread may read meanwhile, possibly
+/// without the newest times.
 class TimeHistogram {
  public:
-  /// Times below zero count as zero.
+  /// Clamps negative times to zero.
   void add(double time_us) noexcept;
   TimePercentiles percentiles() const;
   std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
@@ -71,36 +71,37 @@ class TimeHistogram {
   std::atomic<double> max_us_{0};
 };
 
-/// The times at which a tick was due, its thread woke for it, and it was done.
+/// Times of a tick: its deadline, the wake-up of its thread, and its end.
 struct TickTimes {
   Nanoseconds deadline_ns = 0;
   Nanoseconds woke_ns = 0;
   Nanoseconds done_ns = 0;
-  /// Periods since the deadline before: more than 1 if ticks were missed.
+  /// Periods since the previous deadline: more than 1 if ticks were missed.
   int periods = 1;
 };
 
-/// Figures of how well a live session keeps its time.
+/// Timing statistics of a live session.
 struct TimingSummary {
   std::uint64_t ticks = 0;
-  /// The rate that the ticks' work allows a loop of this period (SustainedRate), whether they woke in time or
-  /// not.
+  /// Rate that a loop of this period could sustain given the ticks' work (SustainedRate), whether they woke
+  /// in time or not.
   double rate_hz = 0;
-  /// Counted by the clock: over the whole time, and over the last second that was completed (0 before).
+  /// Measured by the clock: mean over the whole time, and over the last full second (0 before that).
   double ticks_per_s = 0;
   double recent_ticks_per_s = 0;
-  /// From the deadline to the waking.
+  /// Delay from deadline to wake-up.
   TimePercentiles lateness;
-  /// Ticks that woke more than 1 ms late, and deadlines that passed without a tick.
+  /// Number of ticks that woke more than 1 ms late, and of deadlines without a tick.
   std::uint64_t late_ticks = 0;
   std::uint64_t missed_ticks = 0;
-  /// The algorithm's step; milling with all that follows the volume; the whole tick from waking to done.
+  /// Time of the algorithm's step; of milling with everything that follows the volume; of the whole tick from
+  /// wake-up to end.
   TimePercentiles step;
   TimePercentiles milling;
   TimePercentiles tick;
 };
 
-/// Counts ticks' times. One thread adds, safely in the haptic tick; any thread reads meanwhile.
+/// Collects the times of ticks. One thread adds, safely in the haptic tick; any thread may read meanwhile.
 class LiveTiming {
  public:
   explicit LiveTiming(double period_us = 1000) : sustained_(period_us) {}
@@ -119,7 +120,7 @@ class LiveTiming {
   std::atomic<Nanoseconds> last_ns_{0};
   std::atomic<double> rate_hz_{0};
   std::atomic<double> recent_ticks_per_s_{0};
-  // The adding thread's own.
+  // Used by the adding thread only.
   SustainedRate sustained_;
   RecentRate recent_;
 };

@@ -6,7 +6,7 @@
 
 namespace osteomill {
 
-/// Returns what is heard of the spindle in a tick of a session with this setup.
+/// Returns the spindle's sound state in a tick of a session with this setup.
 SpindleState spindle_state(const TickRecord& record, const MillingSetup& setup);
 
 }  // namespace osteomill
