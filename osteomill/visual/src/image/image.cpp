@@ -30,7 +30,7 @@ std::vector<unsigned char> encode_png(const Image& image) {
   if (image.width <= 0 || image.height <= 0 ||
       image.rgb.size() !=
           3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
-    throw std::invalid_argument("encode_png: the image's sizes do not agree");
+    throw std::invalid_argument("encode_png: the size of rgb does not match width and height");
   }
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
@@ -59,7 +59,7 @@ std::optional<Image> decode_png(std::span<const unsigned char> png) {
   Image image{static_cast<int>(header.width), static_cast<int>(header.height),
               std::vector<unsigned char>(PNG_IMAGE_SIZE(header))};
   const png_color white{255, 255, 255};
-  // Frees the header whether it succeeds or not.
+  // Frees the header on success and on failure.
   if (png_image_finish_read(&header, &white, image.rgb.data(), 0, nullptr) == 0) return std::nullopt;
   return image;
 }

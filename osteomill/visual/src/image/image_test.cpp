@@ -6,7 +6,7 @@ namespace osteomill {
 namespace {
 
 TEST(AveragedDown, TakesTheMeanOfBlocksAndDropsWhatIsLeftOver) {
-  // Two by two blocks of 0, 10, 20 and 30 and of 200 in red, 100 in green, and an odd column.
+  // Red: 2 x 2 blocks of 0, 10, 20, 30 and of 200; green: 100; and an odd column.
   Image image{5, 2, {}};
   for (const int red : {0, 10, 200, 200, 77, 20, 30, 200, 200, 77}) {
     image.rgb.insert(image.rgb.end(), {static_cast<unsigned char>(red), 100, 0});

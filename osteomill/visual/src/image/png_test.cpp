@@ -18,7 +18,7 @@ Image colourful_image() {
   return image;
 }
 
-// Decodes by libpng alone, so that our output is compared with something independent.
+// Decodes directly with libpng, to check our encoder against an independent reader.
 Image decoded(const std::vector<unsigned char>& bytes) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;

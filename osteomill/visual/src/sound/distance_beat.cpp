@@ -9,7 +9,7 @@ namespace osteomill {
 namespace {
 
 constexpr double kSlowest_per_s = 1, kFastest_per_s = 10;
-// Beats at this rate run into each other.
+// At this rate the beats merge into a continuous tone.
 constexpr double kTouching_per_s = 1000;
 constexpr double kBeat_s = 0.06;
 constexpr double kLoudness = 0.18;
@@ -18,7 +18,7 @@ constexpr double kLoudnessFollows_per_s = 250;
 }  // namespace
 
 BeatState distance_beat(double distance_mm, double warn_mm, std::size_t structure) {
-  // Whole tones of a chord, so that neighbours differ by a third or more.
+  // Chord tones a third or more apart.
   constexpr double kPitches_hz[] = {660, 880, 1109, 1319, 1760};
   BeatState beat{0, kPitches_hz[structure % std::size(kPitches_hz)]};
   if (distance_mm <= 0) {
@@ -32,7 +32,7 @@ BeatState distance_beat(double distance_mm, double warn_mm, std::size_t structur
 void DistanceBeat::add_to(const BeatState& state, std::span<float> samples) {
   const double share = 1 - std::exp(-kLoudnessFollows_per_s / sample_rate_hz_);
   for (float& sample : samples) {
-    // The first beat comes at once.
+    // The first beat starts immediately.
     beat_ = state.beats_per_s > 0 ? beat_ + state.beats_per_s / sample_rate_hz_ : 0;
     beat_ -= std::floor(beat_);
     const bool sounds = state.beats_per_s > 0 && beat_ < kBeat_s * state.beats_per_s;

@@ -66,7 +66,7 @@ TEST(SpindleSound, UnderLoadItIsLouderAndASaggingSpindleSoundsLower) {
   EXPECT_LT(sound_load(2), sound_load(20));
 }
 
-// Returns the share of runs that a threshold between two kinds of sounds, learnt from other runs, tells.
+// Returns the fraction of runs classified correctly by a threshold learnt from other runs.
 double told_apart(const SpindleState& a, const SpindleState& b) {
   constexpr int kRuns = 16;
   TwoKinds learnt, tried;
@@ -87,7 +87,7 @@ double told_apart(const SpindleState& a, const SpindleState& b) {
 TEST(SpindleSound, TellsEnamelFromDentineAndThroughFromNotYet) {
   EXPECT_GE(told_apart({40000, 0.5, 1.0}, {40000, 0.5, 1.9}), 0.9);
   EXPECT_GE(told_apart({40000, 0.5, 1.0}, {40000, 0.02, 0.2}), 0.9);
-  // Sounds of one kind are not told apart.
+  // Sounds of the same kind must not be distinguishable.
   EXPECT_LE(told_apart({40000, 0.5, 1.0}, {40000, 0.5, 1.0}), 0.7);
 }
 
@@ -105,7 +105,7 @@ TEST(SpindleSound, DoesNotDependOnHowItIsCutIntoPieces) {
   EXPECT_EQ(computed({30000, 0.4}, 500), computed({30000, 0.4}, 77));
 }
 
-// Returns the times at which the beat begins in some seconds.
+// Returns the start times of the beats.
 std::vector<double> beats_of(const BeatState& state, int seconds) {
   std::vector<float> samples(static_cast<std::size_t>(seconds * kRate_hz));
   DistanceBeat(kRate_hz).add_to(state, samples);
@@ -126,7 +126,7 @@ TEST(DistanceBeat, QuickensBelowTheWarningAndHasAPitchForEachStructure) {
   EXPECT_NEAR(static_cast<double>(slow.size()), 4, 1);
   EXPECT_GT(quick.size(), 30u);
   EXPECT_LT(slow.front(), 0.02) << "a warning does not wait";
-  // Touching is one long tone.
+  // Contact is one long tone.
   EXPECT_EQ(beats_of(distance_beat(-0.1, 3, 0), 2).size(), 1u);
   EXPECT_GT(distance_beat(1, 3, 1).pitch_hz, 1.2 * distance_beat(1, 3, 0).pitch_hz);
 }

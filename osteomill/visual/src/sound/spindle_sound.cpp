@@ -27,12 +27,13 @@ constexpr double kIdleLoudness = 0.10;
 constexpr double kLoadLoudness = 0.28;
 constexpr double kNoiseLoudness = 0.15;
 constexpr double kBandLoudness = 0.14;
-// Densities beyond this sound alike.
+// Higher densities sound the same.
 constexpr double kMaxDensity = 3;
-// A diamond's share of the overtones, and times the noise of a cutting burr.
+// Factors for a diamond burr relative to a cutting burr: overtones, and noise.
 constexpr double kAbrasiveTones = 0.4;
 constexpr double kAbrasiveNoise = 1.5;
-// Shares of the tone and its overtones, and of half the tone, because bearings are never quite round.
+// Amplitudes of the tone and its overtones, and of a subharmonic at half its frequency (bearings are never
+// quite round).
 constexpr double kOvertones[] = {1.0, 0.45, 0.22, 0.10};
 constexpr double kHalfTone = 0.12;
 
@@ -40,10 +41,10 @@ double sine(double turns) {
   return std::sin(2 * std::numbers::pi * turns);
 }
 
-// Pieces of 256 samples: longer ones make the sound lag and stutter.
+// OpenAL period of 256 samples: with longer ones the sound lags and stutters.
 constexpr ALCint kRefresh_hz = SoundStream::kSampleRate_hz / 256;
 
-// The libraries below OpenAL complain on standard error of a machine without sound, which is no fault.
+// Libraries below OpenAL print errors on a machine without sound, which is not a fault.
 class QuietStderr {
  public:
   QuietStderr() : kept_(dup(STDERR_FILENO)) {
@@ -74,7 +75,7 @@ double SpindleSound::pitch_hz(const SpindleState& state) {
   return state.speed_rpm / kSecondsPerMinute;
 }
 
-// A band-pass of constant peak gain (the Audio EQ Cookbook).
+// Band-pass filter with constant peak gain (Audio EQ Cookbook).
 double SpindleSound::band(double white) {
   constexpr double kCentre_hz = 4000, kQuality = 2;
   const double angle = 2 * std::numbers::pi * kCentre_hz / sample_rate_hz_;
@@ -112,7 +113,7 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
     double tone = kHalfTone * sine(0.5 * turns_);
     double overtone = 1;
     for (const double share : kOvertones) {
-      // An overtone above half the sample rate would come back as another tone.
+      // Skip overtones near half the sample rate and above, which would alias.
       if (overtone * pitch_hz_ < 0.45 * sample_rate_hz_)
         tone += (overtone > 1 ? tones : 1) * share * sine(overtone * turns_);
       overtone += 1;
@@ -153,7 +154,7 @@ void SoundStream::feed(const SpindleState& state, const BeatState& beat) {
     alSourceUnqueueBuffers(source_, 1, &buffer);
     fill(buffer, state, beat);
   }
-  // It stops by itself if it ran dry.
+  // OpenAL stops a source that has run out of buffers.
   ALint doing = AL_PLAYING;
   alGetSourcei(source_, AL_SOURCE_STATE, &doing);
   if (doing != AL_PLAYING) alSourcePlay(source_);

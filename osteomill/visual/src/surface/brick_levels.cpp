@@ -13,7 +13,7 @@ namespace {
 
 using Index = std::uint32_t;
 
-// Clusters the vertices of one brick, level by level.
+// Clusters the vertices of a brick, level by level.
 class Coarsening {
  public:
   Coarsening(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells)
@@ -34,7 +34,7 @@ class Coarsening {
     std::iota(cluster_.begin(), cluster_.end(), Index{0});
   }
 
-  // Clusters what is connected within cells of `size` voxels.
+  // Merges connected vertices within cells of `size` voxels.
   void cluster_within(int size) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
     for (std::size_t n = 0; n < triangles_.size(); n += 3) {
@@ -68,8 +68,8 @@ class Coarsening {
     return vertex;
   }
 
-  // Returns the cell of a coordinate, half a voxel off, because two of a vertex's three coordinates are whole
-  // numbers.
+  // Returns the cell of a coordinate. The offset of half a voxel avoids ties, because two of a vertex's three
+  // coordinates are integers.
   static double cell_of(double voxel, int size) { return std::floor((voxel + 0.5) / size); }
 
   bool same_cell(Index a, Index b, int size) const {
@@ -79,14 +79,14 @@ class Coarsening {
     return true;
   }
 
-  // The planes of a cluster's triangles, weighted by their areas: the normal equations of the point with the
-  // least squared distances to them.
+  // Planes of a cluster's triangles, weighted by area: the normal equations of the point with the least
+  // squared distances to them.
   struct Planes {
     Mat3 normals = Mat3::Zero();
     Vec3 offsets = Vec3::Zero();
 
-    // The point nearest to all planes; if they leave it open, the one nearest to `point_W`. That is the
-    // mean of the vertices, which alone would lie below a sharp edge.
+    // Returns the point nearest to all planes; where they leave it undetermined, the one nearest to
+    // `point_W`, the mean of the vertices. The mean alone would lie below a sharp edge.
     Vec3 intersection_near(const Vec3& point_W, double reach_mm) const {
       constexpr double kHeld = 0.004;
       const Mat3 held = normals + kHeld * normals.trace() * Mat3::Identity();
@@ -112,7 +112,7 @@ class Coarsening {
     return result;
   }
 
-  // Adds one vertex for each cluster, at the point where its planes meet, with the mean of its normals and
+  // Adds one vertex per cluster, at the intersection of its planes, with the mean of its normals and
   // densities; a cluster of one vertex keeps the mesh's own.
   void add_means(std::vector<MeshVertex>& vertices, double reach_mm) {
     struct Sum {

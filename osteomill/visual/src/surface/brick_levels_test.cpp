@@ -49,7 +49,7 @@ class BrickLevelsTest : public ::testing::Test {
     return levels_[brick].vertices[levels_[brick].indices[index]];
   }
 
-  // How often more each edge between two places is gone along one way than the other.
+  // Difference between the numbers of traversals of each edge in its two directions.
   using Balance = std::map<std::array<std::array<float, 3>, 2>, int>;
   void add(Balance& balance, std::size_t brick, const BrickLevels::Range& range, std::size_t pace) const {
     const auto at = [&](std::size_t n) { return vertex(brick, range.first + n).position_mm; };
@@ -84,7 +84,7 @@ TEST_F(BrickLevelsTest, EachLevelHasAFractionOfTheTriangles) {
   EXPECT_LT(triangles(3), triangles(2));
 }
 
-// Each brick at a level of its own.
+// Each brick at a different level.
 TEST_F(BrickLevelsTest, BricksOfAnyLevelsMeetWithoutAGap) {
   Balance balance;
   for (std::size_t n = 0; n < levels_.size(); ++n)
@@ -92,7 +92,7 @@ TEST_F(BrickLevelsTest, BricksOfAnyLevelsMeetWithoutAGap) {
   EXPECT_EQ(open_edges(balance), 0u);
 }
 
-// The rim of a plate does not shrink between the bricks' borders.
+// The rim of a plate must not shrink between brick borders.
 TEST(BrickLevels, SharpEdgesStayWhereTheyAre) {
   constexpr double kHalf_mm = 7.3, kVoxel_mm = 0.3;
   const Volume plate = shape_volume(centred_cube(60, kVoxel_mm), [&](const Vec3& p) {

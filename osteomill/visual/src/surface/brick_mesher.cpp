@@ -13,16 +13,16 @@ namespace osteomill {
 
 namespace {
 
-// Vertices keep this far from voxel centres, as a share of the edge: if densities equal the isovalue,
-// the vertices about a voxel would fall together and the triangles between them have no area.
+// Minimum distance of vertices from voxel centres, as a fraction of the edge. Without it, if a density equals
+// the isovalue, the vertices around that voxel would coincide and their triangles degenerate.
 constexpr float kMinShare = 1.0f / 512;
 
-// Returns the squared norm, summed from the first component on, unlike Eigen.
+// Returns the squared norm, summed in component order, unlike Eigen's.
 float squared(const Eigen::Vector3f& v) {
   return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 
-// Bits `first` to `last`.
+// Mask of bits `first` to `last`.
 constexpr std::uint32_t bit_span(int first, int last) {
   return ((2u << last) - 1u) & ~((1u << first) - 1u);
 }
@@ -93,7 +93,7 @@ void BrickMesher::load(std::size_t brick) {
   const VoxelBox cells = layout_.cells(brick);
   cells_ = {{cells.first.i - corner_.i, cells.first.j - corner_.j, cells.first.k - corner_.k},
             {cells.last.i - corner_.i, cells.last.j - corner_.j, cells.last.k - corner_.k}};
-  // From two voxels before the cells to two after their upper corners.
+  // From two voxels before the cells to two beyond their upper corners.
   for (int k = cells_.first.k - 2; k <= cells_.last.k + 3; ++k) {
     for (int j = cells_.first.j - 2; j <= cells_.last.j + 3; ++j) {
       load_row({corner_.i, corner_.j + j, corner_.k + k},
@@ -128,7 +128,7 @@ void BrickMesher::find_bone() {
   }
 }
 
-// Returns the rows of voxels between which, or in which, bone begins.
+// Returns the range of rows that contain or enclose a crossing of the isovalue.
 std::optional<RowBox> BrickMesher::rows_with_surface() const {
   RowBox rows{kBlock, -1, kBlock, -1};
   const std::uint32_t voxels = bit_span(cells_.first.i, cells_.last.i + 1);
@@ -145,7 +145,7 @@ std::optional<RowBox> BrickMesher::rows_with_surface() const {
   return rows;
 }
 
-// Fills the sums that vertices in these rows need.
+// Computes the sums that vertices in these rows need.
 void BrickMesher::smooth(const RowBox& rows) {
   const RowBox around{rows.first_j - 1, rows.last_j + 1, rows.first_k - 1, rows.last_k + 1};
   smooth_rows<kBlock>(
@@ -181,7 +181,7 @@ void BrickMesher::add_vertex(int i, int j, int k) {
   const int place = i + j * kStride[1] + k * kStride[2];
   const float* at = block_.data() + place;
   const bool bone_first = at[0] > threshold_;
-  // If differences of densities overflow the quotient is a NaN, and max answers its first argument.
+  // If density differences overflow, the quotient is NaN, and max returns its first argument.
   const float share =
       std::min(std::max(kMinShare, (threshold_ - at[0]) / (at[kAlong] - at[0])), 1 - kMinShare);
 
@@ -201,13 +201,13 @@ void BrickMesher::add_vertex(int i, int j, int k) {
                             density_below(in_block, slope, bone)});
 }
 
-// Returns the density of the bone around the place a voxel down the slope from a point of the block: the
-// mean, weighted by how much denser than the threshold each voxel is, so that what is air, or half air,
-// counts little; `flat` if there is no slope.
+// Returns the density of the bone around the point one voxel down the slope from a point of the block: the
+// mean, weighted by each voxel's excess over the threshold, so that air or partial air counts little; `flat`
+// if the slope is zero.
 float BrickMesher::density_below(const Vec3f& point, const Vec3f& slope, float flat) const {
   const float steepness = std::sqrt(squared(slope));
   if (!(steepness > 0 && std::isfinite(steepness))) return flat;
-  // A whole voxel would lead into the layer after the last that was smoothed.
+  // A full voxel could reach beyond the last smoothed layer.
   const Vec3f here = point + 0.999f / steepness * slope;
   const Eigen::Vector3i cell = here.cast<int>();
   const Vec3f fraction = here - cell.cast<float>();
@@ -222,8 +222,8 @@ float BrickMesher::density_below(const Vec3f& point, const Vec3f& slope, float f
   return std::isfinite(mean) ? threshold_ + mean : flat;
 }
 
-// Returns the smoothed slope between two voxels next to each other, in no unit. Differences across two
-// voxels, averaged over those beside with weights 1, 4, 1: what turns least with the grid.
+// Returns the smoothed slope between two adjacent voxels, unscaled: central differences, averaged over
+// neighbours with weights 1, 4, 1, which minimizes the dependence on grid orientation.
 BrickMesher::Vec3f BrickMesher::slope_between(const float* from, const float* to, float share) {
   const auto at = [&](int offset) { return from[offset] + share * (to[offset] - from[offset]); };
   Vec3f slope;
@@ -248,7 +248,7 @@ BrickMesher::Vec3f BrickMesher::normal_against(const Vec3f& slope, int axis, boo
   Vec3f normal = normal_of_.col(0) * slope[0] + normal_of_.col(1) * slope[1] + normal_of_.col(2) * slope[2];
   float length2 = squared(normal);
   if (!(length2 > 0 && std::isfinite(length2))) {
-    // A flat density: out of the bone along the edge.
+    // Constant density: use the edge direction out of the bone.
     normal = (bone_first ? -1.0f : 1.0f) * normal_of_.col(axis);
     length2 = squared(normal);
   }
@@ -291,7 +291,7 @@ std::uint64_t BrickMesher::edge_of(std::size_t vertex) const {
   const auto edge = static_cast<int>(vertex_edge_[vertex]);
   const int place = edge % kBlockVoxels;
   const std::array<int, 3>& dims = view_.grid.geometry().dims;
-  // One more than the voxels's coordinates: an edge may begin before voxel 0.
+  // Voxel indices plus one, because an edge may begin before voxel 0.
   const auto i = static_cast<std::uint64_t>(corner_.i + place % kBlock + 1);
   const auto j = static_cast<std::uint64_t>(corner_.j + place / kBlock % kBlock + 1);
   const auto k = static_cast<std::uint64_t>(corner_.k + place / kStride[2] + 1);

@@ -14,25 +14,26 @@
 
 namespace osteomill {
 
-/// Meshes one brick after the other in the same memory. Brick by brick the densities are first copied
-/// together with what lies around them, so that what follows stays in the cache and knows no border.
+/// Meshes bricks one after the other in the same memory. Copies each brick's densities with a margin into a
+/// block first, so that meshing stays in the cache and needs no border cases.
 class BrickMesher {
  public:
   explicit BrickMesher(const DensityView& view);
 
-  /// The brick's surface, until the next call.
+  /// Returns the brick's surface; valid until the next call.
   const BrickMesh& mesh(std::size_t brick);
 
-  /// The grid edge on which each vertex lies: one number for every edge of the grid, the same in all bricks.
+  /// Returns the number of the grid edge on which a vertex lies, unique in the grid and the same in all
+  /// bricks.
   std::uint64_t edge_of(std::size_t vertex) const;
-  /// Returns whether other bricks may have this vertex too.
+  /// Returns whether other bricks may share this vertex.
   bool is_on_brick_border(std::size_t vertex) const;
 
  private:
   using Vec3f = Eigen::Vector3f;
 
-  // Voxels along each edge of the block: those of the cells, and what is needed around for smoothed gradients
-  // and densities; a multiple of 4.
+  // Voxels along each edge of the block: those of the cells, and the margin for smoothed gradients and
+  // densities; a multiple of 4.
   static constexpr int kLow = 4;  // the block's index of the brick's first voxel
   static constexpr int kBlock = SurfaceBricks::kBrickCells + 8;
   static constexpr std::array<int, 3> kStride{1, kBlock, kBlock* kBlock};
@@ -70,8 +71,8 @@ class BrickMesher {
   VoxelIndex corner_;  // the voxel at the block's first index
   VoxelBox cells_;     // in the block's indices
   std::array<float, kBlockVoxels> block_;
-  // Sums over what is around each voxel (smooth_rows): of the densities, of what they exceed the threshold
-  // by, and of its square.
+  // Weighted sums around each voxel (smooth_rows): of the densities, of their excess over the threshold, and
+  // of its square.
   std::array<float, kBlockVoxels> smooth_;
   std::array<float, kBlockVoxels> excess_;
   std::array<float, kBlockVoxels> excess2_;

@@ -58,7 +58,7 @@ constexpr bool in_one_face(int edge, int other) {
   return false;
 }
 
-// Returns for each edge that the surface crosses the next one round the polygon; -1 for the others.
+// Returns for each crossed edge the next one along the polygon; -1 for the others.
 constexpr std::array<int, 12> next_edges(unsigned bone) {
   std::array<int, 12> next{};
   next.fill(-1);

@@ -24,7 +24,7 @@ void write_bytes(std::ostream& out, const Value& value) {
 
 using Point = std::array<float, 3>;
 
-// Zero for a triangle without area.
+// Returns zero for a degenerate triangle.
 Point facet_normal(const std::array<Point, 3>& corners) {
   const Vec3 first = vec3_of(corners[0]);
   Point normal;
@@ -44,7 +44,7 @@ void write_stl(std::ostream& out, const BrickMesh& mesh) {
   }
 }
 
-// Stands for a vertex without a label.
+// Used for vertices without a label.
 const Label kUnlabelled{0, "", {222, 194, 148}, false};
 
 const Label& label_of(const LabelMap& labels, const MeshVertex& vertex) {

@@ -53,7 +53,7 @@ Value take(const std::string& bytes, std::size_t& at) {
 TEST(MeshFile, StlHoldsTheTrianglesAndTheirNormals) {
   const BrickMesh mesh = far_ball();
   const std::string bytes = written(mesh, "a.stl");
-  EXPECT_NE(bytes.substr(0, 5), "solid");  // which would make it a text
+  EXPECT_NE(bytes.substr(0, 5), "solid");  // would mark an ASCII file
   EXPECT_NE(bytes.substr(0, 80).find("SPACE=LPS"), std::string::npos);
   std::size_t at = 80;
   ASSERT_EQ(take<std::uint32_t>(bytes, at), mesh.triangle_count());
@@ -121,7 +121,7 @@ TEST(MeshFile, ObjReadsBackToTheSameNumbers) {
   EXPECT_GT(enclosed_volume_mm3(read), 33);
 }
 
-// A ball of 2 mm, of which the half with x > 0 is a structure.
+// A ball of 2 mm radius whose half with x > 0 is labelled.
 struct HalfLabelled {
   GridGeometry grid = testing_support::centred_cube(24, 0.25);
   BrickMesh mesh = mesh_in_one_piece(
@@ -146,7 +146,7 @@ TEST(MeshFile, PlyHoldsColourAndValueOfTheLabelUnderEachVertex) {
     const auto colour = take<std::array<std::uint8_t, 3>>(bytes, at);
     const auto value = take<std::int32_t>(bytes, at);
     EXPECT_EQ(colour == labels.label(1).colour, value == 7);
-    // Between the two what lies under the surface counts, not the nearest.
+    // Near the border the label under the surface counts, not the nearest voxel's.
     if (std::abs(vertex.position_mm[0]) > 0.6f) {
       EXPECT_EQ(value, vertex.position_mm[0] > 0 ? 7 : 0);
     }
@@ -170,7 +170,7 @@ TEST(MeshFile, ObjHoldsTheLabelsColourBehindEachPlace) {
   EXPECT_TRUE(line.starts_with("vn ")) << line;
 }
 
-// Programs that weld by position, as all do that read STL, find the same closed surface.
+// Programs that merge vertices by position, as all STL readers do, get the same closed surface.
 TEST(MeshFile, FarFromTheOriginNoTwoVerticesFallTogether) {
   const BrickMesh mesh = far_ball();
   std::map<std::array<float, 3>, int> positions;

@@ -7,23 +7,23 @@
 
 namespace osteomill {
 
-/// A box of rows along i in a cube of numbers.
+/// A range of rows along i in a cube of numbers.
 struct RowBox {
   int first_j, last_j;
   int first_k, last_k;
 };
 
-/// Sums each number of the rows with its neighbours, weighted 1, 2, 1 along each axis: 64 times a mean over
-/// about a voxel to all sides. `value` turns a row of the cube into the row that is summed. The first and the
-/// last number of a row are not sums, and the rows must not lie in the cube's faces. Whatever box of rows is
-/// asked for, a number comes out the same, bit for bit.
+/// Smooths the rows with weights 1, 2, 1 along each axis, without normalizing: 64 times a mean over about a
+/// voxel in all directions. `value` is applied to each row of the cube first. The first and last number of
+/// each row are not valid, and the rows must not lie on the cube's faces. Results are bit-identical for any
+/// choice of rows.
 template <int kSide, typename Value>
 void smooth_rows(const float* cube, const RowBox& rows, const Value& value, float* sums) {
   using Row = Eigen::Array<float, kSide, 1>;
   constexpr auto kRows = static_cast<std::size_t>(kSide);
   const auto offset = [](int j, int k) { return static_cast<std::size_t>(kSide * (j + kSide * k)); };
   const auto third = [](int n) { return static_cast<std::size_t>(n + 3) % 3; };
-  // Three rows across j, and three layers across k of rows that are summed along j.
+  // Three rows across j, and three layers across k of rows already summed along j.
   std::array<Row, 3> near;
   std::array<std::array<Row, kRows>, 3> layers;
   std::array<float, kRows + 2> padded{};

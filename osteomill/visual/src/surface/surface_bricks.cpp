@@ -21,7 +21,7 @@ VoxelBox SurfaceBricks::cells(std::size_t brick) const {
 
 VoxelBox SurfaceBricks::bricks_depending_on(const VoxelBox& voxels) const {
   if (voxels.empty()) return {};
-  // A vertex between voxels n and n + 1 depends on n - 2 to n + 3: its normal and its density do.
+  // The normal and density of a vertex between voxels n and n + 1 depend on voxels n - 2 to n + 3.
   const auto first_brick = [](int v) { return std::max(v - 3, 0) / kBrickCells; };
   const auto last_brick = [](int v, int count) { return std::min((v + 2) / kBrickCells, count - 1); };
   return {{first_brick(voxels.first.i), first_brick(voxels.first.j), first_brick(voxels.first.k)},

@@ -11,13 +11,13 @@ namespace osteomill {
 
 namespace {
 
-// Vertices that several bricks have, by the grid edge on which they lie.
+// Vertex shared by several bricks, with the grid edge on which it lies.
 struct SharedVertex {
   std::uint64_t edge;
   std::uint32_t vertex;
 };
 
-// Returns for each vertex the first one on the same edge.
+// Returns for each vertex the first vertex on the same edge.
 std::vector<std::uint32_t> first_of_same_edge(std::size_t count, std::vector<SharedVertex> shared) {
   std::vector<std::uint32_t> first(count);
   for (std::size_t n = 0; n < count; ++n) first[n] = static_cast<std::uint32_t>(n);
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> first_of_same_edge(std::size_t count, std::vector<Sha
   return first;
 }
 
-// Leaves out the vertices that are not their own first.
+// Removes the vertices that are not the first on their edge.
 void merge_vertices(BrickMesh& mesh, const std::vector<std::uint32_t>& first) {
   std::vector<std::uint32_t> place(first.size());
   std::uint32_t kept = 0;

@@ -46,7 +46,7 @@ Volume random_volume(const std::array<int, 3>& dims, unsigned seed, int values =
   return volume_of(dims, std::move(densities), values / 2);
 }
 
-// Both ways to one mesh, held to the same.
+// Meshes the volume brick by brick and in one piece, and checks that both agree.
 BrickMesh checked_mesh(const Volume& volume) {
   const DensityView view(volume);
   const BrickMesh whole = mesh_in_one_piece(view);
@@ -60,7 +60,7 @@ BrickMesh checked_mesh(const Volume& volume) {
   return whole;
 }
 
-// Returns the volume of bone in the voxels: each counts by its density as a share of `full`.
+// Returns the bone volume of the voxels, each counted by its density relative to `full`.
 double partial_volume_mm3(const Volume& volume, double full) {
   double sum = 0;
   for (const float density : every_nth_density(volume.grid(), 1))
@@ -103,7 +103,7 @@ TEST(SurfaceMesh, IsClosedWhereBoneTouchesTheBorder) {
   const Volume volume = shape_volume(geometry, ball(geometry.origin_mm, 5.0));
   const BrickMesh mesh = checked_mesh(volume);
   EXPECT_EQ(euler_characteristic(mesh), 2);
-  // An eighth of a ball, and half a voxel more at its three sides.
+  // An octant of a ball, plus half a voxel on its three flat sides.
   const double eighth = 4.0 / 3.0 * std::numbers::pi * 125 / 8;
   const double sides = 3 * std::numbers::pi * 25 / 4 * 0.125;
   EXPECT_NEAR(enclosed_volume_mm3(mesh), eighth + sides, 0.02 * eighth);
@@ -120,12 +120,12 @@ TEST(SurfaceMesh, OfEveryCubeIsClosed) {
   }
 }
 
-// Bone in every arrangement that chance finds, across brick borders, with every ambiguous face.
+// Random bone across brick borders, which includes every ambiguous face.
 TEST(SurfaceMesh, OfNoiseIsClosed) {
   for (unsigned seed = 0; seed < 6; ++seed) checked_mesh(random_volume({37, 19, 34}, seed));
 }
 
-// Many densities lie exactly at the isovalue.
+// Many densities equal the isovalue.
 TEST(SurfaceMesh, OfFewValuesIsClosedAndHasNoEmptyTriangle) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     const BrickMesh mesh = checked_mesh(random_volume({20, 35, 18}, seed, 4));
@@ -133,7 +133,7 @@ TEST(SurfaceMesh, OfFewValuesIsClosedAndHasNoEmptyTriangle) {
   }
 }
 
-// Two bone voxels across a face's diagonal are two pieces, whatever lies around.
+// Two bone voxels across a face's diagonal are separate pieces, whatever their surroundings.
 TEST(SurfaceMesh, PartsBoneThatMeetsAcrossADiagonal) {
   std::vector<float> densities(4 * 4 * 4, 0);
   densities[1 + 4 * (1 + 4 * 1)] = densities[2 + 4 * (2 + 4 * 1)] = 1;
@@ -181,7 +181,7 @@ TEST(SurfaceMesh, IsWoundOutwardsInEveryFrame) {
   }
 }
 
-// A bone with its axes flipped or exchanged has the same vertices.
+// A bone stored with flipped or exchanged axes has the same vertices.
 TEST(SurfaceMesh, DoesNotDependOnHowTheGridIsStored) {
   const Volume volume = random_volume({17, 18, 19}, 7, 1000);
   GridGeometry stored;
@@ -211,7 +211,7 @@ TEST(SurfaceMesh, DoesNotDependOnHowTheGridIsStored) {
   std::vector<std::array<long, 3>> different;
   const auto a = rounded(mesh), b = rounded(other);
   std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(different));
-  EXPECT_LT(different.size(), mesh.vertices.size() / 500);  // those that round the other way
+  EXPECT_LT(different.size(), mesh.vertices.size() / 500);  // rounding differences
 }
 
 TEST(SurfaceMesh, OfABrickIsTheSameWhateverWasMeshedBefore) {
@@ -230,7 +230,7 @@ TEST(SurfaceMesh, CarriesTheDensityOfTheBoneUnderIt) {
   }
 }
 
-// Angles of the vertices' normals from those of a shape, degrees.
+// Angles between the vertices' normals and the true normals, degrees.
 struct AngleErrors {
   double rms_deg = 0;
   double max_deg = 0;
@@ -253,8 +253,8 @@ AngleErrors angle_errors(const Volume& volume, const Outward& outward) {
   return errors;
 }
 
-// Plain central differences are off by 8.1 degrees (rms) and at most 15 if the edge is one voxel wide, by 1.8
-// and 5.2 if it is two: seen as terraces.
+// Central differences are off by 8.1 degrees (rms) and at most 15 if the edge is one voxel wide, by 1.8 and
+// 5.2 if it is two; this is visible as terraces.
 TEST(SurfaceMesh, NormalsOfABallAreThoseOfItsSphereForEveryVoxelSizeAndEdge) {
   for (const double voxel_mm : {0.03, 0.25, 1.0}) {
     for (const double edge_voxels : {1.0, 2.0, 4.0}) {
@@ -269,12 +269,12 @@ TEST(SurfaceMesh, NormalsOfABallAreThoseOfItsSphereForEveryVoxelSizeAndEdge) {
   }
 }
 
-// Plain central differences: 2.0 degrees, at most 4.1.
+// Central differences are off by 2.0 degrees (rms) and at most 4.1.
 TEST(SurfaceMesh, NormalsOfACylinderInLongVoxelsPointAwayFromItsAxis) {
   GridGeometry geometry = centred_cube(61, 0.25);
   geometry.spacing_mm.z() = 0.6;
   const Volume volume = shape_volume(geometry, [](const Vec3& p) { return p.head<2>().norm() - 5; });
-  // Its ends are flat.
+  // Ignore its flat ends.
   const AngleErrors errors = angle_errors(volume, [&](const Vec3& p) -> std::optional<Vec3> {
     if (p.z() < geometry.origin_mm.z() + 2 || p.z() > geometry.origin_mm.z() + 34) return std::nullopt;
     return Vec3(p.x(), p.y(), 0);
@@ -283,7 +283,7 @@ TEST(SurfaceMesh, NormalsOfACylinderInLongVoxelsPointAwayFromItsAxis) {
   EXPECT_LT(errors.max_deg, 1.0);
 }
 
-// An upright face of two materials, one on the other, with a sharp boundary that slants through the voxels.
+// A vertical face of two materials, one above the other, with a sharp boundary at an angle to the grid.
 TEST(SurfaceMesh, DensitiesRiseWithoutStepsAcrossABoundaryBetweenMaterials) {
   constexpr double kVoxel_mm = 0.25, kSoft = 1500, kHard = 2800;
   const GridGeometry geometry = centred_cube(48, kVoxel_mm);
@@ -300,7 +300,7 @@ TEST(SurfaceMesh, DensitiesRiseWithoutStepsAcrossABoundaryBetweenMaterials) {
     const Vec3 p = position_of(vertex);
     return p.x() > -4 && std::abs(p.y()) < 4.5 && std::abs(p.z()) < 4.5;
   };
-  // By the height above the boundary in half voxels.
+  // By height above the boundary, in half voxels.
   std::map<int, std::pair<double, int>> sums;
   std::map<int, std::pair<double, double>> ranges;
   for (const MeshVertex& vertex : mesh.vertices) {
@@ -319,10 +319,10 @@ TEST(SurfaceMesh, DensitiesRiseWithoutStepsAcrossABoundaryBetweenMaterials) {
     EXPECT_GT(mean, before - 0.01 * (kHard - kSoft)) << height;
     before = mean;
     if (std::abs(height) < 6) continue;
-    // Away from the boundary each material has one density, whatever the voxels' places.
+    // Away from the boundary each material has one density, independent of voxel positions.
     EXPECT_LT(ranges[height].second - ranges[height].first, 0.05 * (kHard - kSoft)) << height;
   }
-  // Neighbours differ by 0.73 of the step if each vertex has the density of one place below it.
+  // With the density at a single point below each vertex, neighbours would differ by 0.73 of the step.
   for (std::size_t n = 0; n < mesh.indices.size(); ++n) {
     const MeshVertex& a = mesh.vertices[mesh.indices[n]];
     const MeshVertex& b = mesh.vertices[mesh.indices[n % 3 == 2 ? n - 2 : n + 1]];
@@ -342,7 +342,7 @@ TEST(SurfaceMesh, FollowsTheIsovalueItIsAskedFor) {
   EXPECT_NEAR(radius(750), 3.75, 0.01);
 }
 
-// A change of one voxel reaches no brick but those that the layout names, and each of those somewhere.
+// A change of one voxel affects only the bricks that the layout returns, and each of those for some change.
 TEST(SurfaceBricks, NameAllBricksThatAChangeReaches) {
   Volume volume = random_volume({50, 33, 40}, 5);
   const SurfaceMesh before = mesh_surface(DensityView(volume));

@@ -23,7 +23,7 @@ DensityView at_isovalue(const Volume& volume, double isovalue) {
   return {volume.grid(), volume.ranges(), isovalue};
 }
 
-// Up or down.
+// Raises or lowers a voxel's density.
 VoxelBox set_density(Volume& volume, const VoxelIndex& v, float density) {
   constexpr int kSide = DensityBlock::kVoxels;
   DensityBlock block(volume.grid(), {v.i / kSide * kSide, v.j / kSide * kSide, v.k / kSide * kSide});
@@ -43,7 +43,7 @@ TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
     return count;
   };
   EXPECT_GT(take(), 20u);  // of 64
-  // A hole that is made and filled again, across bricks.
+  // A hole is cut and filled again, across bricks.
   for (const float density : {0.0f, 1000.0f}) {
     for (int k = 40; k < 46; ++k) {
       for (int i = 12; i <= 20; ++i) upkeep.mark(set_density(volume, {i, 25, k}, density));
@@ -65,7 +65,7 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   EXPECT_TRUE(std::all_of(first.begin(), first.end(), has_levels));
   const VoxelBox row{{12, 25, 45}, {40, 25, 45}};
   for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, 45}, 0);
-  std::size_t milled = 0;  // more than come to rest at once
+  std::size_t milled = 0;  // more than get their levels in one call
   for (int n = 0; n < 2 * SurfaceUpkeep::kCallsUntilRest; ++n) {
     upkeep.mark(row);
     const ChangedBricks changed = upkeep.remesh(DensityView(volume));
@@ -75,7 +75,7 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   }
   for (int n = 2; n < SurfaceUpkeep::kCallsUntilRest; ++n)
     EXPECT_TRUE(upkeep.remesh(DensityView(volume)).empty());
-  // A few a call, so that none takes long.
+  // Only a few per call, so that no call takes long.
   for (std::size_t left = milled; left > 0;) {
     const ChangedBricks at_rest = upkeep.remesh(DensityView(volume));
     EXPECT_EQ(at_rest.size(), std::min(left, SurfaceUpkeep::kMaxRefinedPerCall));

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMargin_px = 24;
 constexpr double kTick_px = 5;
-// Half of the longest text.
+// Half the width of the longest text.
 constexpr double kTextReach_px = 84;
 constexpr double kAxis_px = 30;
 constexpr double kLetter_px = 44;
@@ -53,11 +53,11 @@ void draw_line(Image& image, const Annotation::Line& line, double width_px, unsi
   }
 }
 
-// The letters of one size, as ImGui draws them for its windows, but without a window.
+// Glyphs of one size, rasterized by ImGui without a window.
 class Letters {
  public:
   explicit Letters(float size_px) {
-    // ImGui unpacks the font that comes with it in memory that all threads share.
+    // ImGui decompresses its built-in font in memory shared by all threads.
     static std::mutex mutex;
     const std::scoped_lock lock(mutex);
     ImFontConfig config;
@@ -113,7 +113,7 @@ Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size) {
   const Eigen::Vector2d right = left + Eigen::Vector2d(length_mm / pixel_mm, 0);
   const Eigen::Vector2d tick(0, kTick_px);
   std::array<char, 32> text{};
-  // If lengths change with their depth by more than a few hundredths.
+  // Field of view above which lengths change noticeably (more than a few per cent) with depth.
   constexpr double kWide_rad = 0.1;
   const char* const where = camera.field_of_view_rad > kWide_rad ? " at the centre" : "";
   std::snprintf(text.data(), text.size(), "%g mm%s", length_mm, where);

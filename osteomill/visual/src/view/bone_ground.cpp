@@ -45,8 +45,8 @@ void main() {
 
 using Clock = std::chrono::steady_clock;
 
-// At rest the depths are read only once in this number of pictures: reading makes a processor that draws wait
-// for itself, and milling changes the depths little.
+// At rest the depths are read only once in this number of frames: reading stalls a software renderer, and
+// milling changes the depths little.
 constexpr unsigned kPicturesPerBlur = 4;
 constexpr double kMaxCell_px = 64;
 constexpr int kMaxCoarseness = 4;
@@ -59,7 +59,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Returns whether the bone looks the same in both.
+// Returns whether the bone looks the same in both scenes.
 bool same_view(const ViewScene& a, const ViewScene& b) {
   return a.camera == b.camera && a.bounds == b.bounds && a.isovalue == b.isovalue &&
          a.reference_density == b.reference_density && a.light_from_below == b.light_from_below &&
@@ -92,7 +92,7 @@ void ClipFaces::set(std::size_t cut, const ClipFace& face) {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RGB, GL_UNSIGNED_BYTE,
                   face.pixels.data());
-  // Draws the face as a fan; the outermost pixels' middles lie half a pixel within the texture.
+  // Draw the face as a fan; the outermost pixel centres lie half a pixel inside the texture.
   const float u = 0.5f / static_cast<float>(face.width);
   const float v = 0.5f / static_cast<float>(face.height);
   const float places[4][2] = {{u, v}, {1 - u, v}, {1 - u, 1 - v}, {u, 1 - v}};
@@ -174,7 +174,8 @@ void BoneGround::draw_inset(const ViewScene& scene, const PixelSize& size) {
   inset_->cavities.blur(inset_->picture.depths(), projection.near_mm, projection.far_mm);
 }
 
-// The most pixels that there is time for. As with triangles, more only if that leaves some time.
+// Returns the largest size within the pixel budget. As for triangles, increases only if that leaves a
+// reserve.
 PixelSize BoneGround::affordable_size(const PixelSize& size) {
   const auto coarse = [&](int n) { return PixelSize{(size.width + n - 1) / n, (size.height + n - 1) / n}; };
   const auto budget = static_cast<double>(pixels_.budget());
@@ -197,7 +198,7 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   bone_.draw(scene, projection, *cavities_, visible);
   draw_surroundings(scene, projection);
   update_cavities(projection);
-  // Else drawing would go on after its time was taken.
+  // Otherwise drawing would continue after its time was measured.
   glFinish();
   const double passed_s = seconds_since(start);
   triangles_.record_draw(bone_.triangle_count(visible), passed_s);
@@ -207,8 +208,8 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   to_shade_.clear();
 }
 
-// Returns the bricks in the finest detail for which there is time. It gets finer than before only if that
-// leaves some time, so that it does not alternate.
+// Returns the visible bricks at the finest detail within the budget. Detail increases only if that leaves a
+// reserve, so that it does not oscillate.
 std::vector<VisibleBrick> BoneGround::visible_in_budget(const ViewScene& scene,
                                                         const Projection& projection) {
   Detail detail = kFullDetail;
@@ -234,7 +235,7 @@ void BoneGround::begin_refining(const ViewScene& scene, const Projection& projec
   clear_depths(*resting_);
 }
 
-// The nearest first, as many as there is time for.
+// Refines the nearest bricks first, as many as the time budget allows.
 void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
   if (!refining_) begin_refining(scene, projection);
   const auto start = Clock::now();
@@ -263,8 +264,8 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
   triangles_.record_draw(triangles, seconds_since(start));
 }
 
-// Draws the part of the picture in which bone changed; once more when nothing changes any longer, since what
-// lies deep is darkened by the picture drawn before. Returns false if that would take too long.
+// Redraws the part of the picture in which bone changed, and once more when changes have ended, because
+// cavity darkening uses the previous frame. Returns false if that would take too long.
 bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projection) {
   const bool last = changed_.empty();
   if (last && to_shade_.empty()) return true;
@@ -296,7 +297,7 @@ Eigen::AlignedBox2i BoneGround::changed_part(const std::set<std::size_t>& bricks
                                              const Projection& projection) const {
   Eigen::AlignedBox2d box;
   for (const std::size_t brick : bricks) box.extend(drawn_within(scene, projection, bone_.bounds(brick)));
-  // Removed bone changes the darkening around it.
+  // Removed bone also changes the darkening around it.
   const double more_px = cavities_->reach_px(projection.size);
   const Eigen::Array2d all(projection.size.width, projection.size.height);
   const Eigen::Array2d first = (box.min().array() - more_px).floor().max(0.0).min(all);
@@ -308,7 +309,7 @@ void BoneGround::update_cavities(const Projection& projection) {
   cavities_->blur(shown_->depths(), projection.near_mm, projection.far_mm);
 }
 
-// Into the picture that is bound.
+// Draws into the bound framebuffer.
 void BoneGround::draw_surroundings(const ViewScene& scene, const Projection& projection) {
   glDepthFunc(GL_LEQUAL);
   background_.draw();

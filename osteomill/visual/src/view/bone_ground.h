@@ -16,14 +16,14 @@
 
 namespace osteomill {
 
-/// Learns how many triangles, or pixels, there is time for in one picture from the times of earlier pictures.
-/// Reads no clock itself.
+/// Estimates from the times of earlier frames how many triangles or pixels can be drawn in one frame. Reads
+/// no clock itself.
 class DrawingPace {
  public:
-  /// For the bone of one picture: in a thirtieth of a second it leaves time for all else.
+  /// Time for the bone in one frame, which leaves time for everything else at 30 frames per second.
   static constexpr double kBone_s = 0.018;
 
-  /// There is always time for `min_count`, and at first for `expected`.
+  /// The budget is never less than `min_count`, and initially `expected`.
   DrawingPace(std::size_t min_count, double expected)
       : min_count_(min_count), seconds_per_item_(kBone_s / expected) {}
 
@@ -31,12 +31,12 @@ class DrawingPace {
   std::size_t budget() const {
     return std::max(min_count_, static_cast<std::size_t>(kBone_s / seconds_per_item_));
   }
-  /// Records that drawing `count` took `passed_s`. Fewer than `min_count` count as that number, because a few
+  /// Records that drawing `count` took `passed_s`. Counts below `min_count` are raised to it, because a few
   /// do not predict many.
   void record_draw(std::size_t count, double passed_s) {
     constexpr double kWeight = 0.3;
     const double here = passed_s / static_cast<double>(std::max(count, min_count_));
-    // One that others of the machine held up counts little.
+    // Limits the effect of a frame that other processes delayed.
     seconds_per_item_ += kWeight * (std::min(here, 2 * seconds_per_item_) - seconds_per_item_);
   }
 
@@ -45,12 +45,12 @@ class DrawingPace {
   double seconds_per_item_;
 };
 
-/// Draws what cuts lay open: grey values, tinted by labels.
+/// Draws the faces exposed by cuts: grey values, tinted by labels.
 class ClipFaces {
  public:
   ClipFaces();
   void set(std::size_t cut, const ClipFace& face);
-  /// Draws each face as far as the other cuts leave it.
+  /// Draws each face, clipped by the other cuts.
   void draw(const ViewScene& scene, const Projection& projection) const;
 
  private:
@@ -63,11 +63,10 @@ class ClipFaces {
   std::array<Face, kMaxClipPlanes> faces_;
 };
 
-/// The ground on which the scene is drawn: background, bone and cuts in a picture of their own, which is kept
-/// from one frame to the next. While the view moves it has as many triangles and pixels as there is time for.
-/// If the view rests, full detail is drawn brick by brick into a second picture, which takes the first
-/// one's place when it is done. If bone is milled only the part of the picture in which it changed is
-/// drawn again.
+/// Background, bone and cuts, drawn into an image that is kept between frames. While the view moves,
+/// triangles and pixels are limited by the time budget. When it rests, full detail is drawn brick by brick
+/// into a second image, which replaces the first when complete. After milling, only the changed part of the
+/// image is redrawn.
 class BoneGround {
  public:
   BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
@@ -77,13 +76,13 @@ class BoneGround {
   void set_clip_face(std::size_t cut, const ClipFace& face);
   std::size_t triangle_count() const { return bone_.triangle_count(); }
 
-  /// Does one picture's work; `size` is that of the picture when the view rests.
+  /// Does one frame's work; `size` is that of the image at rest.
   void draw(const ViewScene& scene, const PixelSize& size);
-  /// Draws once into a picture apart, in detail for which there is half a picture's time.
+  /// Draws once into a separate image, with half a frame's time budget.
   void draw_inset(const ViewScene& scene, const PixelSize& size);
   const FrameTarget& inset() const { return inset_->picture; }
   const FrameTarget& picture() const { return *shown_; }
-  /// Returns true if nothing is left to draw while neither view nor bone changes.
+  /// Returns true if nothing is left to draw as long as neither view nor bone changes.
   bool is_settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
 
  private:
@@ -93,7 +92,7 @@ class BoneGround {
   void begin_refining(const ViewScene& scene, const Projection& projection);
   void refine(const ViewScene& scene, const Projection& projection);
   bool draw_changed(const ViewScene& scene, const Projection& projection);
-  /// Pixels from the lower left.
+  /// Returns pixels from the lower left.
   Eigen::AlignedBox2i changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
                                    const Projection& projection) const;
   std::vector<VisibleBrick> visible_in_budget(const ViewScene& scene, const Projection& projection);
@@ -110,11 +109,11 @@ class BoneGround {
   ClipFaces cut_faces_;
   gl::ScreenProgram background_;
   std::optional<FrameTarget> moving_;
-  // Takes full detail.
+  // Receives full detail.
   std::optional<FrameTarget> resting_;
-  // The one of the two that is shown.
+  // Points to whichever of the two is shown.
   const FrameTarget* shown_ = nullptr;
-  // While the view moves, this number of the window's pixels along each side is one pixel of the picture.
+  // Window pixels per image pixel along each side while the view moves.
   int coarseness_ = 1;
   std::optional<CavityPass> cavities_;
   std::optional<Inset> inset_;
@@ -126,10 +125,10 @@ class BoneGround {
   std::size_t refined_ = 0;
   bool refining_ = false;
   bool settled_ = false;
-  // Bricks that changed since they were drawn: in the picture shown, and in the one that is being refined.
+  // Bricks changed since they were drawn: in the image shown, and in the one being refined.
   std::set<std::size_t> changed_;
   std::set<std::size_t> changed_since_;
-  // Bricks that were drawn again since, but with the darkening of an earlier picture.
+  // Bricks redrawn since, but with cavity darkening from an earlier frame.
   std::set<std::size_t> to_shade_;
   unsigned drawn_ = 0;
 };

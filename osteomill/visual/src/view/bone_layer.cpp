@@ -39,14 +39,14 @@ void main() {
 }
 )";
 
-// A key light over the viewer's left shoulder, a weaker one from the right, and light from all around that is
-// another from below. Bone that lies deeper than what is around it in the picture (blurred_depth, from the
-// picture drawn before) gets less of all of them.
+// Key light over the viewer's left shoulder, weaker fill light from the right, and ambient light with another
+// colour from below. Bone that lies deeper than its surroundings in the previous frame (blurred_depth) gets
+// less of all of them.
 constexpr std::string_view kBoneFragment = R"(#version 330 core
 in vec3 normal_C;
 in float depth_mm;
 in float bone_density;
-in vec4 label_colour;  // times its share
+in vec4 label_colour;  // premultiplied by its opacity
 uniform float label_share;
 uniform float isovalue;
 uniform float reference_density;
@@ -73,7 +73,7 @@ void main() {
   }
   vec2 around = texture(blurred_depth, gl_FragCoord.xy / picture_size).rg;
   float sunk = around.g > 0.05 ? (depth_mm - around.r / around.g) * cavity_scale / depth_mm : 0.0;
-  // Towards its outline everything lies deeper than the middle of the picture's bone: that is no cavity.
+  // Near its outline all bone lies deeper than the blurred middle: that is not a cavity.
   sunk *= smoothstep(0.3, 0.8, n.z);
   float open = 1.0 - 0.5 * smoothstep(0.0, 1.0, sunk) + 0.06 * smoothstep(0.0, 1.0, -sunk);
   float key = max(dot(n, kTowardsKey), 0.0);
@@ -90,13 +90,13 @@ void main() {
 }
 )";
 
-// Beyond the bone there is the tool.
+// Leaves room for the tool around the bone.
 constexpr double kSceneMargin_mm = 60;
 constexpr double kMinDepth_mm = 1;
-// Sunk by this share of the blur's reach is as dark as it gets.
+// Depth, as a fraction of the blur radius, at which darkening saturates.
 constexpr double kDarkestAt = 0.55;
 
-// The planes of the view, each with the inside where n . p + d >= 0 for (n, d) of unit n.
+// Frustum planes (n, d) with unit normals; the inside is n . p + d >= 0.
 std::array<Eigen::Vector4d, 6> view_planes(const Projection& projection) {
   const Eigen::Matrix4d clip = (projection.clip_from_camera * projection.camera_from_world).cast<double>();
   std::array<Eigen::Vector4d, 6> planes;
@@ -116,7 +116,7 @@ bool can_be_visible(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& 
   });
 }
 
-// Red, green, blue, and 255 if there is a label, else 0.
+// Red, green, blue, and 255 with a label or 0 without.
 using LabelColour = std::array<std::uint8_t, 4>;
 
 LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex) {
@@ -200,7 +200,7 @@ Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& proje
   if (front_mm < projection.near_mm) return {Eigen::Vector2d::Zero(), all};
   Eigen::Vector2d middle = pixel_of(scene.camera, projection.size, sphere.centre_W);
   middle.y() = projection.size.height - middle.y();
-  // Away from the picture's middle perspective draws a ball out in length.
+  // Perspective elongates a sphere away from the picture's centre.
   const double aside = (middle - 0.5 * all).norm() * mm_per_pixel(scene.camera, projection.size, 1.0);
   const double reach_px =
       std::hypot(1.0, aside) * sphere.radius_mm / mm_per_pixel(scene.camera, projection.size, front_mm);
@@ -244,7 +244,7 @@ bool DepthTiles::is_hidden(const Sphere& sphere) const {
 }
 
 void begin_cuts(GLuint program, const ViewScene& scene) {
-  // Without a cut nothing is clipped: 0 . p >= -1.
+  // A disabled cut clips nothing: 0 . p >= -1.
   std::array<std::array<float, 4>, kMaxClipPlanes> cuts;
   for (std::size_t n = 0; n < kMaxClipPlanes; ++n) {
     cuts[n] = {0, 0, 0, -1};
@@ -288,7 +288,7 @@ void BoneLayer::set_brick(std::size_t number, const BrickLevels& levels) {
   brick.facing = facing_of(levels);
   glBindVertexArray(brick.vertex_array.get());
   gl::fill<MeshVertex>(GL_ARRAY_BUFFER, brick.vertices, levels.vertices, GL_DYNAMIC_DRAW);
-  // A brick has less than 2^16 grid edges for vertices to lie on.
+  // A brick has fewer than 2^16 grid edges, hence fewer vertices.
   const std::vector<GLushort> indices(levels.indices.begin(), levels.indices.end());
   gl::fill<GLushort>(GL_ELEMENT_ARRAY_BUFFER, brick.indices, indices, GL_DYNAMIC_DRAW);
   gl::set_attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position_mm));
@@ -307,7 +307,7 @@ void BoneLayer::set_label_colours(Brick& brick, const std::vector<MeshVertex>& v
   glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(LabelColour), nullptr);
 }
 
-// Returns whether all of its triangles show their backs.
+// Returns whether all triangles of the brick are back-facing.
 bool BoneLayer::Brick::is_facing_away(const Vec3& eye_W) const {
   const Vec3 sight = bounds.centre_W - eye_W;
   const double way_mm = sight.norm();
@@ -338,7 +338,7 @@ std::vector<std::size_t> BoneLayer::bricks_in_view(const ViewScene& scene,
   return bricks_in_view(scene, projection, [](const Brick&) { return true; });
 }
 
-// The nearest first, so that what they hide need not be coloured.
+// Nearest first, so that hidden fragments need not be shaded.
 std::vector<VisibleBrick> BoneLayer::visible_bricks(const ViewScene& scene, const Projection& projection,
                                                     const Detail& detail) const {
   const Vec3 eye_W = scene.camera.eye_W();
@@ -388,7 +388,7 @@ void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, cavities.blurred_depths());
   if (!cut) glEnable(GL_CULL_FACE);
-  // Colour of vertices without labels.
+  // Colour for vertices without labels.
   glVertexAttrib4f(3, 0, 0, 0, 0);
   for (const VisibleBrick& visible : bricks) {
     glBindVertexArray(bricks_[visible.brick].vertex_array.get());

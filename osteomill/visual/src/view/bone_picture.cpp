@@ -23,21 +23,21 @@ namespace {
 constexpr double kFieldOfView_rad = 0.04;
 constexpr double kMaxWhole_mm = 45.0;
 constexpr double kAroundEntry_mm = 24.0;
-// Least number of voxels around the entry: fewer would show no recognisable shape.
+// Minimum number of voxels around the entry; fewer show no recognisable shape.
 constexpr double kAroundEntry_voxels = 32;
 constexpr double kMargin = 1.0 / 20;
-// Pixels drawn for one of the picture, along each side.
+// Rendered pixels per picture pixel, along each side.
 constexpr int kSupersampling = 2;
-// The darkening of cavities reaches this share of the picture's height: about a burr's radius.
+// Radius of cavity darkening as a fraction of the picture's height: about a burr's radius.
 constexpr double kCavityReach = 1.0 / 16;
-// Height for which annotations are made, px: they are scaled by the picture's height over this.
+// Picture height for which annotations are laid out, px; they scale with the actual height.
 constexpr double kAnnotatedHeight_px = 480;
-// White paper.
+// Light reflected by white paper.
 constexpr std::array<float, 3> kLightFromBelow{0.47f, 0.45f, 0.42f};
-// Surface that is in memory at once.
+// Maximum size of the surface in memory at once.
 constexpr std::size_t kTrianglesAtOnce = 400'000;
 
-// The middle of the bone, and its height or width as the camera sees it, whichever is more.
+// Centre of the bone, and its height or width in the camera's view, whichever is larger.
 struct Extent {
   Vec3 centre_W;
   double size_mm;
@@ -68,7 +68,7 @@ ViewScene scene_with(const Volume& bone, double reference_density, const Camera&
   return scene;
 }
 
-// A still picture has time for colours from deeper below the surface, where the scanner's blur has ended.
+// Samples colours deeper below the surface, beyond the scanner's blur; fast enough for still pictures only.
 void deepen_density(const Volume& bone, MeshVertex& vertex) {
   const double voxel_mm = bone.geometry().spacing_mm.minCoeff();
   for (const double voxels : {1.25, 2.5}) {
@@ -77,7 +77,7 @@ void deepen_density(const Volume& bone, MeshVertex& vertex) {
   }
 }
 
-// Draws the bone, which is never in memory as a whole.
+// Draws the bone without ever holding the whole surface in memory.
 class BonePainter {
  public:
   BonePainter(const Volume& bone, const ViewScene& scene, const PixelSize& size)
@@ -94,7 +94,7 @@ class BonePainter {
     glDepthFunc(GL_LEQUAL);
     glClearColor(1, 1, 1, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    // Once for the depths, which tell what is hidden and what is sunk, and once more to be seen.
+    // First pass for the depths, which show hidden bricks and cavities; second pass for colours.
     const std::vector<std::size_t> visible = draw(layer_.bricks_in_view(scene_, projection_));
     cavities_.blur(target_.depths(), projection_.near_mm, projection_.far_mm);
     target_.bind();
@@ -105,7 +105,7 @@ class BonePainter {
   }
 
  private:
-  // Draws these bricks in their order, leaving out those that are hidden by then; returns those that it drew.
+  // Draws these bricks in order, skipping those already hidden; returns the bricks drawn.
   std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks) {
     const DensityView view(bone_);
     std::vector<std::size_t> drawn;
@@ -157,7 +157,7 @@ Camera camera_at(const Volume& bone, const Vec3& entry_W, const Vec3& direction_
 }  // namespace
 
 Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W) {
-  // Steep enough to look into a hole of its own width.
+  // Steep enough to look into a hole as deep as it is wide.
   return camera_at(bone, entry_W, 0.8 * into_W + 0.5 * into_W.cross(lateral_W) + 0.25 * lateral_W, -into_W);
 }
 

@@ -31,7 +31,7 @@ bool is_background(const Image& image, int x, int y) {
   return brightness(image, x, y) == 765;
 }
 
-// The scale bar stands in the lower left corner.
+// The scale bar is in the lower left corner.
 bool in_scale_bar(const Image& image, int x, int y) {
   return x < image.width / 2 && y > image.height - 60;
 }
@@ -62,7 +62,7 @@ Camera camera_from_above(const Volume& bone) {
   return camera_above(bone, {0, 0, 2}, -Vec3::UnitZ(), Vec3::UnitX());
 }
 
-// A patient's letters stand in the lower right corner, and nothing else is drawn otherwise.
+// The orientation letters are in the lower right corner; otherwise nothing else is drawn.
 TEST(BonePicture, OnlyAPatientHasSides) {
   const Volume bone = shape_volume(centred_cube(72, 0.25), ball(Vec3::Zero(), 5));
   const Camera camera = camera_from_above(bone);
@@ -85,7 +85,7 @@ TEST(BonePicture, ABallHasTheAreaOfItsDiscWhereverItStands) {
     const Volume bone = shape_volume(centred_cube(72, 0.25), ball(middle, 5));
     const Camera camera = camera_from_above(bone);
     const double pixel_mm = mm_per_pixel(camera, kSize, camera.distance_mm);
-    // Pixels that are bone in part count as bone.
+    // Partly covered pixels count as bone.
     const double radius_mm =
         std::sqrt(covered(picture_from_above(bone, camera)).count / std::numbers::pi) * pixel_mm;
     EXPECT_NEAR(radius_mm, 5, 1.5 * pixel_mm);
@@ -136,7 +136,7 @@ TEST(BonePicture, AMilledHoleIsDarkerAndAllElseStaysAsItWas) {
   const int x = static_cast<int>(floor.x());
   const int y = static_cast<int>(floor.y());
   EXPECT_LT(brightness(milled, x, y), 0.8 * brightness(whole, x, y));
-  // Radius around the hole that the darkening reaches.
+  // Radius of the darkening around the hole, px.
   const Eigen::Vector2d middle = pixel_of(camera, kSize, Vec3(0, 0, 4));
   const double reach_px = 1.3 / mm_per_pixel(camera, kSize, camera.distance_mm) + 2.0 * kSize.height / 16;
   for (int v = 0; v < kSize.height; ++v) {
@@ -183,7 +183,7 @@ TEST(BonePicture, EnamelIsWhiterThanDentine) {
   EXPECT_LT(blue_share(12), 0.8);
 }
 
-// Far more triangles than are in memory at once, nearly all of them behind the first sheet.
+// Far more triangles than are held in memory at once, nearly all of them behind the first sheet.
 TEST(BonePicture, WhatIsDrawnPieceByPieceIsWhole) {
   const auto sheets = [](double lowest_z) {
     return [lowest_z](const Vec3& p) {
@@ -219,7 +219,7 @@ TEST(BonePicture, ThreadsMakeTheSamePictureAtTheSameTime) {
   for (const Image& image : images) EXPECT_EQ(image.rgb, expected.rgb);
 }
 
-// In a program of its own, since libraries look at the environment once.
+// In a process of its own, because the libraries read the environment only once.
 TEST(OffscreenContextDeathTest, WhereThereIsNoOpenGlOneIsTold) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto try_without = [](const char* name, const char* value) {

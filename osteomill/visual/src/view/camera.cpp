@@ -8,7 +8,7 @@ namespace osteomill {
 
 namespace {
 
-// VTK's trackball style, which 3D Slicer's views keep to.
+// VTK's trackball style, as in 3D Slicer's views.
 constexpr double kTurnAcross_rad = 200.0 / 180.0 * std::numbers::pi;
 constexpr double kZoomBase = 1.1;
 constexpr double kZoomAcrossHalf = 10.0;

@@ -31,14 +31,14 @@ TEST(Camera, PixelsRaysAndMatricesAgree) {
 TEST(Camera, TheWholeSphereIsSeen) {
   const Camera camera = camera_on(kSphere, {0, 1, 0}, {0, 0, 1});
   EXPECT_NEAR((pixel_of(camera, kSize, kSphere.centre_W) - Eigen::Vector2d(400, 300)).norm(), 0, 1e-9);
-  // The line of sight that touches the sphere from above runs along the picture's upper border.
+  // The tangent to the sphere from above passes through the picture's upper border.
   const Vec3 border = ray_through(camera, kSize, 400, 0);
   const Vec3 to_centre = kSphere.centre_W - camera.eye_W();
   EXPECT_NEAR(border.cross(to_centre).norm(), kSphere.radius_mm, 1e-9);
 }
 
 TEST(Camera, PatientsAreSeenAsPhysiciansSeeThem) {
-  // Facing the patient: its left is on the right of the picture, its head up.
+  // Facing the patient: the patient's left is on the right of the picture, the head up.
   const Camera front = camera_on(kSphere, kPatientViews[0].direction_W, kPatientViews[0].up_W);
   EXPECT_GT(front.right_W().x(), 0.99);
   EXPECT_GT(front.up_W().z(), 0.99);

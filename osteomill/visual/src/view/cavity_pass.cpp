@@ -6,7 +6,7 @@ namespace osteomill {
 
 namespace {
 
-// Depth in mm and 1, or zeros if there is nothing.
+// Outputs depth in mm and 1, or zeros for the background.
 constexpr std::string_view kDepthFragment = R"(#version 330 core
 in vec2 place;
 uniform sampler2D depths;
@@ -33,7 +33,7 @@ void main() {
 }
 )";
 
-// Small pixels that the blur reaches to each side.
+// Blur radius in reduced pixels.
 constexpr int kBlurSteps = 3;
 
 int shrunk(int pixels, int reach_px) {

@@ -6,21 +6,22 @@
 
 namespace osteomill {
 
-/// Blurs the depths of a picture at a fraction of its size, for the next picture to tell what is sunk below
-/// its surroundings (after Luft, Colditz and Deussen 2006, whose unsharp mask of the depth buffer this is).
+/// Blurs the depth buffer at reduced size. The next frame uses it to detect cavities: points deeper than
+/// their surroundings (unsharp masking of the depth buffer, Luft, Colditz and Deussen 2006).
 class CavityPass {
  public:
-  /// The blur reaches about `reach_px`, pixels of the picture.
+  /// The blur radius is about `reach_px`, pixels of the picture.
   explicit CavityPass(const PixelSize& size, int reach_px = 24);
 
   void blur(GLuint depths, double near_mm, double far_mm) const;
-  /// A texture of two channels: blurred depths in mm times a weight, and that weight (0: nothing was drawn).
+  /// Returns a two-channel texture: blurred depth in mm times a weight, and that weight (0: nothing was
+  /// drawn).
   GLuint blurred_depths() const { return blurred_.texture.get(); }
-  /// Returns how far the blur reaches in a picture of the same view of this size.
+  /// Returns the blur radius in a picture of this size of the same view.
   double reach_px(const PixelSize& picture) const { return reach_of_height_ * picture.height; }
 
  private:
-  /// A texture of two floats a pixel that is drawn into.
+  /// A render target of two floats per pixel.
   struct Layer {
     Layer(const PixelSize& size, GLint filter);
     gl::Texture texture;

@@ -9,7 +9,7 @@ namespace osteomill {
 
 namespace {
 
-// Returns the points at which the edges of the grid's box cross the plane.
+// Returns the points at which edges of the grid's bounding box intersect the plane.
 std::vector<Vec3> crossings(const GridGeometry& geometry, const ClipPlane& plane) {
   const std::array<Vec3, 8> corners = corners_W(geometry, geometry.all_voxels());
   std::vector<Vec3> found;
@@ -27,7 +27,7 @@ std::vector<Vec3> crossings(const GridGeometry& geometry, const ClipPlane& plane
   return found;
 }
 
-// A label's colour over the grey value, and never quite dark: a nerve's canal may be as dark as air.
+// Blends a label's colour with the grey value, never quite black: a nerve canal may be as dark as air.
 std::array<unsigned char, 3> tinted(unsigned char grey, const std::array<std::uint8_t, 3>& label) {
   constexpr double kLabel = 0.55, kMinBlackShare = 0.35;
   const double light = kMinBlackShare + (1 - kMinBlackShare) * grey / 255;
@@ -71,7 +71,7 @@ ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const Window
                    const LabelMap* labels, int max_pixels) {
   const std::vector<Vec3> border = crossings(grid.geometry(), plane);
   if (border.size() < 3) return {};
-  // Any two directions in the plane at right angles.
+  // Any two orthogonal directions in the plane.
   const Vec3 some = std::abs(plane.normal_W.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitY();
   const Vec3 across = some.cross(plane.normal_W).normalized();
   const Vec3 along = plane.normal_W.cross(across);

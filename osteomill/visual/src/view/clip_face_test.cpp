@@ -9,7 +9,7 @@
 namespace osteomill {
 namespace {
 
-// Densities that are 100 x + 10 y + z of W: what a cut shows is known everywhere.
+// Densities 100 x + 10 y + z in W, so that every sample of a cut is known.
 DensityGrid ramp(const GridGeometry& geometry) {
   std::vector<float> densities;
   for (int k = 0; k < geometry.dims[2]; ++k) {
@@ -76,7 +76,7 @@ TEST(ClipFace, ShowsTheLabelsOfTheNearestVoxels) {
   const ClipFace face = clip_face(grid, {Vec3::UnitZ(), 0.1}, {0, 200}, &labels);
   std::map<std::array<unsigned char, 3>, int> counts;
   for (const auto& colour : face.pixels) ++counts[colour];
-  // 0.45 of the grey value and 0.55 x 0.67 of the label's colour.
+  // 0.45 times the grey value plus 0.55 x 0.67 times the label's colour.
   EXPECT_EQ((counts[{127, 127, 127}]), 32);
   EXPECT_EQ((counts[{60, 64, 68}]), 16);
   EXPECT_EQ((counts[{71, 75, 79}]), 16);

@@ -89,7 +89,7 @@ namespace osteomill {
 
 FrameTarget::FrameTarget(const PixelSize& size)
     : size_(size),
-      // In the order of a window's own, so that nothing is turned over on the way there.
+      // Same channel order as a window's framebuffer, which avoids a conversion when copying.
       colours_(gl::make_texture(GL_RGBA8, GL_BGRA, GL_UNSIGNED_BYTE, size.width, size.height, GL_NEAREST)),
       depths_(gl::make_texture(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, size.width,
                                size.height, GL_NEAREST)),

@@ -12,11 +12,11 @@
 
 namespace osteomill::gl {
 
-/// Owns an OpenGL object of the context that is current when it is made and when it is destroyed.
+/// Owns an OpenGL object. The same context must be current at creation and destruction.
 template <auto& Create, auto& Delete>
 class GlObject {
  public:
-  /// No object: its name is 0.
+  /// Holds no object (name 0).
   GlObject() = default;
   static GlObject make() {
     GlObject made;
@@ -50,43 +50,43 @@ using Texture = GlObject<glGenTextures, glDeleteTextures>;
 using Framebuffer = GlObject<glGenFramebuffers, glDeleteFramebuffers>;
 using Program = GlObject<create_program, delete_program>;
 
-/// A texture without mipmaps; outside it the pixels of its edge go on.
+/// Creates a texture without mipmaps, clamped to its edge.
 Texture make_texture(GLint internal_format, GLenum format, GLenum type, int width, int height, GLint filter);
 
-/// Throws std::runtime_error with the driver's complaint.
+/// Compiles and links a program. Throws std::runtime_error with the driver's log.
 Program make_program(std::string_view vertex_source, std::string_view fragment_source);
 
-/// Draws over the whole picture, behind everything: one triangle that covers it. The fragment shader takes
-/// `in vec2 place`, 0 to 1 across the picture.
+/// Draws one triangle that covers the whole picture, at maximum depth. The fragment shader receives `in vec2
+/// place`, 0 to 1 across the picture.
 class ScreenProgram {
  public:
   explicit ScreenProgram(std::string_view fragment_source);
   GLuint get() const { return program_.get(); }
-  /// Draws with the bound texture and the present uniforms.
+  /// Draws with the bound texture and current uniforms.
   void draw() const;
 
  private:
   Program program_;
-  // OpenGL draws nothing without one, though this triangle has no buffers.
+  // OpenGL core draws nothing without a vertex array, even if the shader needs no buffers.
   VertexArray no_buffers_ = VertexArray::make();
 };
 
-/// Binds the buffer to `target` and fills it.
+/// Binds the buffer to `target` and uploads the values.
 template <typename Value>
 void fill(GLenum target, const Buffer& buffer, std::span<const Value> values, GLenum usage) {
   glBindBuffer(target, buffer.get());
   glBufferData(target, static_cast<GLsizeiptr>(values.size_bytes()), values.data(), usage);
 }
 
-/// Sets an attribute of `count` floats, `offset_bytes` into each vertex, in the buffer and array that are
-/// bound.
+/// Sets an attribute of `count` floats, `offset_bytes` into each vertex, for the bound buffer and vertex
+/// array.
 void set_attribute(GLuint place, GLint count, std::size_t vertex_bytes, std::size_t offset_bytes);
 
 }  // namespace osteomill::gl
 
 namespace osteomill {
 
-/// A target to draw into: colours and depths of one size, as textures.
+/// Offscreen render target: colour and depth textures of one size.
 class FrameTarget {
  public:
   explicit FrameTarget(const PixelSize& size);

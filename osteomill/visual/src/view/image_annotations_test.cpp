@@ -13,7 +13,7 @@ Image grey_image(int width, int height, unsigned char level) {
                                      level)};
 }
 
-// Pixels in the box that are about as dark or as light as `level`.
+// Counts the pixels in the box that are close to `level`.
 int count(const Image& image, int left, int top, int right, int bottom, int level) {
   int found = 0;
   for (int y = top; y < bottom; ++y) {

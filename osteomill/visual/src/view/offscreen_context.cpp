@@ -19,12 +19,12 @@ void require(bool good, const char* what) {
   if (!good) throw std::runtime_error(std::string("no OpenGL without a display: ") + what);
 }
 
-// epoxy ends the program if it finds no library to look its functions up in.
+// epoxy aborts the process if it cannot load the library.
 bool can_be_loaded(const char* library) {
   return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr;
 }
 
-// Mesa draws with threads of its own, about one a core, and waits for ever for one that could not be started.
+// Mesa renders with its own threads, about one per core, and blocks forever if one cannot be started.
 bool can_start_threads() {
   std::latch all_are_there(1);
   std::vector<std::jthread> threads;
@@ -39,7 +39,8 @@ bool can_start_threads() {
   return started;
 }
 
-// EGL gives all threads the same display, and ending it ends the contexts of all: the last to go does it.
+// EGL returns the same display to all threads, and terminating it ends all their contexts; only the last user
+// does so.
 std::mutex display_mutex;
 int display_users = 0;
 
@@ -79,7 +80,7 @@ OffscreenContext::OffscreenContext() : impl_(std::make_unique<Impl>()) {
   require(can_be_loaded("libOpenGL.so.0") || can_be_loaded("libGL.so.1"), "libOpenGL.so.0 is missing");
   require(can_start_threads(), "no threads can be started for it (ulimit -u)");
   require(epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"),
-          "EGL knows no surfaceless platform");
+          "EGL has no surfaceless platform");
   impl_->display = begin_display();
   require(eglBindAPI(EGL_OPENGL_API) == EGL_TRUE, "EGL has no desktop OpenGL");
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,

@@ -10,7 +10,7 @@ struct PictureTexture::Impl {
 
 PictureTexture::PictureTexture(const Image& image) : impl_(std::make_unique<Impl>()) {
   impl_->texture = gl::make_texture(GL_RGB8, GL_RGB, GL_UNSIGNED_BYTE, image.width, image.height, GL_LINEAR);
-  // Rows of three bytes a pixel end anywhere.
+  // RGB rows are not padded to four bytes.
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE,
                   image.rgb.data());

@@ -34,8 +34,8 @@ void draw_tool(const SolidShapes& shapes, const MillingTool& tool, const Pose& X
   shapes.cylinder(X_WT.position_mm, end_W, tool.shaft_radius_mm, shaft);
 }
 
-// Twice: faint through the bone, clearer if nothing is before it. Only its outermost face, so that it is
-// as clear everywhere.
+// Drawn twice: faint through the bone, clearer if not hidden by it. Draws only the outermost surface, for
+// uniform opacity.
 void draw_ghost(const SolidShapes& shapes, const MillingTool& tool, const Pose& X_WD) {
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -56,7 +56,8 @@ struct SceneRenderer::Impl {
   Impl(const SurfaceBricks& layout, const GridGeometry& geometry, std::shared_ptr<const LabelMap> labels)
       : ground(layout, geometry, std::move(labels)) {}
 
-  // Draws the simulated tool and its shadow; the tool through bone in front of it if the scene asks for that.
+  // Draws the simulated tool and its shadow, and if the scene requests it the tool through bone in front of
+  // it.
   void draw_simulated_tool(const ViewScene& scene, const Projection& projection,
                            const FrameTarget& bone) const {
     shadow.draw(scene, projection, bone, shapes);
@@ -70,7 +71,7 @@ struct SceneRenderer::Impl {
     if (scene.see_through) veil.end(bone);
   }
 
-  // Over everything, since a contact lies where tool and bone hide it.
+  // Drawn over everything, because tool and bone hide the contact.
   void draw_wrench(const ViewScene& scene) const {
     glClear(GL_DEPTH_BUFFER_BIT);
     if (const auto point_W = red_point_W(scene)) {
@@ -124,7 +125,8 @@ std::optional<Vec3> point_of_action(const MillingTool& tool, const Pose& X_WT, c
   if (!(force_N > kMinForce_N)) return std::nullopt;
   const Vec3 along = wrench.force_N / force_N;
   const Vec3 lever = wrench.force_N.cross(wrench.torque_Nmm) / (force_N * force_N);
-  // The force pushes the tool away from the bone: it comes from outside, against the tool.
+  // The force pushes the tool away from the bone: its line of action, followed along the force, enters the
+  // tool at the contact.
   const double reach_mm = lever.norm() + tool.shaft_length_mm + tool.burr_radius_mm;
   const Pose X_TW = X_WT.inverse();
   for (int n = 0; n <= kSteps; ++n) {
@@ -175,8 +177,8 @@ Image SceneRenderer::picture() const {
   return impl_->target->read();
 }
 
-// Drawn, since a processor that draws takes twice as long for glBlitFramebuffer, and half as long again where
-// what lies between a moving picture's wide pixels is filled in.
+// Draws a textured triangle: with a software renderer glBlitFramebuffer takes twice as long, and half as long
+// again if it upscales a moving view's coarse pixels.
 void SceneRenderer::copy_to_window() const {
   impl_->copy_to_window(*impl_->target, 0, 0, impl_->asked_size);
 }

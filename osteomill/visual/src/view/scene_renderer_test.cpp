@@ -34,8 +34,8 @@ Volume drilled_ball() {
   return volume;
 }
 
-// Another driver, or another version of the same, rounds differently along edges: most pixels differ by a few
-// shades at most, and no more than one in a hundred differs by more than this.
+// Drivers, and versions of them, round edges differently: most pixels may differ by a few shades at most, and
+// no more than one in a hundred by more than kShades.
 constexpr int kShades = 12;
 constexpr double kOthers = 0.01;
 constexpr double kMeanShades = 1.0;
@@ -54,8 +54,8 @@ class SceneRendererTest : public ::testing::Test {
 
   void set_brick(std::size_t n, const BrickMesh& mesh) { renderer_->set_brick(n, full_detail(mesh)); }
 
-  // Holds the picture against the one kept under this test's name. With OSTEOMILL_KEEP_PICTURES it replaces
-  // the kept one.
+  // Compares the picture with the reference stored under this test's name. With OSTEOMILL_KEEP_PICTURES,
+  // replaces the reference.
   void expect_as_kept() {
     renderer_->draw(scene_, kSize);
     renderer_->draw(scene_, kSize);
@@ -78,11 +78,11 @@ class SceneRendererTest : public ::testing::Test {
     const auto count = static_cast<double>(drawn.rgb.size());
     EXPECT_LE(static_cast<double>(others) / count, kOthers);
     EXPECT_LE(sum / count, kMeanShades);
-    // A tolerance that takes anything would take the background alone.
+    // Guards against a tolerance that would accept the bare background.
     EXPECT_GT(covered(drawn), 0.1);
   }
 
-  // The share of the picture that is not as dark as the background.
+  // Returns the fraction of pixels brighter than the background.
   static double covered(const Image& image) {
     std::size_t bright = 0;
     for (std::size_t n = 0; n < image.rgb.size(); n += 3) bright += image.rgb[n] > 75 ? 1 : 0;
@@ -120,7 +120,7 @@ TEST_F(SceneRendererTest, CutWithItsGreys) {
   expect_as_kept();
 }
 
-// A pixel shows the point that geometry predicts.
+// A pixel shows the point predicted by the projection.
 TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
   const Image without = picture();
   scene_.X_WT = Pose{{2, -7, 6}, Quat::Identity()};
@@ -138,8 +138,8 @@ TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
             std::vector<int>(without.pixel(beside, y), without.pixel(beside, y) + 3));
 }
 
-// A shadow of the tool, as far as it differs from none: with the tool over a level plane of bone, each pixel
-// beside the tool is darkened as the plane's point that geometry finds behind it asks for.
+// The tool over a level plane of bone: each pixel beside the tool must be darkened, relative to a picture
+// without it, as predicted for the point of the plane behind that pixel.
 TEST(ContactShadow, DarkensALevelPlaneAsTheToolHidesTheSky) {
   const OffscreenContext context;
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.5),
@@ -165,7 +165,7 @@ TEST(ContactShadow, DarkensALevelPlaneAsTheToolHidesTheSky) {
   const auto brightness = [](const Image& image, int x, int y) {
     return double(image.pixel(x, y)[0] + image.pixel(x, y)[1] + image.pixel(x, y)[2]);
   };
-  // The light that the upright tool leaves a point of the plane, as ContactShadow documents it.
+  // Fraction of light that the upright tool leaves at a point of the plane, as documented for ContactShadow.
   const auto light = [&](const Vec3& p) {
     const auto part = [](double distance, double height, double radius, double power) {
       const double radii = distance / radius;
@@ -173,7 +173,7 @@ TEST(ContactShadow, DarkensALevelPlaneAsTheToolHidesTheSky) {
       const double hidden = height / distance * std::min(std::pow(radii, -power), 1.0) * fade * fade;
       return 1 - ContactShadow::kDarkest * hidden;
     };
-    // Nearest to the plane the shaft's axis has its lower end, the burr's centre.
+    // The shaft axis is nearest to the plane at its lower end, the burr's centre.
     const double height = touching.position_mm.z(), distance = (touching.position_mm - p).norm();
     return part(distance, height, r, 2) * part(distance, height, scene.tool.shaft_radius_mm, 1);
   };
@@ -185,7 +185,7 @@ TEST(ContactShadow, DarkensALevelPlaneAsTheToolHidesTheSky) {
       const Vec3 eye = scene.camera.eye_W();
       const Vec3 p = eye - eye.z() / ray.z() * ray;
       if (p.head<2>().cwiseAbs().maxCoeff() > 12) continue;
-      // Not behind the tool, with a margin for its outline.
+      // Skip points hidden by the tool, with a margin for its outline.
       bool free = true;
       for (double t = 0; t < 1; t += 0.002) {
         const Vec3 on_sight = eye + t * (p - eye);
@@ -207,7 +207,7 @@ TEST_F(SceneRendererTest, AToolFarAwayDarkensNoBone) {
   const Image without = picture();
   scene_.X_WT = Pose{{0, -9, 12}, Quat::Identity()};
   const Image with = picture();
-  // Light bone below the tool's picture, which stands in the upper half.
+  // Bone pixels in the lower half; the tool's picture is in the upper half.
   std::size_t others = 0, bone = 0;
   for (std::size_t n = with.rgb.size() / 2; n < with.rgb.size(); ++n) {
     bone += without.rgb[n] > 75 ? 1 : 0;
@@ -220,7 +220,7 @@ TEST_F(SceneRendererTest, AToolFarAwayDarkensNoBone) {
 TEST_F(SceneRendererTest, ABurrBehindBoneIsSeenThroughItOnlyIfAsked) {
   const Vec3 sight = (scene_.bounds.centre_W - scene_.camera.eye_W()).normalized();
   const Image without = picture();
-  // Behind the ball, the shaft away from the eye.
+  // Behind the ball, with the shaft away from the eye.
   scene_.X_WT = Pose{7.7 * sight, smallest_rotation(Vec3::UnitZ(), sight)};
   const Image hidden = picture();
   EXPECT_EQ(hidden.rgb, without.rgb);
@@ -243,13 +243,13 @@ TEST_F(SceneRendererTest, ABurrBehindBoneIsSeenThroughItOnlyIfAsked) {
   }
   EXPECT_GT(inside, 0.9 * std::numbers::pi * 0.81 * radius_px * radius_px);
   EXPECT_EQ(outside, 0);
-  // The burr is golden: its blue is less than bone's, in proportion to its red.
+  // The burr is golden: its blue-to-red ratio is lower than the bone's.
   const unsigned char* at_burr = through.pixel(static_cast<int>(burr.x()), static_cast<int>(burr.y()));
   const unsigned char* bone = without.pixel(static_cast<int>(burr.x()), static_cast<int>(burr.y()));
   EXPECT_LT(double(at_burr[2]) / at_burr[0], double(bone[2]) / bone[0]);
 }
 
-// The bone is not drawn again in every picture, but milled bone is seen two pictures later at the latest.
+// The bone is not redrawn in every frame, but milled bone must be visible within two frames.
 TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
   for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
   const double all = covered(renderer_->picture());
@@ -258,7 +258,7 @@ TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
   EXPECT_LT(covered(picture()), 0.1 * all);
 }
 
-// If bone is milled while the view stands still, only that part of the picture is drawn again.
+// If bone is milled while the view rests, only that part of the picture is redrawn.
 TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   scene_.camera = camera_on({Vec3(0, 0, 4), 9}, {0.3, 1, -0.5}, Vec3::UnitZ());
   while (!renderer_->is_settled()) renderer_->draw(scene_, kSize);
@@ -278,7 +278,7 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   EXPECT_FALSE(renderer_->is_settled());
   for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
   const Image pieces = renderer_->picture();
-  // Another view in between makes everything be drawn again.
+  // A change of view in between forces a full redraw.
   const Camera camera = scene_.camera;
   turn(scene_.camera, kSize, 20, 5);
   renderer_->draw(scene_, kSize);
@@ -296,7 +296,7 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   EXPECT_LT(others, milled_away / 20);
 }
 
-// Pictures of a moving view with fewer triangles look much like the ones with all.
+// While the view moves, pictures with fewer triangles look much like those in full detail.
 TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
   scene_.camera.distance_mm *= 9;
   while (!renderer_->is_settled()) renderer_->draw(scene_, kSize);
@@ -340,7 +340,7 @@ TEST(DrawingPace, HasFewerPixelsWhereTheyTakeLong) {
   EXPECT_GT(pace.budget(), 8'000'000u);
 }
 
-// The first picture comes at the pace that is supposed before any is known.
+// The first frame uses the initial estimate of the pace.
 TEST_F(SceneRendererTest, ALargePictureThatMovesHasFewerPixelsThanOnceItRests) {
   constexpr PixelSize kLarge{1920, 1080};
   renderer_->draw(scene_, kLarge);
@@ -381,7 +381,7 @@ TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
   EXPECT_LT(covered(picture()), 0.1 * all);
 }
 
-// Returns how much more of the first channel than of the third a picture has, by its pixels' sum.
+// Returns the sum over all pixels of the first channel minus the third.
 double redness(const Image& image) {
   double sum = 0;
   for (std::size_t n = 0; n < image.rgb.size(); n += 3) sum += int(image.rgb[n]) - int(image.rgb[n + 2]);

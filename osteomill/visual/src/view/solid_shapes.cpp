@@ -48,7 +48,8 @@ Mat3 axes_along(const Vec3& direction) {
 
 }  // namespace
 
-// Turns an outline about z: points of radius, height, and the normal's radius and height, two for each piece.
+// Revolves an outline about z. Its points are radius, height, and the normal's radial and axial components,
+// two per segment.
 SolidShapes::Shape SolidShapes::turned(const std::vector<std::array<float, 4>>& outline) {
   std::vector<float> corners;
   const auto corner = [&](const std::array<float, 4>& point, int side) {

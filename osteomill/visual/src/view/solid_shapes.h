@@ -7,7 +7,7 @@
 
 namespace osteomill {
 
-/// Red, green, blue, and how much it covers what is behind.
+/// Red, green, blue, opacity.
 using Colour = std::array<float, 4>;
 
 /// Draws spheres, cylinders and arrows: the tool, its ghost, contacts, forces.
@@ -15,17 +15,17 @@ class SolidShapes {
  public:
   SolidShapes();
 
-  /// Draws lit shapes from now on.
+  /// Selects lit drawing for the following shapes.
   void begin(const Projection& projection) const { begin(projection, program_.get()); }
-  /// Draws shapes from now on by a program of `vertex_source()` and a fragment shader of its own.
+  /// Selects a program made of `vertex_source()` and a custom fragment shader for the following shapes.
   void begin(const Projection& projection, GLuint program) const;
   static std::string_view vertex_source();
 
   void sphere(const Vec3& centre_W, double radius_mm, const Colour& colour) const;
-  /// Adds a cylinder from `from_W` to `to_W`, closed by flat ends.
+  /// Draws a cylinder from `from_W` to `to_W` with flat ends.
   void cylinder(const Vec3& from_W, const Vec3& to_W, double radius_mm, const Colour& colour,
                 float gloss = kGloss) const;
-  /// Adds an arrow with a head; none if it is shorter than its head would be thick.
+  /// Draws an arrow with a head; nothing if it is shorter than the thickness of its head.
   void arrow(const Vec3& from_W, const Vec3& along_mm, double radius_mm, const Colour& colour,
              int heads = 1) const;
 

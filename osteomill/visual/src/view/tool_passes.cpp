@@ -6,16 +6,16 @@ namespace osteomill {
 
 namespace {
 
-// The distance from the ball's centre, or the rod's axis, at which it takes no light any more, in its radii.
+// Distance from the sphere's centre, or the cylinder's axis, at which the shadow ends, in radii.
 constexpr double kReach_radii = 2.5;
 constexpr std::string_view kShadowFragment = R"(#version 330 core
 uniform sampler2D depths;
 uniform vec2 near_far;
-uniform vec2 slope;  // of the sight to the picture's right and upper edge
-uniform vec3 from_C;  // the axis of ball or rod
+uniform vec2 slope;  // of the line of sight to the picture's right and upper edge
+uniform vec3 from_C;  // start of the axis of sphere or cylinder
 uniform vec3 along_mm;
 uniform float radius_mm;
-uniform float ball;  // 1; a rod: 0
+uniform float ball;  // 1 for the sphere, 0 for the cylinder
 uniform float reach;
 uniform float darkest;
 out vec4 colour;
@@ -28,11 +28,11 @@ void main() {
   vec3 towards = from_C - point;
   towards += clamp(-dot(towards, along_mm) / max(dot(along_mm, along_mm), 1e-9), 0.0, 1.0) * along_mm;
   float radii = length(towards) / radius_mm;
-  // The sky that a rod hides falls with the distance, that behind a ball with its square.
+  // The sky hidden by a cylinder falls with the distance, that by a sphere with its square.
   float part = min(1.0 / (radii * mix(1.0, radii, ball)), 1.0);
   float fade = clamp((reach - radii) / (reach - 1.0), 0.0, 1.0);
   float hidden = part * fade * fade * max(dot(n, towards), 0.0) / (radii * radius_mm);
-  // Beyond an outline lies other bone: the slope in between is none of a surface.
+  // Across an outline the depth jumps to other bone: that slope does not belong to a surface.
   hidden *= smoothstep(0.02, 0.15, -dot(n, normalize(sight)));
   colour = vec4(vec3(1.0 - darkest * hidden), 1.0);
 }
@@ -60,8 +60,8 @@ void bind_texture(GLuint program, const char* name, int unit, GLuint texture) {
 
 ContactShadow::ContactShadow() : program_(gl::make_program(SolidShapes::vertex_source(), kShadowFragment)) {}
 
-// Into the back of what the shadow reaches, as far as bone lies before it: a few pixels if the tool is far
-// from bone.
+// Draws the back faces of the shadow's volume where bone lies in front of them: only a few pixels if the tool
+// is far from bone.
 void ContactShadow::draw(const ViewScene& scene, const Projection& projection, const FrameTarget& ground,
                          const SolidShapes& shapes) const {
   const GLuint program = program_.get();
@@ -125,7 +125,7 @@ void BoneVeil::begin(const ViewScene& scene, const Projection& projection) const
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-// The picture's alpha is the veil's share at the tool, and 0 elsewhere.
+// The picture's alpha is `kShare` at the tool and 0 elsewhere.
 void BoneVeil::end(const FrameTarget& ground) const {
   const GLuint program = program_.get();
   glUseProgram(program);

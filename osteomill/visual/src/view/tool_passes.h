@@ -8,19 +8,18 @@
 
 namespace osteomill {
 
-/// Darkens bone close to the simulated tool, which keeps light from it: by the share of the sky over the bone
-/// that the burr's ball hides, and by that of the shaft's rod, as far as three of their radii from their
-/// axes. It is drawn over the finished picture of the bone, which need not be drawn again when the tool
-/// moves.
+/// Ambient shadow of the simulated tool: darkens nearby bone by the fraction of the sky that the burr's
+/// sphere hides, and by that of the shaft's cylinder, up to 2.5 radii from their axes. Drawn over the
+/// finished picture of the bone, which need not be redrawn when the tool moves.
 class ContactShadow {
  public:
-  /// The share of the light that each of the two takes where it touches.
+  /// Fraction of the light that each of the two removes on contact.
   static constexpr double kDarkest = 0.65;
 
   ContactShadow();
 
-  /// Draws into the picture that is bound, which has the colours and depths of `ground` and no tool yet;
-  /// `scene` has one.
+  /// Draws into the bound framebuffer, which holds the colours and depths of `ground` without the tool;
+  /// `scene` must have a tool.
   void draw(const ViewScene& scene, const Projection& projection, const FrameTarget& ground,
             const SolidShapes& shapes) const;
 
@@ -28,18 +27,18 @@ class ContactShadow {
   gl::Program program_;
 };
 
-/// Draws bone and cuts as a veil over a tool that was drawn alone.
+/// Draws bone and cuts as a translucent veil over the tool, which is drawn first.
 class BoneVeil {
  public:
-  /// The share of the bone's colour in front of the tool.
+  /// Opacity of the bone in front of the tool.
   static constexpr float kShare = 0.45f;
 
   BoneVeil();
 
-  /// Prepares the picture that is bound for the simulated tool alone, to be drawn in colours with an alpha of
-  /// `kShare`. Keeps drawing to where the tool is until `end`.
+  /// Prepares the bound framebuffer for drawing the simulated tool alone, in colours with an alpha of
+  /// `kShare`. Restricts drawing to the tool's screen area until `end`.
   void begin(const ViewScene& scene, const Projection& projection) const;
-  /// Draws the veil.
+  /// Draws the veil over the tool.
   void end(const FrameTarget& ground) const;
 
  private:

@@ -8,47 +8,47 @@
 
 namespace osteomill {
 
-/// A line or a word drawn over the picture, pixels from the top left.
+/// Lines or text drawn over the picture; pixels from the top left.
 struct Annotation {
-  /// A line from a pixel to another.
+  /// A line segment.
   struct Line {
     Eigen::Vector2d from;
     Eigen::Vector2d to;
   };
   std::vector<Line> lines;
-  /// The middle of the text.
+  /// Centre of the text.
   Eigen::Vector2d text_centre_px = Eigen::Vector2d::Zero();
   std::string text;
 };
 
-/// Returns a bar of a round length in mm, at most a quarter of the picture long, in its lower left corner. It
-/// holds at the camera's focus; its text says so if nearer things are drawn noticeably larger.
+/// Returns a scale bar of a round length in mm, at most a quarter of the picture long, in the lower left
+/// corner. Valid at the camera's focus; its text says so if perspective noticeably enlarges nearer objects.
 Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size);
 
-/// Returns the patient's directions (L R A P S I, of W's LPS axes) about a point in the lower right corner,
-/// each where its direction points; those that point almost at the viewer, or away, are left out.
+/// Returns the patient's directions (L R A P S I, from W's LPS axes) around a point in the lower right
+/// corner, each in its projected direction; omits those that point almost along the line of sight.
 std::vector<Annotation> orientation_letters(const Camera& camera, const PixelSize& size);
 
-/// The font of all texts; if this file is missing, the one that comes with Dear ImGui is used.
+/// Font of all texts; if the file is missing, Dear ImGui's built-in font is used.
 inline constexpr const char* kFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-/// The size of all texts at scale 1.
+/// Font size of all texts at scale 1.
 inline constexpr float kFontSize_px = 14;
 
-/// Grey levels of what is drawn and of the edge around it, which keeps it readable before anything.
+/// Grey levels of lines and text, and of the outline that keeps them legible on any background.
 struct Ink {
   unsigned char level;
   unsigned char edge;
 };
-/// The ink for pictures on white.
+/// Ink for pictures on white.
 inline constexpr Ink kInkOnLight{40, 255};
-/// The ink for the window's dark ground.
+/// Ink for the window's dark background.
 inline constexpr Ink kInkOnDark{236, 0};
 
-/// Draws an annotation into an image, all its lengths times `scale`. Any thread.
+/// Draws an annotation into an image, with all lengths multiplied by `scale`. Any thread.
 void draw_annotation(Image& image, const Annotation& annotation, const Ink& ink, double scale = 1);
 
-/// Draws the scale bar, and with `of_patient` the letters of the patient's directions, laid out as in an
-/// image `scale` times smaller.
+/// Draws the scale bar and, if `of_patient`, the orientation letters, with the layout of an image `scale`
+/// times smaller.
 void annotate(Image& image, const Camera& camera, bool of_patient, const Ink& ink, double scale);
 
 }  // namespace osteomill

@@ -6,20 +6,20 @@
 
 namespace osteomill {
 
-/// Returns a camera that looks obliquely down at where a tool enters the bone at `entry_W` along the unit
-/// vector `into_W`: at all of the bone if it is small (a tooth), else at what lies around the entry.
-/// `lateral_W` is a unit vector across, which turns the view about the entry. For square pictures. From far
-/// away, so that lengths can be read off: what is nearer by half of the picture's height is drawn 2 % larger.
+/// Returns a camera that looks obliquely down at the point `entry_W`, where a tool enters the bone along the
+/// unit vector `into_W`. Shows the whole bone if it is small (a tooth), else the region around the entry. The
+/// unit vector `lateral_W`, perpendicular to `into_W`, turns the view about the entry. For square pictures.
+/// The camera is so far away that lengths can be read off: objects nearer by half the picture's height are
+/// drawn 2 % larger.
 Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W);
-/// Returns a camera that looks at the entry straight along `into_W`, with `lateral_W` upwards.
+/// Returns a camera that looks at the entry along `into_W`, with `lateral_W` up.
 Camera camera_along(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W);
 
-/// Draws a picture of the bone on white with a scale bar, coloured and lit as in the window (scene.h says
-/// what `reference_density` is), drawn with an OpenGL context of its own; any thread, several at once. What
-/// the bone's surface needs is made piece by piece, so that a large scan takes no more memory than a small
-/// one. Throws std::runtime_error if there is no OpenGL or it refuses something. Takes a second or so: not
-/// for the tick.
-/// `of_patient` adds the letters of the patient's directions, which a made-up bone does not have.
+/// Renders the bone on white with a scale bar, coloured and lit as in the window (`reference_density`: see
+/// scene.h). `of_patient` adds the orientation letters; synthetic bones have none. Uses an OpenGL context of
+/// its own; any thread, several at once. Builds the surface piece by piece, so that memory does not grow with
+/// the scan. Throws std::runtime_error if OpenGL is unavailable or fails. Takes about a second: not real-time
+/// safe.
 Image bone_picture(const Volume& bone, double reference_density, const Camera& camera,
                    const PixelSize& size = {1120, 1120}, bool of_patient = false);
 

@@ -10,33 +10,32 @@
 
 namespace osteomill {
 
-/// A brick's surface at four levels with fewer and fewer triangles, for drawing it from afar or while it
-/// moves. Level 0 is the brick's mesh itself; level n has about one vertex for every 2^n x 2^n x 2^n cells,
-/// where the planes of the mesh's triangles there meet, near the mean of its vertices (Lindstrom 2000; vertex
-/// clustering after Rossignac and Borrel 1993, within a cell only what is connected, so that the two sides of
-/// a thin wall stay two). Vertices on the brick's border stay as they are: bricks of any levels meet without
-/// a gap.
+/// Levels of detail of a brick's surface, for drawing it from afar or while it moves. Level 0 is the brick's
+/// mesh. Level n has about one vertex per 2^n x 2^n x 2^n cells, at the intersection of the planes of the
+/// mesh's triangles there, near the mean of its vertices (Lindstrom 2000; vertex clustering after Rossignac
+/// and Borrel 1993, but only of connected vertices within a cell, so that the two sides of a thin wall stay
+/// apart). Vertices on the brick's border do not move, so that bricks of different levels meet without gaps.
 struct BrickLevels {
   static constexpr std::size_t kCount = 4;
-  /// A part of the indices.
+  /// A range of indices.
   struct Range {
     std::size_t first = 0;
     std::size_t count = 0;
   };
-  /// The vertices: first the mesh's own, then those of levels 1 and up.
+  /// Vertices of the mesh, followed by those of levels 1 and up.
   std::vector<MeshVertex> vertices;
-  /// The indices, three a triangle, first all of level 0.
+  /// Indices, three per triangle, those of level 0 first.
   std::vector<std::uint32_t> indices;
-  /// The range of the indices that belong to each level.
+  /// Index range of each level.
   std::array<Range, kCount> levels{};
 
   bool empty() const { return levels[0].count == 0; }
 };
 
-/// Makes the levels of a brick's mesh. `cells` are the brick's, as SurfaceBricks names them. Not for the
-/// tick; any thread.
+/// Builds the levels of a brick's mesh. `cells` are the brick's cells (SurfaceBricks::cells). Not real-time
+/// safe; any thread.
 BrickLevels levels_of(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells);
-/// Returns the mesh itself at every level.
+/// Returns the mesh itself as every level.
 BrickLevels full_detail(BrickMesh mesh);
 
 }  // namespace osteomill

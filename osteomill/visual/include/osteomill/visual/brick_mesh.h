@@ -9,15 +9,15 @@
 
 namespace osteomill {
 
-/// One corner of the isosurface's triangles, laid out so that it can be handed to a graphics card as it is.
+/// Vertex of the isosurface, laid out for upload to the graphics card.
 struct MeshVertex {
-  /// The position in W.
+  /// Position in W.
   std::array<float, 3> position_mm;
-  /// The normal in W, of unit length, out of the bone: against the density's gradient, averaged over about a
-  /// voxel to all sides, so that voxels do not show as terraces.
+  /// Unit normal in W, pointing out of the bone: the negative density gradient, averaged over about a voxel
+  /// in all directions, so that voxels do not show as terraces.
   std::array<float, 3> normal;
-  /// The density of the bone just under the surface, to colour it by: a mean over about a voxel around the
-  /// place a voxel below it, in which denser voxels count more, because less dense ones may be half air.
+  /// Density of the bone just under the surface, for colouring: a mean over about a voxel around the point
+  /// one voxel below the vertex, weighted towards denser voxels, because less dense ones may be partly air.
   float density;
   friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
 };
@@ -27,13 +27,13 @@ static_assert(sizeof(MeshVertex) == 28 && std::is_trivially_copyable_v<MeshVerte
 inline Vec3 vec3_of(const std::array<float, 3>& numbers) {
   return Eigen::Map<const Eigen::Vector3f>(numbers.data()).cast<double>();
 }
-/// Writes a vector into three floats of a vertex.
+/// Stores a vector as three floats of a vertex.
 inline void put(const Vec3& vector, std::array<float, 3>& numbers) {
   Eigen::Map<Eigen::Vector3f>(numbers.data()) = vector.cast<float>();
 }
 
-/// A piece of the isosurface as indexed triangles: three indices each, anticlockwise seen from outside the
-/// bone. Vertices are shared within a piece; where pieces meet, both have the same vertices, bit for bit.
+/// Part of the isosurface as indexed triangles, anticlockwise seen from outside the bone. Vertices are shared
+/// within a part; adjacent parts have bit-identical vertices on their common border.
 struct BrickMesh {
   std::vector<MeshVertex> vertices;
   std::vector<std::uint32_t> indices;

@@ -4,10 +4,10 @@
 
 namespace osteomill {
 
-/// An OpenGL 3.3 core context without a window or a display (EGL, surfaceless). It is current in the thread
-/// that made it, which also has to destroy it and may have no other meanwhile; each thread may have one.
-/// Whatever draws needs a current context, this one or a window's. Throws std::runtime_error if the system
-/// has none to give.
+/// OpenGL 3.3 core context without a window or display (EGL, surfaceless). It is current in the thread that
+/// created it, which must also destroy it and must not use another context meanwhile; each thread may have
+/// one. All drawing needs a current context, this one or a window's. Throws std::runtime_error if the system
+/// provides none.
 class OffscreenContext {
  public:
   OffscreenContext();

@@ -6,7 +6,7 @@
 
 namespace osteomill {
 
-/// A picture as a texture of the OpenGL context that is current when it is made and destroyed.
+/// An image as a texture of the OpenGL context, which must be current at construction and destruction.
 class PictureTexture {
  public:
   explicit PictureTexture(const Image& image);
@@ -14,7 +14,7 @@ class PictureTexture {
   PictureTexture(const PictureTexture&) = delete;
   PictureTexture& operator=(const PictureTexture&) = delete;
 
-  /// Returns OpenGL's name of the texture.
+  /// Returns the OpenGL texture name.
   unsigned name() const;
 
  private:

@@ -12,55 +12,53 @@
 
 namespace osteomill {
 
-/// A cut through the picture: everything on one side of a plane is cut away, the points p of W with
-/// normal . p < offset.
+/// Clip plane: removes the points p of W with normal . p < offset from the picture.
 struct ClipPlane {
   Vec3 normal_W = Vec3::UnitZ();
   double offset_mm = 0;
   friend bool operator==(const ClipPlane&, const ClipPlane&) = default;
 };
-/// The number of cuts that a scene may have.
+/// Maximum number of clip planes of a scene.
 inline constexpr std::size_t kMaxClipPlanes = 4;
 
-/// Everything that a picture shows beside the bone, all in W.
+/// Everything a picture shows in addition to the bone; all in W.
 struct ViewScene {
   Camera camera;
-  /// Holds the bone; what lies far outside it is not drawn.
+  /// Bounds of the bone; objects far outside it are not drawn.
   Sphere bounds;
   MillingTool tool;
-  /// The simulated tool, and the device as a ghost that shows through the bone. Either is drawn only if
-  /// given.
+  /// The simulated tool, and the device pose as a ghost visible through the bone. Each is drawn only if set.
   std::optional<Pose> X_WT;
   std::optional<Pose> X_WD;
-  /// Bone between the eye and the simulated tool is translucent.
+  /// Draws bone between the eye and the simulated tool translucent.
   bool see_through = false;
-  /// The wrench as it acts on the hand, drawn as arrows from the simulated burr.
+  /// Wrench on the hand, drawn as arrows at the simulated burr.
   Wrench wrench;
-  /// The intersection point (HapticStep::intersection_W), if the algorithm has one.
+  /// Intersection point (HapticStep::intersection_W), if the algorithm has one.
   std::optional<Vec3> intersection_W;
   std::array<std::optional<ClipPlane>, kMaxClipPlanes> cuts;
-  /// Bone that has a label is shown in the label's colour.
+  /// Colours labelled bone by label.
   bool show_labels = true;
-  /// The densities by which other bone is coloured: pale at the reference (dentine), white if much denser
-  /// (enamel), reddish if hardly bone.
+  /// Densities that colour unlabelled bone: pale at the reference (dentine), white if much denser (enamel),
+  /// reddish near the isovalue.
   double isovalue = 0;
   double reference_density = 1;
-  /// Red, green and blue of the light that the surroundings throw back from below: little if they are dark.
+  /// RGB of the light reflected from the surroundings below: weak if they are dark.
   std::array<float, 3> light_from_below{0.20f, 0.17f, 0.16f};
 };
 
-/// A force arrow's length per newton.
+/// Length of force arrows.
 inline constexpr double kArrow_mm_per_N = 3.0;
-/// A torque arrow's length per newton millimetre.
+/// Length of torque arrows.
 inline constexpr double kArrow_mm_per_Nmm = 0.4;
 
-/// Returns the point of the tool's surface at which the wrench's force alone would give the wrench, as far as
-/// one force can: where the line along which it would act enters the tool. If that line misses the tool,
-/// returns the point of the burr that faces the force; nothing if there is hardly any force.
+/// Returns the surface point of the tool at which a single force equivalent to the wrench, as far as one
+/// exists, enters the tool. If its line of action misses the tool, returns the burr point that faces the
+/// force; std::nullopt if the force is negligible.
 std::optional<Vec3> point_of_action(const MillingTool& tool, const Pose& X_WT, const Wrench& wrench);
 
-/// Returns the place of the red point: the algorithm's intersection point, as in figure 4 of the paper; if it
-/// has none, the wrench's point of action on the simulated tool, if there is one.
+/// Returns the position of the red point: the algorithm's intersection point, as in figure 4 of the paper;
+/// without one, the wrench's point of action on the simulated tool, if any.
 std::optional<Vec3> red_point_W(const ViewScene& scene);
 
 }  // namespace osteomill

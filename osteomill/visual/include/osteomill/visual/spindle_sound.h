@@ -10,33 +10,32 @@
 
 namespace osteomill {
 
-/// The state of a spindle, from which its sound follows.
+/// State of a spindle that determines its sound.
 struct SpindleState {
-  /// The true speed; 0 is silent.
+  /// Actual speed; silent at 0.
   double speed_rpm = 0;
-  /// The power of cutting as a share of what makes the loudest sound, 0 to 1 (`sound_load`).
+  /// Cutting power relative to that of the loudest sound, 0 to 1 (`sound_load`).
   double load = 0;
-  /// The density of what is cut, relative to the scan's reference.
+  /// Density being cut, relative to the scan's reference.
   double density = 1;
-  /// A diamond hisses, a cutting burr sings.
+  /// A diamond burr hisses, a cutting burr sings.
   bool is_abrasive = false;
 };
 
-/// Returns the load of a power of cutting: half of the loudest at 4 W.
+/// Returns the load for a cutting power; 0.5 at 4 W.
 double sound_load(double cutting_power_W);
 
-/// Computes the sound of a spindle: the tone of its turning with its overtones, louder under load, and the
-/// noise of cutting, of which a band at 4 kHz grows with the bone's density. The same states give the same
-/// samples. For one thread.
+/// Synthesizes a spindle's sound: its rotation tone with overtones, louder under load, and cutting noise,
+/// including a band at 4 kHz that grows with bone density. Deterministic. For one thread.
 class SpindleSound {
  public:
   explicit SpindleSound(double sample_rate_hz) : sample_rate_hz_(sample_rate_hz) {}
 
-  /// Computes the next samples, -1 to 1, one channel. Speed and loudness follow the state within a quarter of
-  /// a second or so, as a motor does, without a click.
+  /// Computes the next samples, -1 to 1, mono. Speed and loudness follow the state within about a quarter of
+  /// a second, as a motor does, without clicks.
   void render(const SpindleState& state, std::span<float> samples);
 
-  /// Returns the tone's frequency for a speed when it has settled.
+  /// Returns the settled frequency of the tone.
   static double pitch_hz(const SpindleState& state);
 
  private:
@@ -52,12 +51,12 @@ class SpindleSound {
   std::uint32_t noise_ = 1;
   float white_noise_ = 0;
   float smooth_noise_ = 0;
-  // The last two samples that went into the band's filter, and came out.
+  // Last two input and output samples of the band filter.
   std::array<double, 2> band_in_{}, band_out_{};
 };
 
-/// Queues a spindle's sound, and the beat of a structure that is near, to the OpenAL context that is current,
-/// some 70 ms ahead. For one thread.
+/// Queues the sound of a spindle, and the beat for a nearby structure, in the current OpenAL context, about
+/// 70 ms ahead. For one thread.
 class SoundStream {
  public:
   static constexpr int kSampleRate_hz = 44100;
@@ -67,7 +66,7 @@ class SoundStream {
   SoundStream(const SoundStream&) = delete;
   SoundStream& operator=(const SoundStream&) = delete;
 
-  /// Fills the played buffers with the spindle's present sound. Call at least every 15 ms or so.
+  /// Refills the played buffers with the present sound. Call at least every 15 ms or so.
   void feed(const SpindleState& state, const BeatState& beat = {});
 
  private:
@@ -77,14 +76,14 @@ class SoundStream {
 
   SpindleSound sound_{kSampleRate_hz};
   DistanceBeat beat_{kSampleRate_hz};
-  // OpenAL's names.
+  // OpenAL names.
   unsigned source_ = 0;
   std::array<unsigned, 4> buffers_{};
   std::array<float, kSamples> samples_{};
 };
 
-/// Plays a spindle's sound on the system's sound device from a thread of its own. Without a device nothing is
-/// heard, and nothing is wrong.
+/// Plays a spindle's sound on the system's sound device, from a thread of its own. Without a device it does
+/// nothing and reports no error.
 class SoundPlayer {
  public:
   SoundPlayer();
@@ -92,7 +91,7 @@ class SoundPlayer {
   SoundPlayer(const SoundPlayer&) = delete;
   SoundPlayer& operator=(const SoundPlayer&) = delete;
 
-  /// Sets the spindle's state, and the beat. Call from one thread; never waits.
+  /// Sets the spindle's state and the beat. Call from one thread; never waits.
   void set(const SpindleState& state, const BeatState& beat = {});
 
  private:

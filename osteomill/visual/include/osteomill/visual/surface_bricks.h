@@ -8,13 +8,13 @@
 
 namespace osteomill {
 
-/// Deals the cells of a grid out to the bricks in which its surface is kept (16 cells a side; not the 8
-/// voxels of BlockRanges and DensityBlock). A cell lies between eight neighbouring voxels and is named by the
-/// least of them; cells reach one voxel beyond the grid on all sides, so that the surface is closed where
-/// bone touches the border. Bricks are numbered from 0, along i fastest.
+/// Partitions the cells of a grid into the bricks of its surface (16 cells a side, unlike the 8 voxels of
+/// BlockRanges and DensityBlock). A cell lies between eight neighbouring voxels and is identified by the one
+/// with the smallest indices; cells extend one voxel beyond the grid on all sides, so that the surface is
+/// closed where bone touches the border. Bricks are numbered from 0, fastest along i.
 class SurfaceBricks {
  public:
-  /// Cells along each edge of a brick. The first brick along an axis also has the cell before voxel 0.
+  /// Cells along each brick edge. The first brick along an axis also has the cell before voxel 0.
   static constexpr int kBrickCells = 16;
 
   SurfaceBricks() = default;
@@ -25,10 +25,10 @@ class SurfaceBricks {
   std::size_t index(int bi, int bj, int bk) const { return row_major(dims_, bi, bj, bk); }
   std::array<int, 3> coordinates(std::size_t brick) const;
 
-  /// Returns the cells of a brick, each by its least voxel, which may have coordinates of -1.
+  /// Returns the cells of a brick, each identified by its smallest voxel, whose indices may be -1.
   VoxelBox cells(std::size_t brick) const;
-  /// Returns the bricks, by their coordinates, whose triangles, normals or densities depend on a voxel of
-  /// `voxels` (in the grid); empty for an empty box.
+  /// Returns the range of bricks whose triangles, normals or densities depend on a voxel of `voxels` (in the
+  /// grid); empty for an empty box.
   VoxelBox bricks_depending_on(const VoxelBox& voxels) const;
 
  private:

@@ -10,12 +10,12 @@
 
 namespace osteomill {
 
-/// The densities that a surface is made from, their ranges brick by brick, and the isovalue at which bone
-/// begins. Refers to densities and ranges, which outlive it.
+/// Input of surface extraction: densities, their per-brick ranges, and the isovalue. Holds references to
+/// densities and ranges, which must outlive it.
 struct DensityView {
   const DensityGrid& grid;
   const BlockRanges& ranges;
-  /// There is bone where the density is greater. It may be any value, whatever the volume's own isovalue.
+  /// Densities above this are bone. May differ from the volume's own isovalue.
   double isovalue;
 
   DensityView(const DensityGrid& grid_, const BlockRanges& ranges_, double isovalue_)
@@ -24,13 +24,13 @@ struct DensityView {
       : DensityView(volume.grid(), volume.ranges(), volume.isovalue()) {}
 };
 
-/// Makes the isosurface within one brick of `SurfaceBricks(view.grid.geometry().dims)`, by Marching Cubes
-/// (Lorensen and Cline 1987) with one rule for ambiguous faces, so that the bricks together are closed: each
-/// edge of a triangle belongs to one other, which runs along it the other way. Beyond the grid is no bone.
-/// Not for the tick; any thread that may read the grid.
+/// Extracts the isosurface within one brick of `SurfaceBricks(view.grid.geometry().dims)` by Marching Cubes
+/// (Lorensen and Cline 1987). Ambiguous faces are resolved by one rule, so that the bricks together form a
+/// closed surface: each triangle edge has one opposite edge in another triangle. Outside the grid there is no
+/// bone. Not real-time safe; any thread that may read the grid.
 BrickMesh mesh_brick(const DensityView& view, std::size_t brick);
 
-/// Makes the whole surface as one piece: vertices shared everywhere, so that it is closed by its indices
+/// Extracts the whole surface as one mesh with all vertices shared, so that it is closed by its indices
 /// alone.
 BrickMesh mesh_in_one_piece(const DensityView& view);
 
