@@ -17,55 +17,54 @@
 
 namespace osteomill::app {
 
-/// A file for milled bone in a folder of its own in the user's state folder, locked for as long as this
-/// object lives, so that windows which are open at the same time never touch each other's. The system takes
-/// the lock away however the program ends. The file itself stays.
+/// A file for milled bone in a folder of its own in the user's state folder. Locked for the lifetime of this
+/// object, so that concurrent windows never use each other's file; the system releases the lock however the
+/// program ends. Does not remove the file at the end.
 class AutosaveFile {
  public:
-  /// Makes a file in a new folder; nothing if that cannot be made, or the user has no state folder.
+  /// Creates a file in a new folder; std::nullopt if that fails or the user has no state folder.
   static std::optional<AutosaveFile> make();
-  /// Takes the file in this folder; nothing if another program has it locked.
+  /// Locks the file in this folder; std::nullopt if another process holds it.
   static std::optional<AutosaveFile> try_lock(const std::filesystem::path& folder);
 
   std::filesystem::path path() const { return folder_ / "milled.h5"; }
-  /// Removes the file, and what a program left that was killed while it wrote.
+  /// Removes the file and the partial files of a process killed while writing.
   void clear() const;
 
  private:
   AutosaveFile(std::filesystem::path folder, FileLock lock);
 
   std::filesystem::path folder_;
-  // Gives it up as it goes, and the folder with it if that is empty.
+  // On destruction unlocks the folder, and removes it if it is empty.
   std::shared_ptr<FileLock> lock_;
 };
 
-/// Milled bone that an earlier run of the program kept and the user did not save.
+/// Unsaved milled bone autosaved by an earlier run of the program.
 struct LeftoverMilling {
   AutosaveFile file;
   SessionStart start;
 };
-/// The newest that no other running program holds; nothing if there is none.
+/// Returns the newest one not locked by another process; std::nullopt if there is none.
 std::optional<LeftoverMilling> last_leftover_milling();
 
-/// Keeps unsaved milled bone in such a file, as a recording of no ticks: the first time at once, then at most
-/// every 5 s and for no more than 2 % of the time. Reads the follower's copy and writes on a thread of its
-/// own.
+/// Autosaves unsaved milled bone as a recording without ticks: at once after the first change, then at most
+/// every 5 s and for at most 2 % of the time. Reads the follower's copy and writes on a thread of its own.
 class Autosave {
  public:
-  /// Saves the milling of this scan. Writes to `file`, or to a new one if that is not given.
+  /// Autosaves the milling of this scan to `file`, or to a new file if none is given.
   Autosave(ScanOptions scan, std::optional<AutosaveFile> file);
 
-  /// Call once for each picture. Removes the file if nothing is unsaved.
+  /// Call once per frame. Removes the file if nothing is unsaved.
   void update(LiveMilling& milling);
-  /// The bone of this version (BoneFollower::version) was saved by the user.
+  /// Notes that the user saved this version of the bone (BoneFollower::version).
   void mark_saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
-  /// Returns whether bone was milled that is not saved.
+  /// Returns whether there is unsaved milling.
   bool has_unsaved(const LiveMilling& milling) const {
     return milling.follower().is_touched() && milling.follower().version() != saved_version_;
   }
-  /// Removes the file: the user does not want what was milled.
+  /// Removes the file because the user discarded the milling.
   void discard();
-  /// Returns the reason why nothing can be kept, once; otherwise an empty text.
+  /// Returns the reason why autosaving fails, once; otherwise an empty string.
   std::string take_error() { return std::exchange(error_, {}); }
 
  private:
@@ -79,7 +78,7 @@ class Autosave {
   bool kept_ = false;
   Clock::time_point next_;
   std::string error_;
-  // The work under way, which returns how long it took. Last, so that it is waited for at the end.
+  // Running write; returns how long it took. Last, so that its destructor waits for it first.
   std::future<Clock::duration> work_;
 };
 

@@ -9,30 +9,30 @@
 
 namespace osteomill::app {
 
-/// The bone in the window: its surface and cuts, brought up to date from picture to picture. The window's
-/// OpenGL context is current in every call.
+/// The bone's surface and cuts in the window, updated every frame. The window's OpenGL context must be
+/// current in every call.
 class BoneScene {
  public:
-  /// Begins with a bone of which nothing is drawn yet.
+  /// Starts with a bone without any triangles.
   void show(const SurfaceBricks& layout, const GridGeometry& geometry,
             std::shared_ptr<const LabelMap> labels);
   void clear() { renderer_.reset(); }
 
-  /// Takes bricks of the surface that changed, and draws as many of those that wait as there is time for.
+  /// Adds changed bricks and uploads as many pending ones as the time budget allows.
   void take(ChangedBricks changed, double pictures_per_s);
   /// Calls CutUpdates::update.
   void update_cuts(const ViewState& view, const BoneFollower& bone, const WindowLevel& grey_window,
                    const LabelMap* labels);
-  /// Draws one picture into the window.
+  /// Draws one frame into the window.
   void draw(const ViewScene& scene, const PixelSize& size);
-  /// Draws a small picture of the scene over the one in the window, whose size is `window`; `corner`: its
-  /// upper left one there.
+  /// Draws an inset of the scene over the window's frame, whose size is `window`, with its upper left corner
+  /// at `corner`.
   void draw_inset(const ViewScene& scene, const PixelSize& size, const Eigen::Vector2i& corner,
                   const PixelSize& window);
-  /// Returns the picture of the scene in full detail.
+  /// Renders the scene in full detail.
   Image picture(const ViewScene& scene, const PixelSize& size);
 
-  /// Returns whether no brick waits to be drawn.
+  /// Returns whether no brick is waiting for upload.
   bool is_up_to_date() const { return waiting_.empty(); }
   std::size_t triangle_count() const { return renderer_ ? renderer_->triangle_count() : 0; }
 

@@ -6,15 +6,14 @@
 
 namespace osteomill::app {
 
-/// Draws the task, the step, the distance, the burrs and the time between the two columns, and once the
-/// exercise is finished its results. Takes the keys G (guidance) and M (beat). Does nothing without an
-/// exercise.
+/// Draws the exercise between the two columns: task, step, distance, burrs and time, and its results once it
+/// is finished. Handles the keys G (guidance) and M (beat). Does nothing without an exercise.
 void draw_exercise(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
-/// Ends the recording, and begins to measure it. Not while another one is measured.
+/// Ends the recording and starts measuring it. Do not call while another one is being measured.
 void finish_exercise(ViewState& view, Simulation& simulation, FilesPanel& files);
 
-/// Returns the text on the nearest structure: "facial nerve 2.3 mm"; empty without structures or guidance.
+/// Returns text on the nearest structure, e.g. "facial nerve 2.3 mm"; empty without structures or guidance.
 std::string distance_text(const Simulation& simulation, const TickRecord& record);
 
 }  // namespace osteomill::app

@@ -22,63 +22,62 @@
 
 namespace osteomill::app {
 
-/// The distance of the burr's surface from one structure.
+/// Distance from the burr's surface to a structure.
 struct StructureReading {
   std::size_t structure = 0;
   double distance_mm = 0;
 };
 
-/// An exercise that is worked on in the window: what is shown of it, and what is measured at the end. For the
-/// window's thread.
+/// An exercise in progress in the window: its guidance, and its results at the end. For the window's thread.
 class ExerciseWork {
  public:
-  /// `scan` is the bone before it is milled.
+  /// `scan` is the bone before milling.
   ExerciseWork(PlacedExercise placed, const Volume& scan, RecordedExercise recorded);
-  /// Gives up what is still being measured, and waits for that.
+  /// Cancels measuring and waits until it has stopped.
   ~ExerciseWork() { is_given_up_ = true; }
   ExerciseWork(const ExerciseWork&) = delete;
   ExerciseWork& operator=(const ExerciseWork&) = delete;
 
   const PlacedExercise& placed() const { return *placed_; }
-  /// Returns what a recording says of the exercise, guidance as it is now.
+  /// Returns the exercise data for a recording, with the present state of guidance.
   RecordedExercise recorded() const;
 
   bool has_guidance() const { return recorded_.has_guidance; }
   void show_guidance(bool on) { recorded_.has_guidance = on; }
   bool has_beat() const { return has_beat_; }
   void play_beat(bool on) { has_beat_ = on; }
-  /// Returns the map that colours target, structures and bone to be kept.
+  /// Returns the map that colours target, structures and bone to keep.
   const std::shared_ptr<const LabelMap>& colours() const { return colours_; }
 
-  /// Notes how far the steps are, some times a second.
+  /// Updates the progress of the steps; effective a few times a second.
   void update(const Volume& bone);
-  /// Returns whether `update` has something to do.
+  /// Returns whether `update` has work to do.
   bool is_update_due() const;
-  /// Returns the step that is worked on, from 1, the last one if all are done; 0 if there are none.
+  /// Returns the current step, counted from 1; the last one if all are done, 0 if there are none.
   std::size_t step() const { return step_; }
-  /// Returns how much of its bone is gone, percent.
+  /// Returns the part of the step's bone that is removed, percent.
   double step_percent() const { return step_percent_; }
 
-  /// Returns the structure that is nearest to the burr's surface; nothing without structures.
+  /// Returns the structure nearest to the burr's surface; std::nullopt without structures.
   std::optional<StructureReading> nearest(const Vec3& burr_W, double burr_radius_mm) const;
-  /// Returns the beat for that structure; silent if it is off.
+  /// Returns the beat for that structure; silent if the beat is off.
   BeatState beat(const Vec3& burr_W, double burr_radius_mm) const;
 
-  /// Returns the view as a recording has it, 30 times a second; nothing in between.
+  /// Returns the view to record, 30 times a second; otherwise std::nullopt.
   std::optional<ViewSample> next_view(const ViewState& view, const PixelSize& size, double time_s);
 
-  /// Begins to measure a recording that is closed, and to write the results into a folder.
+  /// Starts measuring a closed recording; writes the results into a folder.
   void measure(const std::filesystem::path& recording, const std::filesystem::path& folder);
   bool is_measuring() const { return work_.valid(); }
-  /// Takes the result once it is there. Throws what measuring failed with.
+  /// Takes the results once they are ready. Throws the exception of measuring.
   void take_result();
-  /// Returns the measured rows; empty before they are there.
+  /// Returns the measured rows; empty until they are ready.
   const std::vector<MeasuredValue>& results() const { return results_; }
   /// Returns the folder of the results.
   const std::filesystem::path& folder() const { return folder_; }
-  /// Opens the page of the results in the desktop's browser. Throws InputError if there is no way to.
+  /// Opens the page of results in the desktop's browser. Throws InputError if that is not possible.
   void open_page() const;
-  /// Forgets the results: the trainee goes on.
+  /// Discards the results because the trainee continues.
   void close_results() { results_.clear(); }
 
  private:

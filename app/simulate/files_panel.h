@@ -15,51 +15,51 @@
 
 namespace osteomill::app {
 
-/// Recording, reports, and what can be saved, all into one folder. Files are named after the time and this
-/// process, so that several windows may share the folder. What takes long is done on a thread of its own.
+/// Recording, reports and saving, all into one folder. File names contain the time and the process number, so
+/// that several windows can share the folder. Long work runs on a thread of its own.
 class FilesPanel {
  public:
-  /// The view as from a camera.
+  /// Renders the view from a camera.
   using TakePicture = std::function<Image(const Camera&)>;
   FilesPanel(std::filesystem::path folder, TakePicture take_picture)
       : folder_(std::move(folder)), take_picture_(std::move(take_picture)) {}
 
   void draw(ViewState& view, Simulation& simulation);
-  /// Draws, at the bottom of the right column, where it is always in sight, the work in progress, the last
-  /// result, and buttons that open its file. Returns its upper edge, pixels from the top of the window.
+  /// Draws, always visible at the bottom of the right column, the work in progress, the last result and
+  /// buttons that open its file. Returns its upper edge, pixels from the top of the window.
   float draw_message(ViewState& view, const Simulation& simulation, const PixelSize& size);
-  /// Ends a recording that still goes on, and waits until everything is written.
+  /// Ends a running recording and waits until everything is written.
   void close(ViewState& view, Simulation& simulation);
-  /// Begins a recording, unless one goes on; its name ends in `what`.
+  /// Starts a recording, unless one is running; its file name ends in `what`.
   void begin_recording(ViewState& view, Simulation& simulation, const std::string& what);
-  /// Ends a recording that still goes on.
+  /// Ends a running recording.
   void end_recording(ViewState& view, Simulation& simulation);
   bool is_busy() const { return work_.valid(); }
-  /// Returns whether the last file was written without an error.
+  /// Returns whether the last file was written without error.
   bool is_written() const { return is_written_; }
   /// Returns whether there is a recording without a report.
   bool has_unreported(const Simulation& simulation) const {
     return simulation.milling.is_recording() || last_recording_ != reported_;
   }
-  /// Ends a recording that goes on and begins the report of the last one. Not while busy.
+  /// Ends a running recording and starts writing the report of the last one. Do not call while busy.
   void end_with_report(ViewState& view, Simulation& simulation);
-  /// Begins to write the milled bone. Not while busy.
+  /// Starts writing the milled bone. Do not call while busy.
   void save_scan(ViewState& view, Simulation& simulation);
-  /// Writes a picture of the window.
+  /// Saves a picture of the window.
   void save_picture(ViewState& view, const Image& picture) const;
-  /// Writes a text to a file whose name ends in `what`.
+  /// Saves text in a file whose name ends in `what`.
   void save_text(ViewState& view, const std::string& what, const std::string& text) const;
-  /// Tells in the view how writing went, once it has ended.
+  /// Puts the result of finished writing into the view's message.
   void take_result(ViewState& view, Simulation& simulation);
-  /// Returns the length of the running recording, s; nothing if none runs.
+  /// Returns the length of the running recording, s; std::nullopt if none is running.
   std::optional<double> recording_s(const Simulation& simulation) const;
   const std::filesystem::path& last_recording() const { return last_recording_; }
-  /// A new name in the folder.
+  /// Returns a new file name in the folder.
   std::filesystem::path name(const std::string& what) const;
 
  private:
   void record(ViewState& view, Simulation& simulation, const std::string& what = "recording.h5");
-  /// Begins to write this file.
+  /// Starts writing this file.
   template <typename Write>
   void begin(const std::filesystem::path& path, Write write);
   void make_report();
@@ -67,20 +67,20 @@ class FilesPanel {
   std::filesystem::path folder_;
   TakePicture take_picture_;
   std::filesystem::path last_recording_;
-  // The last recording of which there is a report.
+  // Last recording for which a report was written.
   std::filesystem::path reported_;
   bool is_written_ = false;
   struct WriteResult {
     std::string message;
     std::filesystem::path result;
-    /// The recording of which the result is the report; empty for any other file.
+    /// If the result is a report, its recording; otherwise empty.
     std::filesystem::path recording;
   };
   std::chrono::steady_clock::time_point recording_since_;
-  // The time at which a recording begins that goes on from another.
+  // Start time of a recording that continues another.
   double recorded_before_s_ = 0;
   std::future<WriteResult> work_;
-  // The version of the bone that is being saved (BoneFollower::version).
+  // Version of the bone being saved (BoneFollower::version).
   std::optional<std::uint64_t> saving_version_;
 };
 

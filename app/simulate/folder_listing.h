@@ -9,7 +9,7 @@
 
 namespace osteomill::app {
 
-/// The folders in a folder, and the files that may be opened as a scan or a recording.
+/// Subfolders of a folder, and files that may be scans or recordings.
 struct FolderListing {
   struct Entry {
     std::string name;
@@ -17,24 +17,24 @@ struct FolderListing {
     friend bool operator==(const Entry&, const Entry&) = default;
   };
   std::filesystem::path folder;
-  /// Folders first, each kind by name.
+  /// Folders first, then files, both sorted by name.
   std::vector<Entry> entries;
-  /// One line on why the folder cannot be read; empty if it can.
+  /// Reason why the folder cannot be read, one line; empty if it can.
   std::string complaint;
-  /// It is no folder but a file.
+  /// The path is a file, not a folder.
   bool is_file = false;
-  /// True if the folder holds more than are listed.
+  /// The folder holds more entries than are listed.
   bool has_more = false;
 };
 
-/// The most entries that are listed; more are no help to the eye, and would take seconds to sort and check.
+/// Maximum number of entries listed; more would not be readable and would take seconds to sort and check.
 inline constexpr std::size_t kMaxListed = 20'000;
 
-/// Lists a folder without hidden files. Ends early once `is_stopped` is true. May take as long as the file
-/// system likes.
+/// Lists a folder without hidden files. Stops early once `is_stopped` is true. May block on slow file
+/// systems.
 FolderListing list_folder(const std::filesystem::path& folder, const std::atomic<bool>& is_stopped);
 
-/// Lists folders on a thread of its own, which is left behind if a file system does not answer. For one
+/// Lists folders on a thread of its own, which is abandoned if a file system does not respond. For one
 /// thread.
 class FolderReader {
  public:
@@ -43,10 +43,10 @@ class FolderReader {
   FolderReader(const FolderReader&) = delete;
   FolderReader& operator=(const FolderReader&) = delete;
 
-  /// Begins to list a folder; what is being listed is given up.
+  /// Starts listing a folder; cancels a listing in progress.
   void begin(const std::filesystem::path& folder);
   bool is_reading() const { return work_ != nullptr; }
-  /// Returns the listing once it is there.
+  /// Returns the listing once it is ready.
   std::optional<FolderListing> take();
 
  private:

@@ -6,35 +6,35 @@
 
 namespace osteomill::app {
 
-/// A game controller as GLFW's table of controllers names its parts.
+/// State of a game controller, named as in GLFW.
 struct GamepadState {
-  /// -1 to 1: to the right and down.
+  /// -1 to 1; positive to the right and down.
   std::array<double, 2> left_stick{}, right_stick{};
-  /// -1 (released) to 1.
+  /// -1 (released) to 1 (pressed).
   double left_trigger = -1, right_trigger = -1;
   bool left_bumper = false, right_bumper = false;
-  /// The lower, the right and the left one of its four buttons.
+  /// Lower, right and left of the four face buttons.
   bool a = false, b = false, x = false;
 };
 
-/// A wish of the hand on a controller.
+/// Commands from a game controller.
 struct GamepadInput {
-  /// The left stick moves across the view, the right trigger presses in and the left one pulls back; the
+  /// The left stick moves in the view plane, the right trigger presses in and the left one pulls back; the
   /// right stick turns, and the bumpers turn about the line of sight.
   SpaceMouseState motion;
-  /// The button that mills went down, or up again.
+  /// Press and release of the milling button.
   bool is_mill_pressed = false, is_mill_released = false;
   bool is_let_go = false;
   bool is_undo = false;
 };
 
-/// Returns what a controller asks for now; `before` is its state in the picture before.
+/// Returns the commands of a controller; `before` is its state in the previous frame.
 GamepadInput gamepad_input(const GamepadState& now, const GamepadState& before);
 
-/// The first game controller that is plugged in, if any. For the window's thread.
+/// The first connected game controller, if any. For the window's thread.
 class Gamepad {
  public:
-  /// Reads it; call once for each picture. Never waits.
+  /// Reads the controller; call once per frame. Never waits.
   GamepadInput read();
 
  private:

@@ -14,23 +14,23 @@
 
 namespace osteomill::app {
 
-/// Returns the pose in which the tool of a scan begins: before the bone in the middle of the view, or as it
-/// was in the recording that is milled on from.
+/// Returns the initial tool pose for a scan: in front of the bone at the centre of the view, or the pose in
+/// the recording that is continued.
 Pose first_tool_pose(const PreparedScan& opened, const Camera& camera, const PixelSize& size);
 
-/// A scan in the window while it is milled, with the panels about it. One at a time on a stage.
+/// A scan being milled in the window, with its panels. Only one at a time on a stage.
 class MillingScreen {
  public:
-  /// Begins to tick with the tool at `X_WT`, and sends the bone if that was asked for.
+  /// Starts ticking with the tool at `X_WT`, and sends the bone if `send` requests it.
   MillingScreen(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source,
                 const std::string& command_line, const SendOption& send, Stage& stage);
 
   Simulation& simulation() { return simulation_; }
-  /// Does the work of one picture, and draws it.
+  /// Processes and draws one frame.
   void draw(Stage& stage);
-  /// Returns the bone and tool from this camera, in full detail.
+  /// Renders bone and tool from this camera, in full detail.
   Image picture(const Camera& camera, Stage& stage);
-  /// Returns whether nothing that was asked for is still being prepared.
+  /// Returns whether no request is pending.
   bool is_settled(const Stage& stage);
 
  private:
@@ -43,11 +43,11 @@ class MillingScreen {
   void set_sound(Stage& stage);
 
   Simulation simulation_;
-  // True from when an exercise was opened until it is recorded.
+  // From opening an exercise until its recording starts.
   bool exercise_begins_ = false;
   SpaceMouse space_mouse_;
   Gamepad gamepad_;
-  // The failure that the user was told of.
+  // The failure already reported to the user.
   std::exception_ptr device_failure_;
   std::unique_ptr<BoneSender> sender_;
 };

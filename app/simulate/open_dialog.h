@@ -15,19 +15,18 @@
 
 namespace osteomill::app {
 
-/// The kind of thing that a button asked to be opened.
+/// Kind of object requested by a button.
 enum class OpenKind { none, file, folder };
 
-/// Draws the buttons that ask for a file or folder to be opened. Returns what was asked for.
+/// Draws the buttons for opening a file or folder. Returns the one pressed.
 OpenKind draw_open_buttons();
 
-/// Lets the user choose a scan or recording: by the desktop's dialog if there is one, else by one of its own,
-/// with the scans that were opened last. Its own folder is listed on another thread.
+/// Lets the user choose a scan or recording: in the desktop's file dialog if available, else in its own,
+/// which also lists recent scans. Its own folders are listed on another thread.
 class OpenDialog {
  public:
-  /// Draws one picture of it; `request` begins it. Returns the file or folder that was chosen. Draws nothing
-  /// while another dialogue is waiting. It begins in `last_folder`, and leaves there the folder of what was
-  /// chosen.
+  /// Draws one frame of the dialog; `request` opens it. Returns the chosen file or folder. Draws nothing
+  /// while another dialogue is waiting. Starts in `last_folder` and sets it to the folder of the chosen file.
   std::optional<std::string> draw(OpenKind request, bool is_waiting, std::string& last_folder);
   bool is_shown() const { return is_shown_; }
 
@@ -53,7 +52,7 @@ class OpenDialog {
   std::optional<std::string> chosen_;
 };
 
-/// Asks which series of a folder is to be opened, with a line for each: number, name, slices and thickness.
+/// Asks which series of a folder to open, one line each: number, name, slices and thickness.
 Dialogue series_question(const std::string& scan, const std::vector<SeriesSummary>& series,
                          const std::function<void(const std::string& number)>& open, Dialogue::Action cancel);
 

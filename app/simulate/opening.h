@@ -18,28 +18,28 @@
 
 namespace osteomill::app {
 
-/// Names a scan to be milled, a recording in its place to be played, an exercise on its scan,
-/// or a recording to be milled on from one of its ticks.
+/// Request to open a scan for milling, a recording (in place of a scan) for playback, an exercise on its
+/// scan, or a recording to continue from one of its ticks.
 struct OpenRequest {
   ScanOptions scan;
   ExerciseOptions exercise = {};
   BranchOptions from = {};
-  /// The milled bone of an earlier run of the program.
+  /// Milled bone of an earlier run of the program.
   std::optional<LeftoverMilling> milled = {};
 
-  /// Returns the file or folder that is opened, or the name of the built-in tooth.
+  /// Returns the file or folder to open, or the name of the built-in tooth.
   std::string name() const;
 };
 
-/// Opens what is requested; of a folder with several series, unless one is named or milled, only their list
-/// (`PreparedScan::series`). An exercise comes with that burr of its own which is nearest to the setup's.
+/// Opens the requested object. For a folder with several series, unless one is named or milled, returns only
+/// their list (`PreparedScan::series`). An exercise selects the one of its burrs nearest to the setup's.
 /// Takes seconds; any thread, also while another scan is milled. Throws InputError as `load_bone`,
-/// `load_exercise`, `open_branch`, `read_recorded_work` and Playback do, and if `milled` is of another scan;
-/// std::invalid_argument for settings out of range.
+/// `load_exercise`, `open_branch`, `read_recorded_work` and Playback do, and if `milled` belongs to another
+/// scan; std::invalid_argument for settings out of range.
 PreparedScan open_requested(const OpenRequest& request, MillingSetup setup);
 
-/// Opens on a thread of its own, and can be stopped: that thread then ends by itself within about a tenth of
-/// a second and gives its memory back. Only the destructor waits for it. For one thread.
+/// Opens on a thread of its own and can be stopped: that thread then ends within about 0.1 s and frees its
+/// memory. Only the destructor waits for it. For one thread.
 class Opening {
  public:
   Opening() = default;
@@ -47,19 +47,18 @@ class Opening {
   Opening(const Opening&) = delete;
   Opening& operator=(const Opening&) = delete;
 
-  /// Stops what is being opened, if anything is, and begins to open something else.
+  /// Stops opening, if in progress, and starts opening something else.
   void begin(OpenRequest request, const MillingSetup& setup);
   void stop();
 
-  /// Returns whether something is being opened, or was opened and not yet taken.
+  /// Returns whether something is being opened, or is ready and not yet taken.
   bool is_begun() const { return result_.valid(); }
   bool is_ready() const;
-  /// Returns what was opened, or throws the exception of opening it, once it is ready, and forgets the
-  /// request.
+  /// Returns the opened object once it is ready, or throws the exception of opening it; clears the request.
   PreparedScan take();
-  /// Returns what is being opened. Only while `is_begun`.
+  /// Returns the current request. Only while `is_begun`.
   const OpenRequest& request() const { return *request_; }
-  /// Returns how much of opening is done, 0 to 1.
+  /// Returns the progress of opening, 0 to 1.
   double share_done() const { return work_ ? work_->share_done.load() : 0; }
   /// Returns the time since `begin`, s.
   double passed_s() const;

@@ -15,7 +15,7 @@
 
 namespace osteomill::app {
 
-/// Hints of controls that several panels have.
+/// Hints of controls that appear in several panels.
 inline constexpr const char* kWholeHint = "Shows all of the bone from the same side";
 inline constexpr const char* kStartPageHint =
     "Closes this bone and shows the exercises and scans to begin with";
@@ -25,75 +25,76 @@ inline constexpr const char* kSeeThroughHint =
 inline constexpr const char* kArrowsHint =
     "Shows the force on your hand as a green arrow and the torque as an amber one";
 
-/// The column on the left: everything that can be set.
+/// Draws the left column: all settings.
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
-/// Asks for the tool that is remembered, if it can work with the bone.
+/// Requests the remembered tool if it can work with the bone.
 void recall_tool(ViewState& view);
 
-/// The free part of the right column, pixels from the top.
+/// Free part of the right column, pixels from the top.
 struct VerticalSpan {
   float top_px;
   float bottom_px;
 };
 
-/// The right column: everything that is measured, and if hardware holds the tool, how that is. Returns
-/// where the next thing below has room.
+/// Draws the right column: all readings, and the state of the device if one holds the tool. Returns the upper
+/// edge of the free space below.
 float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size);
 
-/// Below it, if the bone has labels: a legend, and how much of each was removed; what has no room is
-/// scrolled to.
+/// Draws the legend of the labels, if the bone has any, with the removed volume of each; scrolls if there is
+/// not enough room.
 float draw_labels(ViewState& view, const Simulation& simulation, const VerticalSpan& span);
 
-/// Below all of that, until it is sent away: how everything is done.
+/// Draws help on all controls below the labels until the user closes it.
 void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span);
 
-/// While the burr touches a no-go label and some seconds after: a red line across the top that says so.
+/// Draws a red warning across the top while the burr touches a no-go label, and for some seconds after.
 void draw_no_go(Simulation& simulation);
 
-/// Scale bar and orientation letters over the picture.
+/// Draws scale bar and orientation letters over the picture.
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient);
 
-/// While the tool is in the hand, how it is let go, at the lower edge.
+/// Draws a note at the lower edge on how to release the tool while it is held.
 void draw_hand(const ViewState& view);
 
-/// A red badge with how long a recording has been going on.
+/// Text and badge with the length of the running recording.
 std::string recording_text(double recording_s);
 void draw_recording(double recording_s);
 
-/// The popup in which a scan is chosen.
+/// Title of the popup in which a scan is chosen.
 inline constexpr const char* kOpenPopup = "Open a scan###open";
-/// Returns whether a dialogue is open, which alone takes pointer and keys then.
+/// Returns whether a dialogue is open; pointer and keys then belong to it alone.
 bool is_dialogue_open();
-/// The dialogue that is to be seen, if any. Takes down what is chosen.
+/// Draws the current dialogue, if any, and notes the choice.
 void draw_dialogue(DialogueQueue& dialogues);
 
-/// Draws the progress of opening a scan, in the middle of an empty window or above the bone that is milled
-/// meanwhile. Returns true if the user cancels it.
+/// Draws the progress of opening a scan, in the middle of an empty window or above the bone being milled.
+/// Returns true if the user cancels.
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
                   bool above);
 
-/// Takes what mouse, keyboard, SpaceMouse and game controller did since the last picture to the camera and
-/// the tool, as the help tells.
+/// Applies the input of mouse, keyboard, SpaceMouse and game controller since the last frame to camera and
+/// tool, as described in the help.
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, Gamepad& gamepad,
                 const PixelSize& size);
 
-/// Takes what the pointer did since the last picture to the camera alone.
+/// Applies the pointer's input since the last frame to the camera only.
 void take_view_input(ViewState& view, const PixelSize& size);
 
-/// The recording that is played: what its tick holds, the time line, and buttons for all that can be done.
+/// Draws the panels for playback: the data of the current tick, the time line and the controls.
 void draw_playback(ViewState& view, Playback& playback, const PixelSize& size);
 
-/// Brings the tool out of bone that came back (a cut undone, another isovalue), or if it grew while it was in
-/// a hole: puts it before the bone where it is seen. Does nothing to a tool that only presses on bone.
+/// Moves the tool out of bone that was restored (a cut undone, another isovalue), or out of a hole if it was
+/// enlarged: to a pose in front of the bone at the same pixel. Does nothing to a tool that only presses on
+/// bone.
 void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size);
 
-/// The option that the slider of stiffness sets; and the value in force, which is nothing if the algorithm
-/// has no such setting.
+/// Option set by the stiffness slider, and its current value; std::nullopt if the algorithm has no such
+/// setting.
 inline constexpr const char* kStiffnessOption = "stiffness";
 std::optional<double> stiffness_of(const MillingSetup& setup);
 
-/// Returns where the isovalue in force came from.
+/// Returns how the current isovalue was determined.
 std::string isovalue_text(const Simulation& simulation);
 
 }  // namespace osteomill::app

@@ -22,25 +22,25 @@
 
 namespace osteomill::app {
 
-/// Times of a recording to be marked, s.
+/// Times of a recording to mark, s.
 struct PlaybackMarks {
-  /// From and to.
+  /// Start and end of each interval.
   using Spans = std::vector<std::pair<double, double>>;
-  /// The burr cuts; the tool touches bone or a guard; it touches what it must not; not the wrench that was
-  /// asked for was sent (slow changes do not count).
+  /// Intervals in which the burr cuts; the tool touches bone or a guard; it touches a no-go structure;
+  /// another wrench than the requested one was sent (slow changes do not count).
   Spans cuts, contacts, no_go, faults;
-  /// The stretches in which the burr was held off a structure, by the structure's name.
+  /// Intervals in which a guard held the burr off a structure, by the structure's name.
   std::vector<std::pair<std::string, Spans>> guards;
-  /// The beginnings of steps of the exercise, and of sessions with another burr, algorithm or bone.
+  /// Starts of exercise steps, and of sessions with another burr, algorithm or bone.
   std::vector<std::pair<double, std::string>> steps;
 };
 PlaybackMarks marks_of(const RecordedWork& work);
 
-/// A recording that is played: no haptic thread runs, all that is shown was recorded, and the bone is milled
-/// again. Meanwhile another thread replays the recording, as `replay --verify` does. For the window's thread.
+/// A recording being played: without a haptic thread; shows the recorded data and repeats the milling on the
+/// bone. Meanwhile another thread verifies the recording, as `replay --verify` does. For the window's thread.
 class Playback {
  public:
-  /// Opens the recording at its first tick. Throws InputError as RecordedBone does. Long work; any thread.
+  /// Opens the recording at its first tick. Throws InputError as RecordedBone does. Takes long; any thread.
   explicit Playback(RecordedWork work);
   ~Playback();
 
@@ -50,27 +50,27 @@ class Playback {
   double begin_s() const { return recording().records.front().time_s; }
   double end_s() const { return recording().records.back().time_s; }
 
-  /// Returns the number of the tick that is shown.
+  /// Returns the number of the current tick.
   std::size_t tick() const { return bone_.ticks() - 1; }
   const TickRecord& record() const { return recording().records[tick()]; }
   const SessionSettings& settings() const { return settings_[record().session]; }
   const RunDescription& run() const { return recording().sessions[record().session].start.run; }
-  /// Returns the view that the trainee had then; null if none was recorded.
+  /// Returns the trainee's view at this time; null if none was recorded.
   const ViewSample* view() const;
 
   void go_to_tick(std::size_t tick);
   void go_to_time(double time_s);
-  /// Lets time pass, if it plays.
+  /// Advances the playback, if it is playing.
   void advance(double passed_s);
   bool is_playing() const { return is_playing_; }
-  /// Plays, from the beginning if it has come to its end, or pauses.
+  /// Starts playing, from the beginning if at the end, or pauses.
   void play(bool on);
   double speed() const { return speed_; }
   void set_speed(double speed) { speed_ = speed; }
   bool follows_recorded_view() const { return follows_view_ && view() != nullptr; }
   void follow_recorded_view(bool on) { follows_view_ = on; }
 
-  /// Returns whether the recording comes out again to the bit, as far as that is known.
+  /// Returns whether the recording replays bit-identically, as far as it has been checked.
   std::string verdict() const;
   bool is_verified() const {
     return verified_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
@@ -80,9 +80,9 @@ class Playback {
   ChangedBricks take_changed_bricks() { return follower_.take_changed_bricks(); }
   const BoneBox& box() const { return box_; }
   const WindowLevel& grey_window() const { return grey_window_; }
-  /// Returns the labels that colour the bone: the exercise's, or else its own; null if there are none.
+  /// Returns the labels that colour the bone: the exercise's, or else the bone's own; null if there are none.
   const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
-  /// Returns whether the trainee saw them.
+  /// Returns whether the trainee saw the label colours.
   bool has_guidance() const { return view() == nullptr || view()->has_guidance; }
 
  private:
@@ -104,7 +104,7 @@ class Playback {
   std::shared_future<std::string> verified_;
 };
 
-/// Sets the camera and the cuts as they were in a view.
+/// Sets camera and cuts to those of a recorded view.
 void show_view(const ViewSample& sample, ViewState& view);
 
 }  // namespace osteomill::app

@@ -8,16 +8,16 @@
 
 namespace osteomill::app {
 
-/// A recording in the window while it is played; nothing is milled meanwhile. One at a time on a stage.
+/// A recording being played in the window; nothing is milled meanwhile. Only one at a time on a stage.
 class PlaybackScreen {
  public:
-  /// Shows the recording at this time of it, s.
+  /// Shows the recording at time `at_s`.
   PlaybackScreen(std::unique_ptr<Playback> playback, double at_s, Stage& stage);
 
   const Playback& playback() const { return *playback_; }
-  /// Plays on by the time since the last picture, and draws.
+  /// Advances by the time since the last frame, and draws.
   void draw(Stage& stage);
-  /// Returns whether all is drawn and the recording was verified.
+  /// Returns whether everything is drawn and the recording is verified.
   bool is_settled(const Stage& stage) const { return stage.bone.is_up_to_date() && playback_->is_verified(); }
 
  private:

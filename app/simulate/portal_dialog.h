@@ -7,16 +7,16 @@
 
 namespace osteomill::app {
 
-/// The answer of the desktop's dialog for files.
+/// Result of the desktop's file dialog.
 struct PortalAnswer {
-  /// False if there is no such dialog: no session bus, no portal on it, or none that answers within seconds.
+  /// False if there is no such dialog: no session bus, no portal, or no response within seconds.
   bool is_available = false;
-  /// The file or folder that was chosen; nothing if the user cancelled.
+  /// The chosen file or folder; std::nullopt if the user cancelled.
   std::optional<std::string> path;
 };
 
-/// Asks for a file or folder by the desktop's own dialog (org.freedesktop.portal.FileChooser on the session
-/// bus). For one thread, which never waits longer than the bus itself takes to answer.
+/// Lets the user choose a file or folder in the desktop's own dialog (org.freedesktop.portal.FileChooser on
+/// the session bus). For one thread, which never waits longer than the bus takes to respond.
 class PortalDialog {
  public:
   PortalDialog();
@@ -24,10 +24,10 @@ class PortalDialog {
   PortalDialog(const PortalDialog&) = delete;
   PortalDialog& operator=(const PortalDialog&) = delete;
 
-  /// Shows the dialog, in `start` if the desktop follows. Not while it is shown.
+  /// Shows the dialog, starting in `start` if the desktop supports that. Not while it is shown.
   void ask(bool for_folder, const std::filesystem::path& start);
   bool is_asking() const { return request_ != nullptr; }
-  /// Waits for no answer any longer.
+  /// Stops waiting for the answer.
   void give_up();
   /// Returns the answer once it is there.
   std::optional<PortalAnswer> take_answer();
@@ -37,7 +37,7 @@ class PortalDialog {
   std::unique_ptr<Request> request_;
 };
 
-/// Returns the path that a file's URI names, with its %XX resolved; nothing for another kind of URI.
+/// Returns the path of a file URI, percent-decoded; std::nullopt for any other URI.
 std::optional<std::string> path_of_uri(const std::string& uri);
 
 }  // namespace osteomill::app

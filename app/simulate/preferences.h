@@ -11,19 +11,19 @@
 
 namespace osteomill::app {
 
-/// The place of a window on the screens, in their pixels.
+/// Position and size of a window, in screen pixels.
 struct WindowPlace {
   int left = 0, top = 0;
-  /// Zero if it is not known.
+  /// Zero if unknown.
   int width = 0, height = 0;
   friend bool operator==(const WindowPlace&, const WindowPlace&) = default;
 };
 
-/// All that the window keeps for this user from one start to the next. `fields_of` lists each value once,
+/// Everything the window remembers for this user between sessions. Each value is listed once, in `fields_of`,
 /// with its name in the file.
 struct Preferences {
   WindowPlace place;
-  /// How much larger than usual text is; 0: as the screen asks for.
+  /// Scale of the text; 0 follows the screen.
   double text_scale = 0;
   Theme theme = Theme::dark;
   bool ghost = true;
@@ -33,50 +33,50 @@ struct Preferences {
   bool sound = true;
   bool follow_burr = false;
   bool loupe = false;
-  /// How much larger the loupe shows the bone than the view.
+  /// Magnification of the loupe relative to the view.
   float loupe_power = 2;
-  /// The page that explains the controls was shown, and comes by F1 alone.
+  /// The help page was shown; from then on it appears only on F1.
   bool help_seen = false;
-  /// Whether a group of controls, or a panel, is more than its title.
+  /// Whether each group of controls or panel is expanded.
   struct Open {
     bool controls = true, readings = true;
     bool milling = true, view = true, files = true, closer = false, bone = false, cuts = false;
-    /// The laboratory's groups are there at all, and each of them.
+    /// Whether the laboratory group is expanded, then each of its groups.
     bool laboratory = false;
     bool algorithm = true, tool = true, drive = false;
     /// All measures in the results of an exercise.
     bool measures = false;
   };
   Open open;
-  /// The folder from which a scan was opened last; empty if there is none.
+  /// Folder from which a scan was last opened; empty if none.
   std::string last_folder;
-  /// The burr, its shaft and its drive that were chosen last; nothing else of it counts.
+  /// Burr, shaft and drive that were last chosen; the other fields are not used.
   MillingSetup tool;
 };
 
-/// Copies burr, shaft and drive. Returns whether any of them was another.
+/// Copies burr, shaft and drive. Returns whether any of them changed.
 bool copy_tool(const MillingSetup& from, MillingSetup& to);
 
-/// Reads what was kept. Without a file, and, with one line on standard error, if the file is damaged or has a
-/// value out of range: the defaults.
+/// Reads the preferences. Returns the defaults if there is no file, or, with one line on standard error, if
+/// it is damaged or has a value out of range.
 Preferences read_preferences();
 
-/// Returns the preferences as a file has them.
+/// Returns the preferences in the format of the file.
 std::string preferences_text(const Preferences& preferences);
 
-/// Writes such a text in one step, so that two windows that write at once leave the whole file of one of
-/// them. Does nothing without a folder for the user's state, or if that cannot be written.
+/// Writes such a text atomically, so that of two windows that write at once, the file of one is kept whole.
+/// Does nothing if there is no state folder or it cannot be written.
 void write_preferences(const std::string& text);
 
-/// Writes the preferences as they change, on a thread of its own, so that no picture waits for the disk. For
+/// Writes the preferences when they change, on a thread of its own, so that no frame waits for the disk. For
 /// one thread.
 class PreferencesKeeper {
  public:
-  /// `now`: as they were read.
+  /// `now` are the preferences as read.
   explicit PreferencesKeeper(const Preferences& now) : kept_(preferences_text(now)) {}
-  /// Writes them if they changed and the last time is a while ago. Call once for each picture.
+  /// Writes changed preferences if the last write was long enough ago. Call once per frame.
   void keep(const Preferences& preferences);
-  /// Writes them if they changed, and waits for it.
+  /// Writes changed preferences and waits until they are written.
   void keep_now(const Preferences& preferences);
 
  private:

@@ -13,16 +13,16 @@
 
 namespace osteomill::app {
 
-/// Returns the plane of a cut; its `other_side` turns it round.
+/// Returns the plane of a cut, reversed if `other_side` is set.
 ClipPlane plane_of(const ViewState::Cut& cut);
-/// Returns the planes of the cuts that are on.
+/// Returns the planes of the active cuts.
 std::vector<ClipPlane> planes_of(const ViewState& view);
 
-/// Returns the scene to be drawn now.
+/// Returns the scene to draw now.
 ViewScene scene_of(const ViewState& view, Simulation& simulation);
 ViewScene scene_of(const ViewState& view, const Playback& playback);
 
-/// Samples the grey values on the cuts again as their planes move, and a few times a second as bone is
+/// Resamples the grey values on the cuts when their planes move, and a few times a second while bone is
 /// milled.
 class CutUpdates {
  public:
@@ -41,11 +41,12 @@ class CutUpdates {
   int pictures_ = 0;
 };
 
-/// Three planes across the patient and one that faces the camera, all off, in the first grey values.
+/// Resets the cuts: three along the patient's axes and one facing the camera, all off, with the initial grey
+/// values.
 void reset_cuts(ViewState& view);
 
-/// A cut that is switched on begins at the burr's centre, or at the end of the bone nearest to it; on the
-/// side that leaves bone to be seen.
+/// Places a cut that is switched on at the burr's centre, or at the nearest end of the bone, and selects the
+/// side that leaves bone visible.
 void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W);
 
 }  // namespace osteomill::app

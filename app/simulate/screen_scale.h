@@ -4,21 +4,20 @@
 
 namespace osteomill::app {
 
-/// A screen as the system tells of it.
+/// A screen as reported by the system.
 struct Screen {
   PixelSize size;
-  /// 0 if it is not known.
+  /// 0 if unknown.
   double height_mm = 0;
-  /// The factor by which the system wants text larger than usual.
+  /// Text scale set in the system.
   double content_scale = 1;
 };
 
-/// Returns how much larger than on an ordinary screen (96 dots an inch) text and all that is measured by it
-/// must be to be read: the factor that the system wants, or, if it wants none, the one that the density of
-/// the screen's dots asks for.
+/// Returns the scale at which text and everything sized by it is readable, relative to an ordinary screen (96
+/// dpi): the system's, or if that is 1, one chosen by the screen's pixel density.
 double scale_for(const Screen& screen);
 
-/// The scale asked for, or the greatest at which both columns and a view between them have room in the
+/// Returns the requested scale, or the largest at which both columns and a view between them fit into the
 /// window.
 double fitting_scale(double asked, const PixelSize& window);
 

@@ -10,17 +10,16 @@ class BoneScene;
 class FilesPanel;
 struct Simulation;
 
-/// Takes the keys and clicks that are for seeing: follow the burr, loupe, measuring. Call once for each
-/// picture.
+/// Handles the keys and clicks for viewing: follow the burr, loupe, measuring. Call once per frame.
 void update_seeing(ViewState& view, Simulation& simulation, const PixelSize& size);
 
 /// Draws the loupe into the window, and landmarks and distances over the picture.
 void draw_seen(const ViewState& view, const ViewScene& scene, BoneScene& bone, const PixelSize& size);
 
-/// Draws the group of controls for all of that.
+/// Draws the group of controls for viewing.
 void draw_seeing(ViewState& view, const FilesPanel& files);
 
-/// Draws window and level of the cuts, within the group Cuts.
+/// Draws window and level of the cuts, in the group Cuts.
 void draw_grey(ViewState& view, const WindowLevel& first);
 
 }  // namespace osteomill::app

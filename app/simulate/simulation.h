@@ -27,12 +27,11 @@
 
 namespace osteomill::app {
 
-/// A scan that is open, and what the window shows of it beside its surface.
+/// An open scan, with the data that the window shows besides its surface.
 struct ScanInfo {
   std::string name;
   ScanOptions source;
-  /// The isovalue it was opened with, where that came from, half a sentence, and " HU" if that is its
-  /// unit.
+  /// The initial isovalue, how it was determined (half a sentence), and " HU" if that is its unit.
   double isovalue;
   std::string isovalue_from;
   std::string unit;
@@ -40,28 +39,28 @@ struct ScanInfo {
   DensityHistogram histogram;
   std::vector<Boundary> boundaries;
   WindowLevel grey_window;
-  /// Null if the bone has none.
+  /// Null if the bone has no labels.
   std::shared_ptr<const LabelMap> labels;
 };
 
-/// A scan that was opened and made ready for milling, but is not milled yet.
+/// A scan that was opened and prepared for milling.
 struct PreparedScan {
   ScanInfo scan;
   PreparedMilling milling;
-  /// Null if no exercise is worked on.
+  /// Null without an exercise.
   std::unique_ptr<ExerciseWork> exercise;
-  /// Given if it goes on from a recording.
+  /// Set if milling continues from a recording.
   std::optional<BranchPoint> from = {};
-  /// The file that already keeps what was milled of it, if any.
+  /// The autosave file that already holds its milling, if any.
   std::optional<AutosaveFile> milled_file = {};
-  /// A recording that is to be played from this time of it, s; nothing is then milled.
+  /// A recording to play from `play_at_s`; nothing is milled then.
   std::unique_ptr<Playback> playback = {};
   double play_at_s = 0;
-  /// The series that a folder holds, if there are several and none was named. Nothing else was then read.
+  /// The series of a folder, if there are several and none was named. All other members are then empty.
   std::vector<SeriesSummary> series = {};
 };
 
-/// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
+/// Holder of the tool: hardware, which must outlive the simulation, or a virtual hand of this name.
 struct ToolSource {
   std::string name = kMouse;
   ConnectedDevice* hardware = nullptr;
@@ -70,20 +69,20 @@ struct ToolSource {
   bool is_pointer() const { return hardware == nullptr && name != kSimulated; }
 };
 
-/// A scan that is being milled; one at a time.
+/// A scan being milled; only one at a time.
 struct Simulation {
-  /// The tool begins at `X_WT`; with the simulated operator where they begin.
+  /// The tool starts at `X_WT`, or with the simulated operator where that starts.
   Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source,
              const std::string& command_line);
 
-  /// Begins to tick.
+  /// Starts ticking.
   void start();
-  /// Calls LiveMilling::update, and updates the ticks' history, the counts and the autosave. Call once for
-  /// each picture.
+  /// Calls LiveMilling::update, and updates the history of ticks, the counts and the autosave. Call once per
+  /// frame.
   void update();
-  /// Returns how many ticks the history has once it is full.
+  /// Returns the capacity of the history, ticks.
   std::size_t max_history() const;
-  /// Returns what a recording that is begun now says about it.
+  /// Returns the description for a recording that starts now.
   RunDescription describe() const;
 
   /// Returns the labels that colour the bone: the exercise's, or else the bone's own.
@@ -99,23 +98,22 @@ struct Simulation {
   std::unique_ptr<ExerciseWork> exercise;
   std::optional<BranchPoint> from;
   std::string command_line;
-  /// Warnings about this isovalue, tool and settings (isovalue_warnings,
-  /// coarseness_warnings, setting_warnings).
+  /// Warnings about isovalue, tool and settings (isovalue_warnings, coarseness_warnings, setting_warnings).
   std::vector<std::string> warnings;
   ToolSource tool_source;
-  /// Holds the tool where mouse, keyboard or SpaceMouse move it.
+  /// Holds the tool if mouse, keyboard or SpaceMouse move it.
   VirtualHand hand;
   std::optional<SimulatedOperator> simulated;
-  /// The one of hardware, `hand` and `simulated` that holds the tool.
+  /// Refers to the active one of hardware, `hand` and `simulated`.
   Device& device;
   LiveMilling milling;
   Autosave autosave;
-  /// The labels that the burr met, and how much of each has gone (LiveMilling::removed_by_label).
+  /// Labels touched by the burr, and the removed volume of each (LiveMilling::removed_by_label).
   LabelCount label_count;
   std::vector<double> removed_by_label_mm3;
-  /// The text to show on the no-go contact that began last.
+  /// Text on the latest no-go contact.
   std::string no_go_text;
-  /// The ticks of the last 5 seconds.
+  /// Ticks of the last 5 seconds.
   std::deque<TickRecord> history;
 
  private:
@@ -123,7 +121,7 @@ struct Simulation {
   void count_labels();
   void update_warnings();
 
-  // The isovalue, the burr's radius (mm) and the lines of setting_warnings that the warnings are for.
+  // Isovalue, burr radius (mm) and lines of setting_warnings for which the warnings were computed.
   std::optional<std::tuple<double, double, std::vector<std::string>>> warned_inputs_;
   std::future<std::vector<std::string>> pending_warnings_;
   std::uint64_t counted_version_ = 0;

@@ -31,26 +31,27 @@ struct SimulatorOptions {
   MillingOptions milling;
   DeviceOption device{kMouse};
   SendOption send;
-  /// How much larger than usual text is drawn; not given: as the screen needs it.
+  /// Scale of the text; unset: follows the screen.
   std::optional<double> ui_scale;
-  /// Null: a person works the window.
+  /// Null if a person operates the window.
   WindowDriver* driver = nullptr;
   bool no_help = false;
-  /// Folder of recordings and saved files.
+  /// Folder for recordings and saved files.
   std::string folder = ".";
   std::string command_line;
   Preferences remembered;
-  /// No option gave another tool than the remembered one.
+  /// No option named a tool, so the remembered one may be used.
   bool is_tool_free = true;
 };
 
-/// Everything between opening the window and closing it: which screen is shown, what is opened next, and that
-/// nothing unsaved is lost on the way.
+/// Controls the window from opening to closing: which screen is shown, what is opened next, and that no
+/// unsaved work is lost.
 class Simulator {
  public:
   explicit Simulator(const SimulatorOptions& options);
 
-  /// Returns once the window was closed. Throws InputError if what was named cannot be opened.
+  /// Returns when the window is closed. Throws InputError if the named scan, recording or exercise cannot be
+  /// opened.
   void run();
 
  private:
@@ -98,22 +99,22 @@ class Simulator {
   void print_results();
 
   SimulatorOptions options_;
-  // The first scan is opened with it.
+  // Setup for the first scan.
   MillingSetup setup_;
   std::unique_ptr<ConnectedDevice> hardware_;
   Stage stage_;
   PreferencesKeeper keeper_;
   Opening opening_;
-  // Waits for the answer to what becomes of the scan that is milled.
+  // Waits for the user's decision on the milled scan.
   std::optional<PreparedScan> opened_;
   int changes_before_ = 0;
-  // Milled bone of an earlier run that is offered to the user.
+  // Milled bone of an earlier run, offered to the user.
   std::optional<LeftoverMilling> leftover_;
   bool closing_ = false;
   bool reported_ = false;
   std::chrono::steady_clock::time_point last_picture_ = std::chrono::steady_clock::now();
-  // The screen: none of these until something is opened. Milling stands last because its ticks refer to all
-  // that stands above.
+  // The current screen: none until something is opened. Milling is last because its ticks refer to the
+  // members above.
   std::optional<StartPage> start_page_;
   OpenDialog open_dialog_;
   std::unique_ptr<PlaybackScreen> playback_;

@@ -12,7 +12,7 @@
 
 namespace osteomill::app {
 
-/// The spindle that is heard.
+/// The spindle's sound and its present state.
 struct SpindleVoice {
   SoundPlayer player;
   SpindleState state;
@@ -20,7 +20,7 @@ struct SpindleVoice {
   void set(const SpindleState& heard, const BeatState& beat) { player.set(state = heard, beat); }
 };
 
-/// Holds everything that the screens of one window share: the start page, milling, and playback.
+/// Everything shared by the screens of a window: start page, milling and playback.
 struct Stage {
   Window window;
   ViewState view;

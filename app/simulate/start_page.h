@@ -14,7 +14,7 @@
 
 namespace osteomill::app {
 
-/// The choice of a user on the start page: an exercise with a name to record, or a scan.
+/// The user's choice on the start page: an exercise with a name to record, or a scan.
 struct StartChoice {
   std::string exercise;
   std::string trainee;
@@ -22,13 +22,13 @@ struct StartChoice {
   OpenKind open = OpenKind::none;
 };
 
-/// The page that the window opens with if neither a scan nor an exercise was named.
+/// The page shown if neither a scan nor an exercise was named.
 class StartPage {
  public:
-  /// Reads the exercises that come along, and their pictures. The window's OpenGL context is current.
+  /// Reads the included exercises and their pictures. The window's OpenGL context must be current.
   StartPage();
 
-  /// Draws the page. Returns what was chosen; nothing in most pictures.
+  /// Draws the page. Returns the user's choice; std::nullopt in most frames.
   std::optional<StartChoice> draw(const PixelSize& size);
 
  private:
@@ -49,13 +49,13 @@ class StartPage {
   std::array<char, 256> name_{};
 };
 
-/// Returns the folder of the exercises that come along: beside the program or in a folder above it, or where
-/// the documents are installed; empty if there is none.
+/// Returns the folder of the included exercises: next to the program, in a folder above it, or with the
+/// installed documents; empty if there is none.
 std::filesystem::path exercises_folder();
 
-/// Returns the scans that were opened last, the newest first, as far as they are still there.
+/// Returns the scans opened most recently, newest first, without those that no longer exist.
 std::vector<std::string> recent_scans();
-/// Puts a scan at the head of those. Does nothing without a folder for the user's state.
+/// Puts a scan at the head of that list. Does nothing without a state folder.
 void note_recent_scan(const std::string& scan);
 
 }  // namespace osteomill::app

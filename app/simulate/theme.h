@@ -4,17 +4,17 @@
 
 namespace osteomill::app {
 
-/// The colours of the panels. The view of the bone keeps its own.
+/// Colour theme of the panels. The view of the bone has its own colours.
 enum class Theme { dark, light };
 
-/// Sets ImGui's colours and sizes, with everything `scale` times as large as usual.
+/// Sets ImGui's colours, and its sizes multiplied by `scale`.
 void set_theme(Theme theme, float scale);
 
 namespace ui {
 
-/// Kinds of coloured text and lines. Each is readable on the panels of either theme.
+/// Kinds of coloured text and lines. Each is legible on the panels of both themes.
 enum class Ink { warning, danger, good, note, force, torque };
-/// Returns its colour in the theme that is set.
+/// Returns the colour in the current theme.
 ImVec4 ink(Ink kind);
 
 }  // namespace ui

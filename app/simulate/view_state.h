@@ -20,30 +20,29 @@
 
 namespace osteomill::app {
 
-/// The three planes across the patient and a free one.
+/// The three anatomical planes and a free one.
 inline constexpr std::array<const char*, kMaxClipPlanes> kCutNames{"axial", "coronal", "sagittal", "free"};
 
-/// All that the window shows, and how, beside the simulation itself. What outlives the window is in
-/// Preferences.
+/// State of the window besides the simulation itself. State that outlives the window is in Preferences.
 struct ViewState : Preferences {
   Camera camera;
   BoneBox box;
   Pose X_W_target;
-  /// The pose that the tool is brought to, until it is there.
+  /// Pose to which the tool is being moved, until it has arrived.
   std::optional<Pose> X_W_destination;
   bool bring_requested = false;
-  /// The pointer moves the tool without a button.
+  /// The pointer moves the tool without a pressed button.
   bool holding_tool = false;
-  /// Whether the left button drags the tool; decided by the place where it was pressed.
+  /// The left button drags the tool; decided by where it was pressed.
   bool dragging_tool = false;
-  /// Whether a hand was on the tool, in either way, in the picture before.
+  /// The tool was held, in either way, in the previous frame.
   bool was_held = false;
-  /// For how long the hand still gives way since nothing pushed the tool any more.
+  /// Time left until the hand stops yielding after the last push, s.
   double relaxing_s = 0;
   bool dragging_view = false;
-  /// The left button is the spindle's pedal as long as it is down.
+  /// The left button acts as the spindle's pedal while pressed.
   bool pedal_down = false;
-  /// The progress of the operator in showing by two moves how the device stands; the tool stays meanwhile.
+  /// Progress of calibrating the device's orientation by two moves; the tool stands still meanwhile.
   struct Calibration {
     enum class Step { none, right, up };
     Step step = Step::none;
@@ -51,26 +50,26 @@ struct ViewState : Preferences {
     Vec3 right_B_mm = Vec3::Zero();
   };
   Calibration calibration;
-  /// The setup that the controls are set to, and whether milling is still to be changed to it.
+  /// Setup selected by the controls, and whether it still has to be applied.
   MillingSetup requested_setup;
   bool setup_changed = false;
-  /// The number of changes of `requested_setup`.
+  /// Number of changes of `requested_setup`.
   int changes = 0;
   bool help = true;
-  /// The kind that a button asked to choose for opening, and the scan or recording to be opened.
+  /// Kind of object that a button requested to open, and the scan or recording to open.
   OpenKind open_requested = OpenKind::none;
   std::string scan_requested;
-  /// The tick of a recording to mill on from, as a button asked for.
+  /// Requested tick of a recording from which to continue milling.
   std::optional<BranchOptions> branch_requested;
-  /// The exercise to be opened, and whether the start page is to be shown, as a button asked for.
+  /// Exercise to open, and whether the start page was requested.
   std::string exercise_requested;
   bool start_page_requested = false;
-  /// Whether the exercise is to be finished, as a button asked for.
+  /// The user requested to finish the exercise.
   bool finish_requested = false;
-  /// By how many steps text is to become larger; negative: smaller.
+  /// Requested steps of text size; negative: smaller.
   int text_steps = 0;
   bool reset_requested = false;
-  /// Requests that wait until nothing else is being prepared.
+  /// Requests that wait until no preparation is under way.
   bool undo_requested = false;
   bool redo_requested = false;
   bool reset_confirmed = false;
@@ -79,13 +78,13 @@ struct ViewState : Preferences {
   bool picture_requested = false;
   ChosenPiece chosen_piece;
   DialogueQueue dialogues;
-  /// The text on what was done last, and the file or folder that it made, if any.
+  /// Message on the last action, and the file or folder it wrote, if any.
   std::string message;
   std::filesystem::path result;
-  /// The page of the report that was made last.
+  /// Page of the latest report.
   std::filesystem::path report;
 
-  /// A plane that cuts the bone open: which way it faces and how far along that it lies.
+  /// A plane that cuts the bone open: its normal and its offset along that.
   struct Cut {
     bool on = false;
     bool other_side = false;
@@ -93,15 +92,16 @@ struct ViewState : Preferences {
     float offset_mm = 0;
   };
   std::array<Cut, kMaxClipPlanes> cuts;
-  /// Which one the pointer drags, or -1.
+  /// Cut dragged by the pointer, or -1.
   int dragged_cut = -1;
-  /// The densities that the cuts draw black and white, if the user has set them, and whether a drag does.
+  /// Densities drawn black and white on the cuts, if the user has set them, and whether a drag is changing
+  /// them.
   std::optional<WindowLevel> grey_window;
   bool dragging_grey = false;
-  /// A click marks the bone. Each two landmarks in turn are the ends of a distance.
+  /// A click marks the bone. Each successive pair of landmarks defines a distance.
   bool measuring = false;
   std::vector<Landmark> landmarks;
-  /// The isovalue that the slider shows while it is moved, and until the bone has it.
+  /// Isovalue shown by the slider while it is moved, and until the bone has it.
   std::optional<float> isovalue;
 };
 

@@ -13,13 +13,13 @@
 
 namespace osteomill::app {
 
-/// Everything that the window shows at the end of a picture.
+/// Everything the window shows at the end of a frame.
 struct WindowContents {
   const Window& window;
   ViewState& view;
-  /// Null while no scan is open.
+  /// Null if no scan is open.
   Simulation* simulation;
-  /// Null while no recording is played.
+  /// Null if no recording is played.
   const Playback* playback;
   const FilesPanel& files;
   const SpindleState& sound;
@@ -27,7 +27,7 @@ struct WindowContents {
   std::size_t triangles;
 };
 
-/// Works the window in place of a person. The program has none; the tests' driver reads a script
+/// Operates the window in place of a person. The program itself has none; the one of the tests reads a script
 /// (tests/window/driver). All calls come from the window's thread.
 class WindowDriver {
  public:
@@ -36,16 +36,16 @@ class WindowDriver {
   WindowDriver& operator=(const WindowDriver&) = delete;
   virtual ~WindowDriver() = default;
 
-  /// Returns whether it begins while the first scan is still being opened.
+  /// Returns whether to start while the first scan is still being opened.
   virtual bool starts_before_scan() const = 0;
-  /// Gives ImGui the input of the next picture, `passed_s` after the last one. `is_settled`: nothing is being
-  /// prepared, written or brought to its place.
+  /// Passes the input of the next frame to ImGui, `passed_s` after the last one. `is_settled` is true if
+  /// nothing is being prepared, written or moved into place.
   virtual void give_input(double passed_s, bool is_settled, Window& window) = 0;
-  /// Reads the window after ImGui was drawn and before the picture is shown.
+  /// Inspects the window after ImGui has been drawn and before the frame is shown.
   virtual void read(const WindowContents& contents) = 0;
-  /// Returns whether the window is to close without a question.
+  /// Returns whether the window has to close without a question.
   virtual bool wants_to_close() const = 0;
-  /// Is called once, after the last picture.
+  /// Called once, after the last frame.
   virtual void finish() = 0;
 };
 
