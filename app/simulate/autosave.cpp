@@ -33,7 +33,7 @@ fs::path autosave_folder() {
   return state.empty() ? fs::path() : state / "autosave";
 }
 
-// The newest first: their names begin with the time.
+// Returns the folders newest first: their names begin with the time.
 std::vector<fs::path> folders_in(const fs::path& folder) {
   std::error_code ignored;
   std::vector<fs::path> folders;
@@ -46,7 +46,7 @@ std::string absolute_path(const fs::path& path) {
   return path.empty() ? std::string() : fs::absolute(path).lexically_normal().string();
 }
 
-// The files may be sought from another folder later.
+// Uses absolute paths, because the next start may be in another folder.
 RunDescription describe(ScanOptions scan, const LiveMilling& milling) {
   const std::string name = is_builtin(scan.scan) ? scan.scan : absolute_path(scan.scan);
   RunDescription run = milling.describe(name.empty() ? kBuiltinTooth : name, "");
@@ -69,7 +69,7 @@ std::optional<AutosaveFile> AutosaveFile::make() {
   std::error_code error;
   fs::create_directories(all, error);
   if (all.empty() || error) return std::nullopt;
-  // Another program that starts just now may take a folder that is still empty for one that is left over.
+  // Another process starting now may mistake the still empty folder for a leftover.
   for (int n = 0; n < 100; ++n) {
     std::string folder = all / fmt::format("{:%Y%m%d-%H%M%S}-XXXXXX", fmt::localtime(std::time(nullptr)));
     if (::mkdtemp(folder.data()) == nullptr) break;
@@ -84,7 +84,7 @@ std::optional<LeftoverMilling> last_leftover_milling() {
     if (!file) continue;
     std::error_code ignored;
     if (!fs::exists(file->path(), ignored)) {
-      // Its program was killed before anything was kept; the folder then goes with `file`.
+      // Its process was killed before the first write; destroying `file` removes the folder.
       file->clear();
       continue;
     }
@@ -92,7 +92,7 @@ std::optional<LeftoverMilling> last_leftover_milling() {
       SessionStart start = read_start(file->path());
       return LeftoverMilling{std::move(*file), std::move(start)};
     } catch (const InputError&) {
-      // Not ours to remove: another version of the program may read it.
+      // Keep it: another version of the program may be able to read it.
     }
   }
   return std::nullopt;

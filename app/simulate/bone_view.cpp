@@ -15,7 +15,7 @@ namespace osteomill::app {
 
 namespace {
 
-// The panels on both sides, and what is left free around the bone.
+// Width of the panels on both sides, and the fraction of the remaining space that the bone fills.
 constexpr float kPanels_px = 616;
 constexpr double kFilled = 0.85;
 constexpr double kAside_rad = 0.5;
@@ -48,7 +48,7 @@ std::string tool_fault(const MillingTool& tool, const BoneBox& box) {
 Camera showing_whole(Camera camera, const BoneBox& box, const PixelSize& size) {
   camera.focus_W = box.centre_W();
   const double up = std::tan(0.5 * camera.field_of_view_rad) * kFilled;
-  // In a narrow window the panels would leave no room.
+  // In a narrow window the panels would leave no space.
   const double free_px = std::max(size.width - static_cast<double>(ui::px(kPanels_px)), 0.3 * size.width);
   const double across = up * free_px / size.height;
   camera.distance_mm = 2;
@@ -76,7 +76,7 @@ Camera first_camera(const BoneBox& box, const PixelSize& size) {
 }
 
 Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, const PixelSize& size) {
-  // Tilted, so that depths are seen: from above towards the front, from a side upwards.
+  // Tilted, so that depth is visible: a view from above towards the front, one from a side upwards.
   constexpr double kTilt_rad = 0.45;
   const Vec3& outward_W = exercise.outward_W;
   const bool is_above = std::abs(outward_W.z()) > 0.5;
@@ -88,7 +88,7 @@ Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, cons
 
 namespace {
 
-// The part of a line of sight that may meet bone.
+// The part of a line of sight that can hit bone.
 struct Sight {
   Vec3 from_W;
   Vec3 to_W;
@@ -105,7 +105,7 @@ std::optional<Sight> sight_through(const GridGeometry& geometry, const Camera& c
                camera.eye_W() + (middle_mm + radius_mm) * ray_W};
 }
 
-// Returns the part of it that a cut leaves.
+// Returns the part that the cut leaves.
 std::optional<Sight> beyond(const Sight& sight, const ClipPlane& cut) {
   const double from_mm = cut.normal_W.dot(sight.from_W) - cut.offset_mm;
   const double to_mm = cut.normal_W.dot(sight.to_W) - cut.offset_mm;
@@ -149,7 +149,7 @@ std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool
   const auto point_W = bone_point_seen_at(bone, camera, size, {x_px, y_px}, {});
   if (!point_W) return std::nullopt;
   const Vec3 ray_W = ray_through(camera, size, x_px, y_px);
-  // Before the point in the direction of the eye, so that the tool is seen at the pixel.
+  // In front of the point, towards the eye, so that the tool appears at the pixel.
   const Vec3 right_W = camera.up_W().cross(-ray_W).normalized();
   return free_pose_before(bone, tool, *point_W, -ray_W, -ray_W.cross(right_W));
 }

@@ -21,7 +21,7 @@ namespace {
 
 constexpr float kWidth_px = 300;
 
-// Returns what a field means, without how the command line names it.
+// Returns a field's description without the option names of the command line.
 std::string hint_of(const FieldDescription& field) {
   std::string text = field.doc;
   if (const auto from = text.find(" (--"); from != std::string::npos)
@@ -30,7 +30,7 @@ std::string hint_of(const FieldDescription& field) {
   return text;
 }
 
-// A slider for what takes long to change: true once it is let go of at another value.
+// Draws a slider for a value that takes long to apply; returns true when it is released at another value.
 bool settle(const char* label, const std::string& hint, double& value, float min, float max,
             const char* format) {
   float shown = static_cast<float>(value);
@@ -41,8 +41,8 @@ bool settle(const char* label, const std::string& hint, double& value, float min
   return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-// A slider for a field of what is wanted: its values from `min` to `max`, which are those of usual tools. The
-// command line takes the field's whole range.
+// Draws a slider for a field of the requested setup, from `min` to `max`, the range of usual tools; the
+// command line accepts the field's whole range.
 bool settle_field(std::string_view option, MillingSetup& requested_setup, float min, float max,
                   int decimals) {
   const Field<MillingSetup>& field = *field_of_option(fields_of<MillingSetup>(), option);
@@ -55,7 +55,7 @@ bool settle_field(std::string_view option, MillingSetup& requested_setup, float 
   return settled;
 }
 
-// Radio buttons for a field of names, two in a row.
+// Draws radio buttons for a field with named values, two per row.
 bool choose_field(std::string_view option, MillingSetup& requested_setup) {
   const Field<MillingSetup>& field = *field_of_option(fields_of<MillingSetup>(), option);
   bool changed = false;
@@ -70,7 +70,7 @@ bool choose_field(std::string_view option, MillingSetup& requested_setup) {
   return changed;
 }
 
-// The end of a name, which tells one scan from another, if there is no room for all of it.
+// Returns the end of a name, which usually distinguishes scans, if the whole name does not fit.
 std::string fitting_suffix(const std::string& name) {
   const float room = ImGui::GetContentRegionAvail().x;
   std::string shown = name;
@@ -83,7 +83,7 @@ std::string fitting_suffix(const std::string& name) {
   return shown;
 }
 
-// Draws what is not about the bone. It is always in sight, for users who cannot read the rest.
+// Draws the menu bar: settings not related to the bone, always visible, also if the panels are not legible.
 void draw_menu(ViewState& view) {
   if (!ImGui::BeginMenuBar()) return;
   if (ui::begin_menu("Window", "Size of the text, colours and full screen")) {
@@ -140,7 +140,7 @@ bool is_dental(Handpiece handpiece) {
   return handpiece == Handpiece::turbine || handpiece == Handpiece::electric;
 }
 
-// Draws the list of burrs with a name, a column for each kind.
+// Draws the list of named burrs, one column per kind.
 bool choose_named_burr(MillingSetup& requested_setup) {
   const NamedBurr* chosen = find_burr(requested_setup.tool, requested_setup.burr);
   const NamedBurr* now = chosen;
@@ -182,7 +182,7 @@ bool switch_field(const char* label, const char* option, MillingSetup& requested
   return changed;
 }
 
-// The choice of burr and drive. An exercise that names its burrs offers them itself.
+// State of the choice of burr and drive. An exercise that names its burrs offers them itself.
 struct ToolChoice {
   bool is_free;
   bool changed = false;
@@ -259,7 +259,7 @@ void draw_milling(ViewState& view, Simulation& simulation, ToolChoice& choice) {
           "Brings the tool to just before the bone in the middle of the view; the key B, to just before "
           "the bone under the pointer"))
     view.bring_requested = true;
-  // A device's own button turns it on as well.
+  // A device's own button can also switch the spindle on.
   bool spindle = milling.is_spindle_requested() || milling.state().spindle_on;
   if (ui::checkbox("spindle on", "Lets the burr turn, so that it cuts; Space does the same", &spindle))
     milling.set_spindle(spindle);
@@ -276,8 +276,8 @@ void draw_milling(ViewState& view, Simulation& simulation, ToolChoice& choice) {
   draw_piece_controls(view, simulation);
 }
 
-// Buttons for the densities that may bound bone, if there are several: only the user knows which does.
-// They stand beside the histogram, and below it if there is no room.
+// Draws buttons for the candidate isovalues, if there are several: only the user knows which boundary is
+// bone. They are next to the histogram, or below it if they do not fit.
 void draw_boundaries(ViewState& view, Simulation& simulation) {
   if (simulation.scan.boundaries.size() < 2) return;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
@@ -301,7 +301,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   float isovalue = view.isovalue.value_or(static_cast<float>(milling.isovalue()));
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const ImVec2 size(ImGui::CalcItemWidth(), 1.5f * ImGui::GetFontSize());
-  // Disabled, so that ImGui does not put a hint of its own there.
+  // Disabled, so that ImGui does not show its own tooltip.
   ImGui::BeginDisabled();
   ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
                        static_cast<int>(histogram.log_counts.size()), 0, nullptr, 0, FLT_MAX, size);
@@ -396,7 +396,7 @@ void recall_tool(ViewState& view) {
   view.setup_changed = true;
 }
 
-// Draws the controls that researchers need and trainees do not.
+// Draws the controls for researchers.
 static void draw_laboratory(ViewState& view, ToolChoice& choice, bool& changed) {
   if (!ui::header("Laboratory", "Algorithm, sizes, speed, drive and law of cutting, and all readings",
                   view.open.laboratory))

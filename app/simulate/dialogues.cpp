@@ -96,7 +96,7 @@ Dialogue measuring_message(std::function<bool()> is_measured, Dialogue::Action c
 
 Dialogue leftover_question(const SessionStart& leftover, Dialogue::Action open, Dialogue::Action remove,
                            Dialogue::Action later) {
-  // Pieces that were removed do not count as milled.
+  // Removed pieces do not count as milled.
   const std::string what =
       leftover.removed_mm3 > 0
           ? fmt::format("{:.1f} mm³ of this bone had been milled and", leftover.removed_mm3)

@@ -7,7 +7,7 @@
 namespace osteomill::app {
 namespace {
 
-// Every dialogue of the window, by what it takes to be done with it: the button of this number.
+// Returns every dialogue of the window, with how it is ended: by the button of this number.
 std::vector<Dialogue> dialogues_of_the_window(int& acted) {
   const auto act = [&acted] { ++acted; };
   const auto never = [] { return false; };
@@ -85,7 +85,7 @@ TEST(DialogueQueue, WhatIsSettledMeanwhileIsNotAskedAnyMore) {
   EXPECT_EQ(went_on, 1);
 }
 
-// An action may ask on: what it asks comes after what waits already.
+// A dialogue added by an action comes after those already waiting.
 TEST(DialogueQueue, AnActionMayAddAnother) {
   DialogueQueue queue;
   queue.add(report_question([&] { queue.add_error("disk full"); }, {}));

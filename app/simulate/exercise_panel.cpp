@@ -55,7 +55,7 @@ void draw_distance(const Simulation& simulation, const TickRecord& record) {
   ImGui::SetWindowFontScale(1);
 }
 
-// The burrs that the exercise allows.
+// Draws the burrs allowed by the exercise.
 void draw_burrs(ViewState& view, const Exercise& exercise) {
   MillingSetup& setup = view.requested_setup;
   bool is_changed = false, has_own_edge = true;
@@ -101,7 +101,7 @@ void take_exercise_keys(ExerciseWork& work) {
   if (ui::is_key_pressed(GLFW_KEY_M)) work.play_beat(!work.has_beat());
 }
 
-// Puts the next window between the two columns.
+// Places the next window between the two columns.
 void place_between_columns(const PixelSize& size, float y_px, float from_below) {
   const float left_px = ui::px(316), right_px = static_cast<float>(size.width) - ui::px(266);
   const float width_px = std::clamp(right_px - left_px - ui::px(8), ui::px(240), ui::px(560));
@@ -199,7 +199,7 @@ void draw_results(ViewState& view, Simulation& simulation, const FilesPanel& fil
 void finish_exercise(ViewState& view, Simulation& simulation, FilesPanel& files) {
   simulation.milling.set_spindle(false);
   files.end_recording(view, simulation);
-  // On a full disk there is no recording.
+  // There is no recording if the disk was full.
   if (!simulation.milling.is_recording() && !files.last_recording().empty())
     simulation.exercise->measure(files.last_recording(), files.name("debrief"));
 }

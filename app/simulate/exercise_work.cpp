@@ -72,7 +72,7 @@ BeatState ExerciseWork::beat(const Vec3& burr_W, double burr_radius_mm) const {
 std::optional<ViewSample> ExerciseWork::next_view(const ViewState& view, const PixelSize& size,
                                                   double time_s) {
   constexpr double kEvery_s = 1.0 / 30;
-  // After a pause of the program the next comes at once, and the time of a session never goes back.
+  // After a pause the next sample is due at once; the time of a session never decreases.
   if (time_s < next_view_s_) return std::nullopt;
   next_view_s_ = std::max(next_view_s_ + kEvery_s, time_s);
   ViewSample sample;
@@ -106,7 +106,7 @@ void ExerciseWork::measure(const std::filesystem::path& recording, const std::fi
 }
 
 void ExerciseWork::open_page() const {
-  // The browser outlives the window, and is not waited for.
+  // Do not wait for the browser, which outlives the window.
   const std::string open = "command -v xdg-open >/dev/null && exec setsid -f xdg-open \"$1\" >/dev/null 2>&1";
   const std::string page = (folder_ / "debrief.html").string();
   if (run_program({"sh", "-c", open, "sh", page}).exit_code != 0)

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Whatever the desktop opens it with.
+// Opens a file with the desktop's default program.
 void open_outside(const fs::path& path) {
   std::string program = "xdg-open";
   std::string argument = fs::absolute(path).string();
@@ -67,7 +67,7 @@ void FilesPanel::record(ViewState& view, Simulation& simulation, const std::stri
           name(what), simulation.describe(),
           [this, camera = view.camera,
            begins = is_beginning](std::string_view name) -> std::optional<std::vector<unsigned char>> {
-            // Before the first tick nothing is drawn yet.
+            // Nothing has been drawn before the first tick.
             if (name == kPictureAlong || (begins && name == kPictureBefore)) return std::nullopt;
             return encode_png(take_picture_(camera));
           });
@@ -204,7 +204,7 @@ float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, co
 }
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
-  // After a failure, as on a full disk, the ticks recorded so far stay in the unfinished file.
+  // After a write failure (e.g. a full disk) the ticks recorded so far stay in the unfinished file.
   if (simulation.milling.has_recording_failed()) {
     view.dialogues.run_reporting_errors([&] { simulation.milling.stop_recording(); });
     view.message.clear();
@@ -214,7 +214,7 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
     return;
   if (ui::button(simulation.milling.is_recording() ? "Stop recording##r" : "Record##r",
                  "Records all that you do and feel from here on, until it is pressed again")) {
-    // A recording of an exercise ends in its results.
+    // Stopping the recording of an exercise shows its results.
     if (simulation.exercise && simulation.milling.is_recording())
       view.finish_requested = true;
     else

@@ -51,7 +51,7 @@ struct FolderReader::Work {
 void FolderReader::begin(const fs::path& folder) {
   stop();
   work_ = std::make_shared<Work>();
-  // Detached, because a dead mount may hold the thread for minutes.
+  // Detached, because a dead mount may block the thread for minutes.
   std::thread([work = work_, folder] {
     work->listing = list_folder(folder, work->is_stopped);
     work->is_done = true;

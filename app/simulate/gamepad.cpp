@@ -10,10 +10,10 @@ namespace osteomill::app {
 
 namespace {
 
-// Worn sticks rest this far from their middle.
+// Resting offset of worn sticks.
 constexpr double kDeadZone = 0.15;
 
-// Grows from the dead zone's edge, by its square, so that small moves are fine.
+// Quadratic from the edge of the dead zone, for fine control of small motions.
 double eased(double axis) {
   const double beyond = std::clamp((std::abs(axis) - kDeadZone) / (1 - kDeadZone), 0.0, 1.0);
   return std::copysign(beyond * beyond, axis);

@@ -17,7 +17,7 @@ TEST(GamepadInput, IsZeroAtRestAndWithinTheDeadZone) {
   }
 }
 
-// Sticks are positive to the right and down, the viewer's axes to the right, up and towards the viewer.
+// Sticks are positive to the right and down; the viewer's axes point right, up and towards the viewer.
 TEST(GamepadInput, PushesAndTwistsAlongTheViewersAxes) {
   GamepadState state;
   state.left_stick = {1, -1};

@@ -40,7 +40,7 @@ MillingScreen::MillingScreen(PreparedScan opened, const Pose& X_WT, const ToolSo
       exercise_begins_(simulation_.exercise && !simulation_.from) {
   if (simulation_.from) stage.files.begin_recording(stage.view, simulation_, "again.h5");
   simulation_.start();
-  // If nothing listens there, milling goes on without sending.
+  // If the receiver does not listen, milling continues without sending.
   stage.view.dialogues.run_reporting_errors(
       [&] { sender_ = send_bone(simulation_.milling.follower(), send); });
   begin_view(stage);
@@ -54,7 +54,7 @@ void MillingScreen::begin_view(Stage& stage) {
   view.isovalue.reset();
   drop_requests(view);
   view.chosen_piece = {};
-  // Pieces may have been removed of it before.
+  // Pieces may have been removed in an earlier run.
   if (milling.follower().is_touched()) measure_bone(view.chosen_piece, simulation_);
   view.X_W_destination.reset();
   view.holding_tool = view.dragging_tool = view.dragging_view = view.pedal_down = false;
@@ -73,7 +73,7 @@ bool MillingScreen::is_settled(const Stage& stage) {
          !(simulation_.exercise && simulation_.exercise->is_measuring());
 }
 
-// Begins the requested changes; each waits until nothing else is being prepared.
+// Starts the requested changes; each waits until no preparation is under way.
 void MillingScreen::start_requests(ViewState& view) {
   LiveMilling& milling = simulation_.milling;
   const bool begun = view.dialogues.run_reporting_errors([&] {
@@ -104,7 +104,7 @@ void MillingScreen::update(Stage& stage) {
   if (view.message.empty()) view.message = simulation_.autosave.take_error();
 }
 
-// A device that throws ends the milling, not the window.
+// A device failure ends the milling, not the window.
 void MillingScreen::report_device_failure(ViewState& view) {
   const std::exception_ptr failure = simulation_.milling.failure();
   if (failure == nullptr || failure == device_failure_) return;

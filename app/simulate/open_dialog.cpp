@@ -27,7 +27,7 @@ fs::path home() {
   return folder != nullptr && *folder != 0 ? fs::path(folder) : fs::path("/");
 }
 
-// The folder of the scan that was opened last, in which the next one often lies.
+// Returns the folder of the most recent scan, which often holds the next one.
 fs::path first_folder(const std::vector<std::string>& recent) {
   std::error_code unreadable;
   return recent.empty() ? fs::current_path(unreadable) : fs::path(recent.front()).parent_path();
@@ -76,7 +76,7 @@ void OpenDialog::enter(const FolderListing::Entry& entry) {
   chosen_ = (folder_ / entry.name).string();
 }
 
-// Only the thread that lists knows whether a path that was typed is a file: asking may take long.
+// Only the listing thread can find out whether a typed path is a file: checking may block.
 void OpenDialog::take_listing() {
   std::optional<FolderListing> listing = reader_.take();
   if (!listing) return;
@@ -137,7 +137,7 @@ void OpenDialog::draw_files() {
 std::optional<std::string> OpenDialog::draw(OpenKind request, bool is_waiting, std::string& last_folder) {
   if (request != OpenKind::none && !is_waiting && !is_shown_) {
     if (portal_.is_asking()) {
-      // Its dialog is out of sight, or it has ended without an answer.
+      // The dialog is hidden, or has ended without an answer.
       portal_.give_up();
       show();
     } else {

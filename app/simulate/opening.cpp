@@ -21,7 +21,7 @@ using Prepare = std::function<PreparedMilling(std::shared_ptr<Volume> bone)>;
 
 constexpr const char* kMilledIsovalue = "as it was milled with";
 
-// Ends the reading of a folder before its pixels.
+// Stops reading a folder before its pixels are read.
 struct SeveralSeries {
   std::vector<SeriesSummary> series;
 };
@@ -103,7 +103,7 @@ PreparedScan open_for_branch(const OpenRequest& request, const GuardSettings& gu
   return prepared;
 }
 
-// The recording knows its scan and how that is read.
+// The recording names its scan and how to read it.
 PreparedScan open_for_playback(const OpenRequest& request) {
   const ScanOptions& scan = request.scan;
   ScanOptions recorded;

@@ -36,14 +36,14 @@ constexpr const char* kControls[][2] = {
      "its first button mills; while you hold C or its second, your hand moves and the tool stays"},
 };
 
-// One for all dialogues, whatever stands above it: two at once would hide each other.
+// One ID for all dialogues: two at once would hide each other.
 constexpr const char* kPopup = "###dialogue";
 
 ImVec2 at(const Eigen::Vector2d& place) {
   return {static_cast<float>(place.x()), static_cast<float>(place.y())};
 }
 
-// Draws text on a dark edge, so that it can be read in front of bone as well.
+// Draws text with a dark outline, so that it is legible in front of bone.
 void draw(ImDrawList& list, Annotation annotation) {
   constexpr ImU32 kDark = IM_COL32(0, 0, 0, 190);
   constexpr ImU32 kLight = IM_COL32(236, 238, 242, 255);
@@ -68,12 +68,12 @@ void draw(ImDrawList& list, Annotation annotation) {
 
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  // The window's size in pixels of the usual text size.
+  // Size of the window in units of the usual text size.
   const PixelSize usual{static_cast<int>(static_cast<float>(size.width) / ui::px(1)),
                         static_cast<int>(static_cast<float>(size.height) / ui::px(1))};
   draw(list, scale_bar_annotation(view.camera, usual));
   if (!patient) return;
-  // Beside the right column, which may reach down to the corner.
+  // Left of the right column, which may extend down to the corner.
   const int column = static_cast<int>(ui::kSidePanelWidth_px) + 8;
   for (const Annotation& letter : orientation_letters(view.camera, {usual.width - column, usual.height}))
     draw(list, letter);
@@ -81,7 +81,7 @@ void draw_annotations(const ViewState& view, const PixelSize& size, bool patient
 
 void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span) {
   if (!view.help) return;
-  // Beside the bone and the tool, which it explains.
+  // Next to the bone and tool that the help explains.
   const float width = ui::px(ui::kSidePanelWidth_px);
   const auto width_px = static_cast<float>(size.width);
   ImGui::SetNextWindowPos({width_px - width - ui::px(8), span.top_px});
@@ -98,7 +98,7 @@ void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span)
       "press. The green arrow is the force on your hand, the amber one the torque; the red point is where "
       "they "
       "act (with 1 line-proxy, where bone holds the shaft, if it does).");
-  // So that all of it is in sight in a window of the usual size.
+  // Tight spacing, so that everything fits into a window of the usual size.
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui::px(8), ui::px(1)});
   for (const auto& [what, how] : kControls) {
     ImGui::TextUnformatted(what);

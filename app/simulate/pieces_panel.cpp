@@ -23,7 +23,7 @@ constexpr const char* kMenu = "##piece";
 constexpr const char* kNotInExercise =
     "Pieces cannot be removed in an exercise, whose results count all bone that is gone";
 
-// The pieces are counted in a copy, which shares its memory with the bone, so that milling goes on.
+// Counts the pieces in a copy, which shares its memory with the bone, so that milling can continue.
 void choose(ChosenPiece& chosen, const Simulation& simulation, const VoxelIndex& voxel) {
   chosen.voxel = voxel;
   chosen.piece.reset();
@@ -36,7 +36,7 @@ void choose(ChosenPiece& chosen, const Simulation& simulation, const VoxelIndex&
                               });
 }
 
-// Returns the bone that is seen under the pointer.
+// Returns the bone voxel under the pointer.
 std::optional<VoxelIndex> voxel_under_pointer(const ViewState& view, const Simulation& simulation,
                                               const PixelSize& size) {
   const ImVec2 pointer = ImGui::GetIO().MousePos;
@@ -97,7 +97,7 @@ std::string text_of(const BonePiece& piece, double voxel_mm3) {
   return fmt::format("{}, number {} of {} pieces by size", volume, place, piece.sizes.size());
 }
 
-// Draws what can be done, as long as some bone is left by it. Returns the removal that was chosen.
+// Draws the actions that leave some bone. Returns the chosen removal.
 std::optional<PieceRemoval> draw_actions(ChosenPiece& chosen, double voxel_mm3, bool is_free) {
   using Which = PieceRemoval::Which;
   const std::vector<std::size_t> none;

@@ -12,7 +12,7 @@ namespace osteomill::app {
 
 namespace {
 
-// The stretches of ticks for which something holds; shorter gaps than a twentieth of a second are none.
+// Returns the intervals in which `holds` is true, merging gaps shorter than kGap_s.
 PlaybackMarks::Spans spans_of(const Recording& recording, const std::function<bool(std::size_t)>& holds) {
   constexpr double kGap_s = 0.05;
   PlaybackMarks::Spans spans;
@@ -33,7 +33,7 @@ bool touches_no_go(const Recording& recording, const TickRecord& record) {
 }
 
 bool is_held_off(const WatchedStructure& structure, const Recording& recording, const TickRecord& record) {
-  // A guard is felt from there on.
+  // Penetration from which a guard can be felt.
   constexpr double kFelt_mm = 0.05;
   const double radius_mm = recording.sessions[record.session].start.run.tool.burr_radius_mm;
   return !record.paused &&
@@ -65,7 +65,7 @@ PlaybackMarks marks_of(const RecordedWork& work) {
   const std::vector<TickRecord>& records = recording.records;
   PlaybackMarks marks;
   marks.cuts = spans_of(recording, [&](std::size_t n) {
-    // From one session to the next, a cut is made again.
+    // Across sessions the volume may grow because a cut was redone.
     return n > 0 && records[n].removed_mm3 > records[n - 1].removed_mm3 &&
            records[n].session == records[n - 1].session;
   });

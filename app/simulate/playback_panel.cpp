@@ -22,7 +22,7 @@ constexpr ImU32 kCut = IM_COL32(90, 170, 255, 255), kContact = IM_COL32(110, 200
                 kNoGo = IM_COL32(255, 80, 70, 255), kFault = IM_COL32(255, 184, 64, 255),
                 kCursor = IM_COL32(255, 255, 255, 220);
 
-// A stretch of a picture's width for a stretch of time.
+// Maps an interval of time to an interval of pixels.
 struct TimeAxis {
   float left_px, right_px;
   double begin_s, end_s;
@@ -67,7 +67,7 @@ void draw_steps(const TimeAxis& axis, const PlaybackMarks& marks) {
   }
 }
 
-// The whole recording: its marks, and a slider by which to go anywhere.
+// Draws the time line of the whole recording: its marks, and a slider for seeking.
 void draw_time_line(Playback& playback) {
   const float names_px = ui::px(64), from_px = ImGui::GetCursorScreenPos().x + names_px;
   const float width_px = ImGui::GetContentRegionAvail().x - names_px;
@@ -81,7 +81,7 @@ void draw_time_line(Playback& playback) {
     playback.go_to_time(static_cast<double>(time_s));
   }
   ImGui::PopItemWidth();
-  // The slider's ends are half its grip inside.
+  // The ends of the slider's range are half its grip inside.
   const float inside_px = 0.5f * ImGui::GetStyle().GrabMinSize + 2;
   const TimeAxis axis{from_px + inside_px, from_px + width_px - inside_px, playback.begin_s(),
                       playback.end_s()};
@@ -100,7 +100,7 @@ void draw_time_line(Playback& playback) {
   ImGui::Dummy({0, ui::px(1)});
 }
 
-// Plots some seconds about the tick that is shown, from 0 to a round number.
+// Plots a few seconds around the current tick, from 0 to a round maximum.
 void draw_plot(const Playback& playback, const char* name, const char* unit,
                double (*magnitude)(const TickRecord&), double min_scale, const ImVec4& colour,
                float width_px) {
@@ -112,7 +112,7 @@ void draw_plot(const Playback& playback, const char* name, const char* unit,
   const TimeAxis axis{place.x, place.x + width_px, now_s - kAround_s, now_s + kAround_s};
   const auto first = std::ranges::lower_bound(records, axis.begin_s, {}, &TickRecord::time_s);
   const auto last = std::ranges::upper_bound(records, axis.end_s, {}, &TickRecord::time_s);
-  // The greatest of the ticks of each pixel.
+  // Maximum of the ticks of each pixel.
   std::vector<ImVec2> line;
   double scale = min_scale;
   for (auto record = first; record != last; ++record) {

@@ -25,7 +25,7 @@ void PlaybackScreen::draw(Stage& stage) {
   ViewState& view = stage.view;
   const PixelSize size = stage.window.size();
   const auto now = std::chrono::steady_clock::now();
-  // Nothing was played while a file was opened or the window hidden.
+  // Nothing is played while a file is being opened or the window is hidden.
   constexpr double kLongestPicture_s = 0.25;
   const std::chrono::duration<double> passed = now - std::exchange(played_, now);
   playback_->advance(std::min(passed.count(), kLongestPicture_s));

@@ -22,7 +22,7 @@ namespace {
 constexpr double kPointerReach_px = 12;
 constexpr double kTouching_N = 0.15;
 constexpr int kSteps = 100;
-// In this time a tool that was let go comes to rest; two or three pictures do if nothing else takes time.
+// Time in which a released tool comes to rest; two or three frames suffice on an idle machine.
 constexpr double kRelaxing_s = 1;
 
 bool is_key_down(int key) {
@@ -33,26 +33,27 @@ double key_axis(int forwards, int backwards) {
   return (is_key_down(forwards) ? 1.0 : 0.0) - (is_key_down(backwards) ? 1.0 : 0.0);
 }
 
-// Returns what keys do in the place of the wheel, also while a button is held; W and S are on every keyboard.
+// Returns the key input equivalent to the wheel, which also works while a button is pressed; W and S are on
+// every keyboard.
 double away_axis() {
   const double letters = ImGui::GetIO().KeyCtrl ? 0 : key_axis(GLFW_KEY_W, GLFW_KEY_S);
   return std::clamp(key_axis(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN) + letters, -1.0, 1.0);
 }
 
-// Returns how far the pointer moved since the last picture.
+// Returns the pointer motion since the last frame.
 Eigen::Vector2d pointer_moved_px() {
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
   return {static_cast<double>(moved.x), static_cast<double>(moved.y)};
 }
 
-// Returns how far a button drags. Zero in the picture in which the button went down, because the pointer may
+// Returns the motion of a drag. Zero in the frame in which the button was pressed, because the pointer may
 // have moved far before that.
 Eigen::Vector2d pointer_dragged_px() {
   const bool just_pressed = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
   return just_pressed ? Eigen::Vector2d::Zero() : pointer_moved_px();
 }
 
-// The cut that the line of sight through a pixel meets first within the bone's surroundings.
+// Returns the first cut along the line of sight through a pixel, within the bounds of the bone.
 std::optional<std::size_t> cut_under(const ViewState& view, const PixelSize& size, double x_px, double y_px) {
   const Vec3 ray = ray_through(view.camera, size, x_px, y_px);
   const Vec3 eye = view.camera.eye_W();
@@ -73,7 +74,8 @@ std::optional<std::size_t> cut_under(const ViewState& view, const PixelSize& siz
   return found;
 }
 
-// Ctrl with the left button drags the cut under the pointer along its normal; true while it does.
+// Moves the cut under the pointer along its normal while Ctrl and the left button are pressed. Returns
+// whether it is dragging.
 bool drag_cut(ViewState& view, const PixelSize& size) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsMouseClicked(0) && io.KeyCtrl && !io.WantCaptureMouse) {
@@ -84,8 +86,8 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   if (!io.MouseDown[0]) view.dragged_cut = -1;
   if (view.dragged_cut < 0) return false;
   ViewState::Cut& cut = view.cuts[static_cast<std::size_t>(view.dragged_cut)];
-  // How the normal is seen, in pixels a mm. A cut that faces the viewer hardly moves in the picture: then
-  // dragging upwards moves it along its normal.
+  // Projected normal, px/mm. A cut that faces the viewer hardly moves in the picture; dragging upwards then
+  // moves it along its normal.
   const Vec3 anchor_W = view.box.centre_W();
   Eigen::Vector2d normal_px =
       pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);
@@ -95,7 +97,8 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   return true;
 }
 
-// Ctrl with the right button on a cut changes window and level of all cuts; true while it does.
+// Changes window and level of all cuts while Ctrl and the right button are pressed on a cut. Returns whether
+// it is dragging.
 bool drag_grey(ViewState& view, const WindowLevel& first, const PixelSize& size) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsMouseClicked(1) && io.KeyCtrl && !io.WantCaptureMouse)
@@ -109,7 +112,7 @@ bool drag_grey(ViewState& view, const WindowLevel& first, const PixelSize& size)
   return true;
 }
 
-// Returns whether the pointer is on the picture of the tool.
+// Returns whether the pointer is on the tool.
 bool on_tool(const ViewState& view, const Pose& X_WT, const MillingTool& tool, const PixelSize& size,
              const ImVec2& pointer) {
   const Vec3 ray =
@@ -171,7 +174,7 @@ void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if ((y || (z && io.KeyShift)) && milling.follower().undone_cuts() > 0) view.redo_requested = true;
 }
 
-// Places the tool before the bone that is seen at the pixel, or else before the bone in the middle.
+// Moves the tool in front of the bone visible at the pixel, or else at the centre of the view.
 void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
                 const std::optional<Eigen::Vector2d>& pixel) {
   LiveMilling& milling = simulation.milling;
@@ -199,12 +202,12 @@ bool is_pushed(const ToolInput& input) {
   return !input.keys.isZero() || !input.space_mouse.push.isZero() || !input.space_mouse.twist.isZero();
 }
 
-// If nothing holds or pushes the tool any more, pulls the hand to where bone holds the tool, so that it
-// presses no longer. Bone then moves a tool that rests out by the little that it gave, so this goes on for a
-// moment; a burr that turns would walk away with the hand.
+// If the tool is no longer held or pushed, moves the hand's target to the tool's pose, so that it stops
+// pressing. Continues for a moment, because bone then pushes the resting tool out by its last bit of
+// penetration. Only the first step is done while the burr is turning, which would walk away with the hand.
 void relax_if_let_go(ViewState& view, Simulation& simulation, const ToolInput& input) {
   const bool held = view.holding_tool || view.dragging_tool;
-  // A burr that turns would mill on alone.
+  // A turning burr would continue to mill.
   if (std::exchange(view.was_held, held) && !held) simulation.milling.set_spindle(false);
   if (held || is_pushed(input)) view.relaxing_s = kRelaxing_s;
   if (held || is_pushed(input) || view.relaxing_s <= 0 || view.X_W_destination) return;
@@ -221,14 +224,14 @@ void release_buttons(ViewState& view, LiveMilling& milling) {
   view.pedal_down = view.dragging_tool = view.dragging_view = false;
 }
 
-// Returns how a game controller moves the tool.
+// Applies the buttons of a game controller; returns the motion it commands.
 SpaceMouseState take_gamepad(const GamepadInput& input, ViewState& view, LiveMilling& milling) {
   if (input.is_mill_pressed) milling.set_spindle(view.pedal_down = true);
   if (input.is_undo && milling.follower().cuts() > 0) view.undo_requested = true;
   return input.motion;
 }
 
-// Lets go of what was let go of, whatever else takes the input of this picture.
+// Handles releases, whatever else handles the input of this frame.
 void take_releases(const GamepadInput& gamepad, ViewState& view, LiveMilling& milling) {
   if (gamepad.is_let_go) view.holding_tool = false;
   if (gamepad.is_let_go) milling.set_spindle(false);
@@ -309,7 +312,7 @@ void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
   bool free = true;
   simulation.milling.follower().read([&](const Volume& bone) { free = tool_is_free(bone, core, X_WT); });
   if (!free) bring_tool(view, simulation, size, pixel_of(view.camera, size, X_WT.position_mm));
-  // A burr that grew where it was let go would press.
+  // An enlarged burr would press where it was released.
   view.relaxing_s = kRelaxing_s;
 }
 

@@ -17,7 +17,8 @@ namespace {
 
 constexpr const char* kPortal = "org.freedesktop.portal.Desktop";
 constexpr const char* kPortalPath = "/org/freedesktop/portal/desktop";
-// The bus may have to start the portal first. One that takes longer is broken, and another dialog better.
+// The bus may have to start the portal first. One that takes longer is probably broken, and our own dialog is
+// better.
 constexpr std::chrono::seconds kPatience(5);
 
 using Options = std::map<std::string, sdbus::Variant>;
@@ -53,8 +54,8 @@ struct PortalDialog::Request {
 
 void PortalDialog::Request::begin(bool for_folder, const std::filesystem::path& start) {
   connection = sdbus::createSessionBusConnection();
-  // The portal answers by a signal of an object whose name it derives from ours and the token; it may come
-  // before the call returns.
+  // The portal answers with a signal from an object whose name is derived from our bus name and the token;
+  // the signal may arrive before the call returns.
   std::string sender = connection->getUniqueName().substr(1);
   std::ranges::replace(sender, '.', '_');
   response =

@@ -30,7 +30,7 @@ fs::path file_of_preferences() {
   return folder.empty() ? fs::path() : folder / "window.toml";
 }
 
-// The handpiece comes before the speed, which it changes.
+// The handpiece comes before the speed, because setting it changes the speed.
 const std::vector<Field<MillingSetup>>& tool_fields_kept() {
   static const std::vector<Field<MillingSetup>> kept = [] {
     std::vector<Field<MillingSetup>> fields;
@@ -57,7 +57,7 @@ Field<P> group(const char* key, const char* doc, bool P::Open::*member) {
       key, doc, [member](auto& p) -> auto& { return p.open.*member; });
 }
 
-// Every number, switch and choice that is kept, as the file lists them.
+// All numbers, switches and choices, in the order of the file.
 const std::vector<Field<P>>& kept_numbers() {
   using O = P::Open;
   constexpr NumberRange kPlace = {-100000, 100000, true}, kSize = NumberRange::count(0, 100000);
@@ -126,7 +126,7 @@ bool copy_tool(const MillingSetup& from, MillingSetup& to) {
 
 namespace {
 
-// Throws InputError, naming file and line. Keys that are not known, of another version, are passed over.
+// Throws InputError, naming file and line. Ignores unknown keys, e.g. of another version.
 Preferences preferences_in(const std::string& file) {
   Preferences preferences;
   const toml::table table = parse_toml(file);
@@ -175,7 +175,7 @@ std::string preferences_text(const Preferences& preferences) {
     std::ostringstream line;
     line << field.option << " = " << toml::value<std::string>(field.get(preferences)) << "  # " << field.doc
          << '\n';
-    // A name of a folder that is not UTF-8 has no place in such a file.
+    // A folder name that is not valid UTF-8 cannot be stored in TOML.
     try {
       (void)toml::parse(line.str());
       text << line.str();
@@ -193,7 +193,7 @@ void write_preferences(const std::string& text) {
     create_folder(file.parent_path());
     write_text_atomically(file, [&](std::ostream& out) { out << text; });
   } catch (const InputError&) {
-    // Then the next start begins as this one did.
+    // The preferences are lost; the next start begins like this one.
   }
 }
 

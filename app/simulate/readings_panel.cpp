@@ -19,12 +19,13 @@ namespace osteomill::app {
 namespace {
 
 constexpr std::size_t kPlotPoints = 200;
-// Column of the values beside their names, px.
+// Column of the values next to their names, px.
 constexpr float kValues_px = 96;
-// Wide enough for "10000 poses/s": the button beside the rate must not move with the number of digits.
+// Wide enough for "10000 poses/s", so that the button next to the rate does not move with the number of
+// digits.
 constexpr float kCalibrate_px = 112;
 
-// The greatest of each stretch of ticks: peaks must not fall between two points.
+// Returns the maximum of each group of ticks, so that no peak falls between two points.
 std::vector<float> downsampled(const std::deque<TickRecord>& history, std::size_t ticks,
                                double (*magnitude)(const TickRecord&)) {
   std::vector<float> points(kPlotPoints, 0.0f);
@@ -42,7 +43,7 @@ void row(const char* name, const std::string& value,
   ImGui::TextColored(colour, "%s", value.c_str());
 }
 
-// Plots the last 5 s from 0 to a round number, which stands at the top.
+// Plots the last 5 s from 0 to a round maximum, labelled at the top.
 void plot(const char* name, const char* unit, const Simulation& simulation,
           double (*magnitude)(const TickRecord&), double min_scale, const ImVec4& colour, float height_px) {
   const std::deque<TickRecord>& history = simulation.history;
@@ -76,12 +77,12 @@ void plot(const char* name, const char* unit, const Simulation& simulation,
   write("now", 1, 1);
 }
 
-// Draws always one line, so that nothing below it moves.
+// Always draws one line, so that nothing below it moves.
 void draw_faults(const std::deque<TickRecord>& history) {
   FaultCount faults;
   for (const TickRecord& record : history) faults.add(record);
   const int limited = faults.limited();
-  // Leaves out ticks without a pose: a clutch is held, or the device's own line reports it.
+  // Excludes ticks without a pose: a clutch is held, or the device's own line reports it.
   const int zero = faults.not_finite() + faults.unsafe();
   const bool held_back = !history.empty() && history.back().fault == WrenchFault::held_back;
   const std::string text = held_back     ? "nothing: lift the tool out"
@@ -144,7 +145,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   }
 }
 
-// Draws a complaint and keeps its room when it goes, so that the controls below do not move.
+// Draws a device fault and reserves its space afterwards, so that the controls below do not move.
 void draw_complaint(const std::string& complaint) {
   float& room_px = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("complaint"));
   const float from_px = ImGui::GetCursorPosY();
@@ -154,7 +155,7 @@ void draw_complaint(const std::string& complaint) {
   if (room_px > 0) ImGui::Dummy({0, room_px - ImGui::GetStyle().ItemSpacing.y});
 }
 
-// Draws the state of the device and its orientation before the operator.
+// Draws the state of the device and the calibration of its orientation.
 void draw_device(ViewState& view, ConnectedDevice& device) {
   ImGui::Separator();
   const DeviceReport report = device.report();
@@ -164,10 +165,10 @@ void draw_device(ViewState& view, ConnectedDevice& device) {
   draw_complaint(report.complaint());
 }
 
-// Most rows that are shown; a longer list is scrolled.
+// Maximum number of rows shown; longer lists scroll.
 constexpr float kMaxRows = 12;
 constexpr float kMinRows = 2;
-// Height of the help below the rows, and of title and box above them, at the usual size of text.
+// Height of the help below the rows, and of title and checkbox above them, at the usual text size.
 constexpr float kHelp_px = 110;
 constexpr float kHead_px = 62;
 
@@ -183,7 +184,7 @@ void draw_row(const Simulation& simulation, std::size_t n) {
   ImGui::Dummy({side, side});
   ImGui::SameLine();
   const ImVec4 text = label.no_go ? ui::ink(ui::Ink::danger) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
-  // Beside the volume, over several lines if the name is long.
+  // Next to the volume, wrapped if the name is long.
   ImGui::PushTextWrapPos(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(" 0000.00 mm³").x);
   ImGui::TextColored(text, "%s%s", label.name.c_str(), label.no_go ? " (no-go)" : "");
   ImGui::PopTextWrapPos();
@@ -203,7 +204,7 @@ void draw_row(const Simulation& simulation, std::size_t n) {
 
 }  // namespace
 
-// How well the haptic thread keeps time.
+// Draws how well the haptic thread keeps time.
 static void draw_timing(const Simulation& simulation, double pictures_per_s) {
   const TimingSummary timing = simulation.milling.timing();
   row("haptic rate", fmt::format("{:.0f} ticks/s", timing.recent_ticks_per_s));
@@ -215,7 +216,7 @@ static void draw_timing(const Simulation& simulation, double pictures_per_s) {
 
 static void draw_plots(const Simulation& simulation, const PixelSize& size) {
   ImGui::Separator();
-  // Lower in a low window, where the text needs the room.
+  // Lower in a low window, to leave space for the text.
   const float height_px = std::min(ui::px(56), 0.07f * static_cast<float>(size.height));
   plot(
       "force", "N", simulation, [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1,
@@ -256,7 +257,7 @@ float draw_labels(ViewState& view, const Simulation& simulation, const VerticalS
   const float line_px = ImGui::GetTextLineHeightWithSpacing();
   const float rows_px = span.bottom_px - span.top_px - ui::px(kHead_px) - (view.help ? ui::px(kHelp_px) : 0);
   const float rows = std::floor(std::min({static_cast<float>(count), kMaxRows, rows_px / line_px}));
-  // Once help was read there is room for them.
+  // The rows fit once the help is closed.
   if (view.help && rows < kMinRows) return span.top_px;
   ui::begin_side_panel("Labels", span.top_px, nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
   ui::checkbox(

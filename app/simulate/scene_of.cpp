@@ -6,9 +6,9 @@ namespace osteomill::app {
 
 namespace {
 
-// Pictures from one sampling of a cut to the next while bone is milled.
+// Frames between two samplings of a cut while bone is milled.
 constexpr int kPicturesBetween = 8;
-// If hand and tool are closer than this, the hand's ghost would only tint the tool.
+// If hand and tool are closer than this, the ghost would only tint the tool.
 constexpr double kMinMove_mm = 0.03;
 constexpr double kMinTurn_rad = 0.01;
 
@@ -41,7 +41,8 @@ void CutUpdates::update(const ViewState& view, const BoneFollower& bone, const W
 }
 
 void reset_cuts(ViewState& view) {
-  // The removed side lies towards the viewer of the usual views: above, in front, to the patient's left.
+  // The removed side faces the viewer in the usual views: from above, from the front, from the patient's
+  // left.
   const Vec3 normals[] = {-Vec3::UnitZ(), Vec3::UnitY(), -Vec3::UnitX(), -view.camera.towards_viewer_W()};
   view.grey_window.reset();
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
@@ -55,7 +56,7 @@ void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W
   const auto [least_mm, most_mm] = extent_along(view.box.corners_W, cut.normal_W);
   const double place_mm = cut.normal_W.dot(tool_W);
   cut.offset_mm = static_cast<float>(std::clamp(place_mm, least_mm, most_mm));
-  // Beyond the bone, or near its end, it would leave nothing to be seen.
+  // Beyond the bone or near its end, the usual side would leave nothing visible.
   cut.other_side = place_mm > most_mm - kLeast * (most_mm - least_mm);
 }
 

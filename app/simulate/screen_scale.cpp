@@ -8,9 +8,9 @@ namespace osteomill::app {
 namespace {
 
 constexpr double kDotsPerInch = 96;
-// Screens below are looked at as they are; many laptops have 120 to 140 dots an inch and ordinary text.
+// Screens below this density are used unscaled; many laptops have 120 to 140 dpi and ordinary text.
 constexpr double kDense_dpi = 150;
-// Range of a screen's plausible heights, mm; outside it the reported height is made up.
+// Plausible screen heights, mm; values outside are treated as unknown.
 constexpr double kPlausible_mm[] = {100, 1500};
 constexpr int kManyRows = 2000;
 constexpr double kOrdinaryRows = 1080;

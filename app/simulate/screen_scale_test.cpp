@@ -11,10 +11,10 @@ TEST(ScreenScale, FollowsWhatTheSystemWants) {
 }
 
 TEST(ScreenScale, FollowsTheDensityOfTheDotsWhereTheSystemWantsNothing) {
-  // 4K at 27 inches (163 dots an inch) and at 15.6 inches (282).
+  // 4K at 27 inches (163 dpi) and at 15.6 inches (282 dpi).
   EXPECT_DOUBLE_EQ(scale_for({{3840, 2160}, 336, 1}), 1.5);
   EXPECT_DOUBLE_EQ(scale_for({{3840, 2160}, 194, 1}), 2.75);
-  // Ordinary ones: 24 inches, a small laptop, 1024 x 600.
+  // Ordinary screens: 24 inches, a small laptop, 1024 x 600.
   EXPECT_DOUBLE_EQ(scale_for({{1920, 1080}, 299, 1}), 1);
   EXPECT_DOUBLE_EQ(scale_for({{1366, 768}, 173, 1}), 1);
   EXPECT_DOUBLE_EQ(scale_for({{1024, 600}, 159, 1}), 1);

@@ -18,9 +18,9 @@ namespace osteomill::app {
 
 namespace {
 
-// The burr comes to the middle by two thirds of its way in this time, so that its trembling is not followed.
+// Time constant for centring the burr, long enough to ignore tremor.
 constexpr double kFollowing_s = 0.25;
-// The side of the loupe as a share of the window's height.
+// Side of the loupe as a fraction of the window's height.
 constexpr double kLoupeShare = 0.4;
 
 ImVec2 at(const Eigen::Vector2d& place) {
@@ -105,14 +105,14 @@ void update_seeing(ViewState& view, Simulation& simulation, const PixelSize& siz
     if (ui::is_key_pressed(GLFW_KEY_V)) view.follow_burr = !view.follow_burr;
     if (ui::is_key_pressed(GLFW_KEY_L)) view.loupe = !view.loupe;
     if (ui::is_key_pressed(GLFW_KEY_R)) view.measuring = !view.measuring;
-    // The list of points is there.
+    // The list of points is in that group.
     if (view.measuring && ui::is_key_pressed(GLFW_KEY_R)) view.open.closer = true;
   }
   if (view.measuring) take_click(view, simulation, size);
   if (!view.follow_burr) return;
   const Vec3 away_mm = simulation.milling.state().record.X_WT.position_mm - view.camera.focus_W;
   const double share = 1 - std::exp(-static_cast<double>(io.DeltaTime) / kFollowing_s);
-  // A view that rests is drawn in full detail.
+  // Do not move a view at rest, which is drawn in full detail.
   const double pixel_mm = mm_per_pixel(view.camera, size, view.camera.distance_mm);
   if (away_mm.norm() > pixel_mm) view.camera.focus_W += share * away_mm;
 }

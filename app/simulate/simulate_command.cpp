@@ -26,7 +26,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   add_exercise_options(*command, options->exercise);
   add_guidance_option(*command, options->exercise);
   add_branch_options(*command, options->from);
-  // A recording in the place of the scan is played from there.
+  // With a recording in place of the scan, --at sets the start of playback.
   CLI::Option* const at = command->get_option("--at");
   at->remove_needs(command->get_option("--from"));
   command->option_defaults()->group("Algorithm");

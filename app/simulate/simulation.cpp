@@ -41,7 +41,7 @@ Simulation::Simulation(PreparedScan opened, const Pose& X_WT, const ToolSource& 
 
 void Simulation::start() {
   milling.start();
-  // Drawing and dragging begin at the tool, so wait for its first tick.
+  // Wait for the first tick, because drawing and dragging start from the tool's pose.
   while (history.empty() && milling.is_running()) {
     std::this_thread::sleep_for(std::chrono::microseconds(200));
     if (const auto record = milling.next_record()) history.push_back(*record);
@@ -86,7 +86,7 @@ void Simulation::update() {
   update_warnings();
 }
 
-// Looks for warnings on a thread of its own, because it goes through every voxel.
+// Computes the warnings on a thread of its own, because that scans every voxel.
 void Simulation::update_warnings() {
   if (pending_warnings_.valid()) {
     if (pending_warnings_.wait_for(0s) == std::future_status::ready) warnings = pending_warnings_.get();
@@ -106,7 +106,7 @@ void Simulation::update_warnings() {
   }
 }
 
-// Goes through all that was ever milled, so not at every picture.
+// Not in every frame, because it scans everything milled so far.
 void Simulation::count_labels() {
   constexpr auto kEvery = std::chrono::milliseconds(500);
   const auto now = std::chrono::steady_clock::now();

@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr PixelSize kWindowSize{1280, 800};
 
-// The command line comes before what is remembered.
+// The command line overrides the remembered scale.
 std::optional<double> text_scale_of(const SimulatorOptions& options) {
   const double remembered = options.remembered.text_scale;
   return options.ui_scale || remembered == 0 ? options.ui_scale : remembered;
@@ -50,7 +50,7 @@ Simulator::Simulator(const SimulatorOptions& options)
 }
 
 void Simulator::run() {
-  // Unsaved milling of an earlier run comes before the scan that was named.
+  // Unsaved milling of an earlier run comes before the named scan.
   leftover_ = last_leftover_milling();
   if (leftover_) {
     ask_about_leftover();
@@ -93,7 +93,7 @@ void Simulator::begin_picture() {
 
 void Simulator::draw_screen() {
   const PixelSize size = stage_.window.size();
-  // The bone of a window that is hidden is not drawn.
+  // Do not draw the bone of a hidden window.
   const bool is_hidden = size.width < 1 || size.height < 1;
   if (milling_) {
     if (!is_hidden) draw_milling();
@@ -127,7 +127,7 @@ void Simulator::finish_picture() {
   window.ask_theme(view.theme);
   view.place = window.place();
   keeper_.keep(view);
-  // More pictures than anyone sees would only take time from the other threads.
+  // A higher frame rate would only take time from other threads.
   constexpr auto kMin = 12ms;
   std::this_thread::sleep_until(last_picture_ + kMin);
 }
@@ -147,7 +147,7 @@ void Simulator::draw_start_page() {
 }
 
 void Simulator::draw_waiting() {
-  // If several paths were dropped, the last one counts.
+  // If several paths were dropped, use the last one.
   if (const auto asked = stage_.window.take_dropped(); !asked.empty()) begin_scan(asked.back());
   if (opening_.is_ready()) take_first();
   draw_opening();
@@ -179,14 +179,14 @@ void Simulator::draw_milling() {
 }
 
 void Simulator::draw_opening() {
-  // It may have been taken in this picture.
+  // It may have been taken in this frame.
   if (!opening_.is_begun()) return;
   const bool is_cancelled = draw_loading(opening_.request().name(), opening_.share_done(),
                                          opening_.passed_s(), stage_.window.size(), milling_ != nullptr);
   if (is_cancelled) cancel_opening();
 }
 
-// Opens what was named, or else shows the start page.
+// Opens what the command line names, or else shows the start page.
 void Simulator::begin_first() {
   if (!options_.from.given() && !options_.exercise.given() && options_.scan.scan.empty() &&
       !options_.scan.isovalue) {
@@ -232,8 +232,8 @@ void Simulator::ask_about_leftover() {
 void Simulator::open_leftover() {
   ScanOptions scan = scan_of(leftover_->start.run);
   scan.read.max_memory_bytes = options_.scan.read.max_memory_bytes;
-  // The labels that were asked for at this start come before those of the earlier run, unless that removed
-  // pieces, of which each label's share is counted.
+  // Labels requested at this start replace those of the earlier run, unless that run removed pieces, whose
+  // volumes are stored per label.
   std::error_code other;
   if (!options_.scan.labels.map.empty() && leftover_->start.piece_drops.empty() &&
       std::filesystem::equivalent(scan.scan, options_.scan.scan, other))
@@ -253,7 +253,7 @@ void Simulator::give_up(const std::string& what) {
   if (!milling_ && !start_page_ && !playback_) closing_ = true;
 }
 
-// Opens what is chosen as if it were dropped.
+// Opens the chosen file as if it had been dropped.
 void Simulator::draw_open_dialog() {
   ViewState& view = stage_.view;
   const OpenKind kind = std::exchange(view.open_requested, OpenKind::none);
@@ -261,7 +261,7 @@ void Simulator::draw_open_dialog() {
   if (const auto chosen = open_dialog_.draw(kind, is_waiting, view.last_folder)) stage_.window.drop(*chosen);
 }
 
-// Asks which series of a folder is meant. Returns whether there are several.
+// Asks which series of a folder to open. Returns whether there are several.
 bool Simulator::ask_for_series() {
   if (opened_->series.empty()) return false;
   const ScanInfo scan = opened_->scan;
@@ -275,7 +275,7 @@ bool Simulator::ask_for_series() {
   return true;
 }
 
-// Milling goes on until another scan was read and takes its place.
+// Milling continues until another scan is opened and replaces it.
 void Simulator::open_another() {
   ViewState& view = stage_.view;
   std::vector<std::string> asked = stage_.window.take_dropped();
@@ -290,7 +290,7 @@ void Simulator::open_another() {
   } else if (!asked.empty() && !opened_) {
     begin_scan(asked.front());
   }
-  // One at a time waits for the answer to what becomes of the bone that is milled.
+  // Only one opened scan at a time may wait for the user's decision on the milled bone.
   if (opened_ || !opening_.is_ready()) return;
   if (!view.dialogues.run_reporting_errors([this] { opened_ = opening_.take(); })) return;
   if (ask_for_series()) return;
@@ -305,7 +305,7 @@ void Simulator::take_first() {
   } catch (const std::exception& error) {
     if (!is_leftover && !start_page_ && !playback_) throw;
     stage_.view.dialogues.add_error(error.what());
-    // The milled bone is kept for another start, when its scan may be there again.
+    // Keep the milled bone for another start, when its scan may be available again.
     if (is_leftover) begin_first();
     return;
   }
@@ -351,7 +351,7 @@ void Simulator::begin_milling(PreparedScan opened) {
   ViewState& view = stage_.view;
   const PixelSize size = stage_.window.size();
   const ScanInfo& scan = opened.scan;
-  // Milling on from a recording that is played keeps its view.
+  // Continuing from a recording being played keeps its view.
   const bool looks_on = opened.from && playback_;
   playback_.reset();
   if (!is_builtin(scan.source.scan) && !opened.exercise) note_recent_scan(scan.source.scan);
@@ -365,7 +365,7 @@ void Simulator::begin_milling(PreparedScan opened) {
                                              options_.send, stage_);
 }
 
-// Goes back to the start page, once what was milled may be lost.
+// Returns to the start page, after asking about unsaved milling.
 void Simulator::show_start_page() {
   ask_before("Going to the start page", [this] {
     after_writing("Writing ...", [this] {
@@ -387,7 +387,7 @@ bool Simulator::has_unsaved() {
   return milling_ && simulation()->autosave.has_unsaved(simulation()->milling);
 }
 
-// Does `on_proceed` at once if nothing unsaved would be lost by it; else asks first.
+// Runs `on_proceed` at once if nothing unsaved would be lost; otherwise asks first.
 void Simulator::ask_before(const char* what, const Dialogue::Action& on_proceed,
                            const Dialogue::Action& stay) {
   if (!has_unsaved()) return on_proceed();
@@ -405,8 +405,8 @@ void Simulator::after_writing(const char* doing, const Dialogue::Action& then) {
   stage_.view.dialogues.add({"osteomill", doing, {}, [this] { return !stage_.files.is_busy(); }, then});
 }
 
-// Begins to write as soon as nothing else is being written. Once it is written `then` follows; if that
-// failed, `stay`: a dialogue then says why.
+// Starts writing as soon as nothing else is being written. Afterwards runs `then`, or `stay` if writing
+// failed, which a dialogue reports.
 void Simulator::write(const char* doing, const Dialogue::Action& begin, const Dialogue::Action& then,
                       const Dialogue::Action& stay) {
   after_writing(doing, [=, this] {
@@ -456,13 +456,13 @@ void Simulator::close_exercise() {
   stage_.view.dialogues.add(unfinished_question(measure, [this] { closing_ = true; }));
 }
 
-// Waits for the results before it closes the window, unless the trainee gives them up.
+// Waits for the results before closing the window, unless the trainee cancels.
 void Simulator::close_when_measured() {
   const auto is_measured = [this] { return !simulation()->exercise->is_measuring(); };
   stage_.view.dialogues.add(measuring_message(is_measured, [this] { closing_ = true; }));
 }
 
-// Ends what is still recorded, and prints which files were made.
+// Ends a running recording and prints the files that were written.
 void Simulator::print_results() {
   FilesPanel& files = stage_.files;
   const ExerciseWork* const exercise = milling_ ? simulation()->exercise.get() : nullptr;

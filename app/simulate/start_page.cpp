@@ -75,7 +75,7 @@ void note_recent_scan(const std::string& scan) {
       for (std::size_t n = 0; n < std::min(scans.size(), kMaxRecent); ++n) text << scans[n] << '\n';
     });
   } catch (const InputError&) {
-    // Then it is not offered next time.
+    // The scan is then not offered next time.
   }
 }
 
@@ -88,7 +88,7 @@ StartPage::StartPage() : recent_(recent_scans()) {
   for (const fs::path& file : files) add_exercise(file);
 }
 
-// One that is at fault is not offered; --check says why.
+// Ignores a faulty exercise; `--check` reports the reason.
 void StartPage::add_exercise(const fs::path& file) {
   try {
     const Exercise exercise = read_exercise_file(file.string());

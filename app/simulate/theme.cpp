@@ -12,7 +12,7 @@ void colour(ImGuiStyle& style, ImGuiCol which, float red, float green, float blu
   style.Colors[which] = ImVec4(red, green, blue, opacity);
 }
 
-// The grips of sliders are dark enough, or light enough, to read the number through which they pass.
+// The slider grips contrast with the numbers drawn over them.
 void set_dark(ImGuiStyle& style) {
   ImGui::StyleColorsDark(&style);
   colour(style, ImGuiCol_WindowBg, 0.09f, 0.10f, 0.12f, 0.92f);
@@ -22,7 +22,7 @@ void set_dark(ImGuiStyle& style) {
   colour(style, ImGuiCol_SliderGrab, 0.24f, 0.42f, 0.63f);
   colour(style, ImGuiCol_SliderGrabActive, 0.27f, 0.46f, 0.68f);
   colour(style, ImGuiCol_TextDisabled, 0.62f, 0.64f, 0.67f);
-  // Darkens the window behind a dialogue, which ImGui would make paler.
+  // Darkens the window behind a dialogue; ImGui's default would lighten it.
   colour(style, ImGuiCol_ModalWindowDimBg, 0, 0, 0, 0.5f);
 }
 
@@ -44,7 +44,7 @@ void set_light(ImGuiStyle& style) {
   colour(style, ImGuiCol_PlotHistogram, 0.30f, 0.45f, 0.65f);
 }
 
-// On dark panels, and on light ones.
+// Colours on dark and on light panels.
 const ImVec4 kInks[][2] = {{{1.0f, 0.72f, 0.25f, 1}, {0.58f, 0.33f, 0.0f, 1}},
                            {{1.0f, 0.38f, 0.30f, 1}, {0.75f, 0.08f, 0.05f, 1}},
                            {{0.55f, 0.90f, 0.60f, 1}, {0.05f, 0.42f, 0.15f, 1}},

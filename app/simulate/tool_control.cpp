@@ -9,7 +9,8 @@ constexpr double kWheelStep_mm = 0.2;
 constexpr double kKeys_mm_s = 6;
 constexpr double kKeysAway_mm_s = 3;
 constexpr double kKeysTurn_rad_s = 0.6;
-// Against bone the hand's springs push no harder beyond these; free of it, the tool is on its way.
+// Maximum lead of the target over the device: against bone, a larger one would not increase the spring force;
+// in free space the tool follows.
 constexpr double kMaxLead_mm = 6;
 constexpr double kMaxLeadFree_mm = 25;
 constexpr double kMaxLead_rad = 0.35;

@@ -29,14 +29,14 @@ std::map<std::string, WidgetState>& widget_states() {
 
 namespace {
 
-// Remembers the widget drawn last, and shows its hint if the pointer rests on it. Returns whether it acted.
+// Stores the state of the last widget and adds its tooltip. Returns `acted`.
 bool remember(const char* label, const std::string& hint, bool acted) {
   std::string text(label);
   text.erase(std::min(text.find("##"), text.size()));
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
   const float right_px = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  // A heading reaches half into the panel's edge.
+  // A heading extends halfway into the panel's padding.
   const float edge_px = right_px + 0.5f * ImGui::GetStyle().WindowPadding.x + 1;
   const bool is_cut_off = max.x > edge_px || ImGui::CalcTextSize(text.c_str()).x > max.x - min.x;
   WidgetState& state = widget_states()[text];
@@ -127,7 +127,7 @@ bool header(const char* label, const std::string& hint, bool& open) {
 
 bool begin_menu(const char* label, const std::string& hint) {
   const bool is_open = ImGui::BeginMenu(label);
-  // The item drawn last is then the menu's own window.
+  // If the menu is open, the last item is the menu's own window.
   if (!is_open) remember(label, hint, false);
   if (is_open && ImGui::IsWindowAppearing()) widget_states()[label].was_used = true;
   return is_open;
@@ -148,7 +148,7 @@ std::optional<std::size_t> choice(const std::vector<Choice>& choices, bool is_li
     if (button(choices[n].label.c_str(), choices[n].hint)) chosen = n;
   }
   if (choices.empty()) return chosen;
-  // The key that led to the dialogue may still be going down.
+  // The key that led to the dialogue may still be down.
   if (ImGui::IsWindowAppearing()) return chosen;
   if (is_key_pressed(GLFW_KEY_ENTER) || is_key_pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
   if (is_key_pressed(GLFW_KEY_ESCAPE)) chosen = choices.size() - 1;

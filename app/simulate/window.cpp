@@ -41,7 +41,7 @@ void set_fonts(double scale) {
   }
 }
 
-// The screen that holds the window's middle, or the first.
+// Returns the screen that contains the window's centre, or the first one.
 GLFWmonitor* monitor_of(GLFWwindow* window) {
   int left = 0, top = 0, width = 0, height = 0, count = 0;
   glfwGetWindowPos(window, &left, &top);
@@ -71,8 +71,7 @@ double screens_scale(GLFWmonitor* monitor, double content_scale) {
   return scale_for(screen);
 }
 
-// Returns whether a window that is kept there can be used: it lies within a screen that is there now, and has
-// some size.
+// Returns whether this stored place is usable: within a connected screen and not too small.
 bool is_on_a_screen(const WindowPlace& place) {
   constexpr int kLeast_px = 200;
   int count = 0;
@@ -86,7 +85,7 @@ bool is_on_a_screen(const WindowPlace& place) {
          });
 }
 
-// Returns the size scaled like the text, and no larger than the screen without its bars.
+// Returns the size scaled like the text and limited to the screen without its bars.
 PixelSize fitting_size(const PixelSize& size, const std::optional<double>& ui_scale) {
   GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
   if (monitor == nullptr) return size;
@@ -112,7 +111,7 @@ Window::Window(const std::string& title, const PixelSize& size, const std::optio
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  // The renderer has a depth buffer of its own; the window shows only the result.
+  // The renderer has its own depth buffer; the window shows only the result.
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   const bool is_placed = is_on_a_screen(place);
@@ -191,8 +190,8 @@ void Window::toggle_full_screen() {
   glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
 
-// ImGui looks at the keys once a picture. One that goes down and up in between is down in this picture and up
-// in the next, with all that came after it, so that no tap is lost and the order stays.
+// ImGui samples the keys once per frame. A key that goes down and up between two frames is down in this frame
+// and up in the next, with all later events, so that no key press is lost and the order is kept.
 void Window::hand_over_keys() {
   std::vector<int> changed;
   const auto again = [&](const KeyEvent& event) {
@@ -213,7 +212,7 @@ void Window::resize(const PixelSize& size) {
   glfwSetWindowSize(window_, size.width, size.height);
 }
 
-// Follows a change of the screen, of the window's size, or of the wanted scale.
+// Applies changes of the screen, the window's size, or the requested scale.
 void Window::follow_scale() {
   float content_scale = 1;
   glfwGetWindowContentScale(window_, &content_scale, nullptr);
@@ -240,12 +239,12 @@ void Window::hold_pointer(bool is_held) {
   glfwSetInputMode(window_, GLFW_CURSOR, is_held ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
 }
 
-// A pointer that is held is far from all panels, which would take it otherwise.
+// Moves a captured pointer far away from all panels, which would otherwise receive its input.
 void Window::follow_pointer() {
   constexpr float kFar_px = 1e5f;
   ImGuiIO& io = ImGui::GetIO();
   if (is_pointer_held_) io.MousePos = {io.MousePos.x + kFar_px, io.MousePos.y + kFar_px};
-  // The way there and back is no move of the hand.
+  // Moving the pointer there and back is not input.
   if (std::exchange(is_pointer_moved_, false)) io.MousePosPrev = {-FLT_MAX, -FLT_MAX};
   const bool has_focus = glfwGetWindowAttrib(window_, GLFW_FOCUSED) == GLFW_TRUE;
   focus_lost_ = focus_lost_ || (has_focus_ && !has_focus);
