@@ -119,7 +119,7 @@ void Autosave::take_result() {
   } catch (const std::exception& error) {
     next_ = Clock::now() + 60s;
     kept_version_ = 0;
-    error_ = std::string("What is milled is not kept for the next start: ") + error.what();
+    error_ = std::string("Milling cannot be autosaved: ") + error.what();
   }
 }
 
@@ -138,8 +138,8 @@ void Autosave::update(LiveMilling& milling) {
   if (!file_) file_ = AutosaveFile::make();
   if (!file_) {
     next_ = Clock::time_point::max();
-    error_ = "What is milled is not kept for the next start, since its folder cannot be written: " +
-             autosave_folder().string();
+    error_ =
+        "Milling cannot be autosaved because its folder cannot be written: " + autosave_folder().string();
     return;
   }
   kept_version_ = version;

@@ -34,7 +34,7 @@ std::string hint_of(const FieldDescription& field) {
 bool settle(const char* label, const std::string& hint, double& value, float min, float max,
             const char* format) {
   float shown = static_cast<float>(value);
-  if (ui::slider(label, hint + ". Drag, or hold Ctrl and click to type a number", &shown, min, max, format,
+  if (ui::slider(label, hint + ". Drag, or Ctrl+click to type a number", &shown, min, max, format,
                  ImGuiSliderFlags_AlwaysClamp)) {
     value = static_cast<double>(shown);
   }
@@ -86,19 +86,19 @@ std::string fitting_suffix(const std::string& name) {
 // Draws the menu bar: settings not related to the bone, always visible, also if the panels are not legible.
 void draw_menu(ViewState& view) {
   if (!ImGui::BeginMenuBar()) return;
-  if (ui::begin_menu("Window", "Size of the text, colours and full screen")) {
-    if (ui::button("Larger text", "Makes all text and buttons larger")) ++view.text_steps;
-    if (ui::button("Smaller text", "Makes all text and buttons smaller")) --view.text_steps;
+  if (ui::begin_menu("Window", "Text size, colours and full screen")) {
+    if (ui::button("Larger text", "Enlarges all text and buttons")) ++view.text_steps;
+    if (ui::button("Smaller text", "Reduces all text and buttons")) --view.text_steps;
     if (ui::radio("Dark", "Light text on dark panels, for a dark room", view.theme == Theme::dark))
       view.theme = Theme::dark;
     if (ui::radio("Light", "Dark text on light panels, for a bright room", view.theme == Theme::light))
       view.theme = Theme::light;
-    if (ui::button("Full screen (F11)##full", "Lets the window fill the screen, or gives it its frame back"))
+    if (ui::button("Full screen (F11)##full", "Switches between full screen and a window"))
       view.full_screen_requested = true;
     if (ui::button("Start page", kStartPageHint)) view.start_page_requested = true;
     ImGui::EndMenu();
   }
-  if (ui::button("Help (F1)##help", "Shows how tool, view and bone are moved by mouse, keys or a device"))
+  if (ui::button("Help (F1)##help", "Shows how to control tool, view and bone by mouse, keyboard or device"))
     view.help = true;
   ImGui::EndMenuBar();
 }
@@ -111,16 +111,15 @@ void draw_scan(ViewState& view, const Simulation& simulation) {
 }
 
 void draw_algorithm(ViewState& view, bool& changed) {
-  if (!ui::header("Algorithm", "How the force on your hand is computed", view.open.algorithm)) return;
+  if (!ui::header("Algorithm", "Algorithm that computes the force on your hand", view.open.algorithm)) return;
   MillingSetup& requested_setup = view.requested_setup;
   bool left = true;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     if (!std::exchange(left, !left)) ImGui::SameLine(ui::px(kWidth_px / 2));
     const bool is_own = algorithm.id == default_algorithm().id;
-    const std::string hint =
-        fmt::format("Computes the force on your hand by {}, {}", algorithm.id.name,
-                    is_own ? "which is made for milling and keeps the burr out of the bone"
-                           : "one of the three published algorithms, to compare them");
+    const std::string hint = fmt::format("Computes the force on your hand with {}, {}", algorithm.id.name,
+                                         is_own ? "designed for milling; keeps the burr out of the bone"
+                                                : "one of the three published algorithms, for comparison");
     if (ui::radio(algorithm.id.label.c_str(), hint, requested_setup.algorithm.id == algorithm.id)) {
       requested_setup.algorithm = algorithm;
       requested_setup.haptics.clear_option(kStiffnessOption);
@@ -130,8 +129,8 @@ void draw_algorithm(ViewState& view, bool& changed) {
   const auto before = stiffness_of(requested_setup);
   if (!before) return;
   double stiffness = *before;
-  const bool settled = settle("stiffness", "How hard bone pushes back for each millimetre that you press",
-                              stiffness, 0.5f, 30.0f, "%.1f N/mm");
+  const bool settled = settle("stiffness", "Force of the bone per millimetre that you press in", stiffness,
+                              0.5f, 30.0f, "%.1f N/mm");
   if (stiffness != *before) requested_setup.haptics.set_option(kStiffnessOption, stiffness);
   changed = changed || settled;
 }
@@ -144,11 +143,11 @@ bool is_dental(Handpiece handpiece) {
 bool choose_named_burr(MillingSetup& requested_setup) {
   const NamedBurr* chosen = find_burr(requested_setup.tool, requested_setup.burr);
   const NamedBurr* now = chosen;
-  if (ui::button("Choose burr", "Lists the burrs that surgeons and dentists use, by kind and diameter"))
+  if (ui::button("Choose burr", "Lists surgical and dental burrs by kind and diameter"))
     ImGui::OpenPopup("##burrs");
   ImGui::SameLine();
   const double wide_mm = 2 * requested_setup.tool.burr_radius_mm;
-  ImGui::TextUnformatted(chosen != nullptr ? chosen->label : fmt::format("{:.1f} mm wide", wide_mm).c_str());
+  ImGui::TextUnformatted(chosen != nullptr ? chosen->label : fmt::format("{:.1f} mm", wide_mm).c_str());
   if (!ImGui::BeginPopup("##burrs")) return false;
   std::string_view kind;
   for (const NamedBurr& burr : named_burrs()) {
@@ -162,7 +161,7 @@ bool choose_named_burr(MillingSetup& requested_setup) {
       ImGui::TextDisabled("%s", burr.kind);
     }
     const std::string hint =
-        fmt::format("A burr {:g} mm wide on a shaft {:g} mm wide, {}", 2 * burr.tool.burr_radius_mm,
+        fmt::format("Burr {:g} mm and shaft {:g} mm in diameter, {}", 2 * burr.tool.burr_radius_mm,
                     2 * burr.tool.shaft_radius_mm, burr.kind);
     if (ui::entry(burr.label, hint, &burr == chosen)) chosen = &burr;
   }
@@ -189,7 +188,8 @@ struct ToolChoice {
 };
 
 void draw_tool(ViewState& view, ToolChoice& choice, bool& changed) {
-  if (!ui::header("Tool", "Sizes and speed of the burr, and what of its turning you feel", view.open.tool))
+  if (!ui::header("Tool", "Size and speed of the burr, and the effects of its rotation on your hand",
+                  view.open.tool))
     return;
   MillingSetup& setup = view.requested_setup;
   ImGui::BeginDisabled(!choice.is_free);
@@ -207,7 +207,7 @@ void draw_tool(ViewState& view, ToolChoice& choice, bool& changed) {
 }
 
 void draw_drive(ViewState& view, ToolChoice& choice, bool& changed) {
-  if (!ui::header("Burr and drive", "Handpiece, law of cutting, kind and wear of the burr", view.open.drive))
+  if (!ui::header("Burr and drive", "Handpiece, cutting law, kind and wear of the burr", view.open.drive))
     return;
   MillingSetup& setup = view.requested_setup;
   choice.changed = choose_field("handpiece", setup) || choice.changed;
@@ -225,18 +225,16 @@ void draw_undo(ViewState& view, const LiveMilling& milling) {
   const auto cuts = static_cast<int>(milling.follower().cuts());
   if (ui::button(
           "Undo cut",
-          "Puts back what was milled since the spindle was last switched on, or the pieces of bone that "
-          "were removed last (up to 256 MB of cuts are kept). Ctrl+Z does the same",
+          "Restores the bone milled since the spindle was last switched on, or the last removed pieces "
+          "(Ctrl+Z). Up to 256 MB of cuts are kept",
           free && cuts > 0))
     view.undo_requested = true;
   ui::same_line_if_room("Redo");
-  if (ui::button("Redo",
-                 "Makes the cut again that was put back last, as long as nothing else was cut since. Ctrl+Y "
-                 "does the same",
+  if (ui::button("Redo", "Repeats the last undone cut, unless something else was cut since (Ctrl+Y)",
                  free && milling.follower().undone_cuts() > 0))
     view.redo_requested = true;
   ui::same_line_if_room("Reset bone");
-  if (ui::button("Reset bone", "Puts back all that was milled of this bone, and its removed pieces",
+  if (ui::button("Reset bone", "Restores the whole bone, including removed pieces",
                  free && milling.follower().is_touched()))
     view.reset_requested = true;
   const std::string text = fmt::format("{} {}", cuts, cuts == 1 ? "cut" : "cuts");
@@ -245,29 +243,28 @@ void draw_undo(ViewState& view, const LiveMilling& milling) {
 }
 
 void draw_milling(ViewState& view, Simulation& simulation, ToolChoice& choice) {
-  if (!ui::header("Milling", "Take the tool, choose its burr, mill, and take cuts back", view.open.milling))
+  if (!ui::header("Milling", "Take the tool, choose its burr, mill, and undo cuts", view.open.milling))
     return;
   LiveMilling& milling = simulation.milling;
   if (simulation.tool_source.is_pointer()) {
     if (ui::button(view.holding_tool ? "Let go (T)##hold" : "Take the tool (T)##hold",
-                   "Takes the tool into your hand, so that it follows the mouse, or lets it go"))
+                   "Takes the tool, so that it follows the mouse, or lets it go"))
       view.holding_tool = !view.holding_tool;
     ImGui::SameLine();
   }
   if (ui::button(
           "Bring it here (B)##bring",
-          "Brings the tool to just before the bone in the middle of the view; the key B, to just before "
-          "the bone under the pointer"))
+          "Moves the tool in front of the bone at the centre of the view; the key B uses the bone under "
+          "the pointer"))
     view.bring_requested = true;
   // A device's own button can also switch the spindle on.
   bool spindle = milling.is_spindle_requested() || milling.state().spindle_on;
-  if (ui::checkbox("spindle on", "Lets the burr turn, so that it cuts; Space does the same", &spindle))
-    milling.set_spindle(spindle);
+  if (ui::checkbox("spindle on", "Turns the burr on or off (Space)", &spindle)) milling.set_spindle(spindle);
   ImGui::SameLine();
-  ui::checkbox("sound", "Lets you hear the spindle and the burr in the bone", &view.sound);
+  ui::checkbox("sound", "Plays the sound of the spindle and of cutting", &view.sound);
   ImGui::SameLine();
   bool paused = milling.state().record.paused;
-  if (ui::checkbox("pause", "Holds everything still, without a force on your hand; P does the same", &paused))
+  if (ui::checkbox("pause", "Pauses milling, without a force on your hand (P)", &paused))
     milling.set_paused(paused);
   ImGui::BeginDisabled(!choice.is_free);
   choice.changed = choose_named_burr(view.requested_setup) || choice.changed;
@@ -287,7 +284,7 @@ void draw_boundaries(ViewState& view, Simulation& simulation) {
     const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
     const std::string hint = fmt::format(
-        "Lets bone begin at {:.4g}, a boundary in this scan between materials of {:.4g} and {:.4g}",
+        "Sets the isovalue to {:.4g}, the boundary in this scan between materials of {:.4g} and {:.4g}",
         boundary.density, boundary.below, boundary.above);
     if (ui::button(label.c_str(), hint, !simulation.milling.is_preparing()))
       view.isovalue_requested = boundary.density;
@@ -295,7 +292,7 @@ void draw_boundaries(ViewState& view, Simulation& simulation) {
 }
 
 void draw_isovalue(ViewState& view, Simulation& simulation) {
-  if (!ui::header("Bone", "The density above which the scan is taken for bone", view.open.bone)) return;
+  if (!ui::header("Bone", "Density above which the scan counts as bone", view.open.bone)) return;
   const DensityHistogram& histogram = simulation.scan.histogram;
   LiveMilling& milling = simulation.milling;
   float isovalue = view.isovalue.value_or(static_cast<float>(milling.isovalue()));
@@ -306,16 +303,14 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
                        static_cast<int>(histogram.log_counts.size()), 0, nullptr, 0, FLT_MAX, size);
   ImGui::EndDisabled();
-  ui::tooltip(
-      "How many voxels have each density, from the lowest to the highest; the line is where bone begins");
+  ui::tooltip("Number of voxels of each density, from lowest to highest; the line marks the isovalue");
   const float share = (isovalue - histogram.min) / (histogram.max - histogram.min);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
   draw_boundaries(view, simulation);
   ImGui::BeginDisabled(milling.is_preparing());
   const std::string format = "%.4g" + simulation.scan.unit;
-  if (ui::slider("isovalue",
-                 "What is denser than this is bone. Drag, or hold Ctrl and click to type a number", &isovalue,
+  if (ui::slider("isovalue", "Higher densities are bone. Drag, or Ctrl+click to type a number", &isovalue,
                  histogram.min, histogram.max, format.c_str(), ImGuiSliderFlags_AlwaysClamp)) {
     view.isovalue = isovalue;
     milling.show_isovalue(static_cast<double>(isovalue));
@@ -335,7 +330,7 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
     ViewState::Cut& cut = view.cuts[n];
     ImGui::PushID(static_cast<int>(n));
     const std::string hint =
-        fmt::format("Cuts the bone open in {} at the burr",
+        fmt::format("Cuts the bone open at the burr, along {}",
                     n == 3 ? "the plane of the screen" : fmt::format("the {} plane", kCutNames[n]));
     if (ui::checkbox(kCutNames[n], hint, &cut.on) && cut.on) {
       if (n == 3) cut.normal_W = -view.camera.towards_viewer_W();
@@ -343,12 +338,12 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
     }
     if (cut.on) {
       ImGui::SameLine(ui::px(100));
-      ui::checkbox("other side", "Shows the half of the bone that this cut hides", &cut.other_side);
+      ui::checkbox("other side", "Shows the half of the bone that is hidden by this cut", &cut.other_side);
       const GridGeometry& grid = simulation.milling.geometry();
       const auto extent = extent_along(corners_W(grid, grid.all_voxels()), cut.normal_W);
       ui::slider((std::string(kCutNames[n]) + " place").c_str(),
-                 "Moves the cut through the bone; dragging it with Ctrl and the left button does the same",
-                 &cut.offset_mm, static_cast<float>(extent[0]), static_cast<float>(extent[1]), "%.1f mm");
+                 "Moves the cut through the bone (or drag it with Ctrl and the left button)", &cut.offset_mm,
+                 static_cast<float>(extent[0]), static_cast<float>(extent[1]), "%.1f mm");
     }
     ImGui::PopID();
   }
@@ -356,16 +351,15 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
 }
 
 void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
-  if (!ui::header("View", "From where you see the bone, and what is drawn beside it", view.open.view)) return;
+  if (!ui::header("View", "Viewing direction, and what is drawn besides the bone", view.open.view)) return;
   for (const auto& [from, direction_W, up_W] : kPatientViews) {
     const std::string letter(1, static_cast<char>(std::toupper(from.front())));
-    if (ui::button((letter + "##view").c_str(), fmt::format("Shows all of the bone from {}", from)))
+    if (ui::button((letter + "##view").c_str(), fmt::format("Shows the whole bone from {}", from)))
       view.camera = showing_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
     ImGui::SameLine();
   }
   if (ui::button("Whole", kWholeHint)) view.camera = showing_whole(view.camera, view.box, size);
-  if (ui::button("Find tool", "Moves the view so that the burr is in its middle"))
-    view.camera.focus_W = tool_W;
+  if (ui::button("Find tool", "Centres the view on the burr")) view.camera.focus_W = tool_W;
   ImGui::SameLine();
   ui::checkbox("ghost", kGhostHint, &view.ghost);
   ImGui::SameLine();
@@ -385,7 +379,7 @@ std::optional<double> stiffness_of(const MillingSetup& setup) {
 
 std::string isovalue_text(const Simulation& simulation) {
   if (simulation.milling.isovalue() == simulation.scan.isovalue) return simulation.scan.isovalue_from;
-  return fmt::format("set here; first {:.4g}{}, {}", simulation.scan.isovalue, simulation.scan.unit,
+  return fmt::format("set here; initially {:.4g}{}, {}", simulation.scan.isovalue, simulation.scan.unit,
                      simulation.scan.isovalue_from);
 }
 
@@ -398,7 +392,7 @@ void recall_tool(ViewState& view) {
 
 // Draws the controls for researchers.
 static void draw_laboratory(ViewState& view, ToolChoice& choice, bool& changed) {
-  if (!ui::header("Laboratory", "Algorithm, sizes, speed, drive and law of cutting, and all readings",
+  if (!ui::header("Laboratory", "Algorithm, tool size, speed, drive, cutting law, and all readings",
                   view.open.laboratory))
     return;
   ImGui::Indent(ui::px(8));

@@ -10,7 +10,7 @@ namespace osteomill::app {
 
 namespace {
 
-constexpr const char* kComplaint = "That did not work";
+constexpr const char* kComplaint = "Error";
 
 }  // namespace
 
@@ -56,31 +56,31 @@ std::vector<std::string> DialogueQueue::errors() const {
 Dialogue unsaved_question(const std::string& what, std::function<bool()> is_saved, Dialogue::Action save,
                           Dialogue::Action on_proceed, Dialogue::Action stay) {
   return {"Save the milled bone?",
-          what + " loses what was milled and not saved.",
-          {{"Save", "Writes the milled bone as a scan, and then goes on", std::move(save)},
-           {"Discard", "Goes on without what was milled", on_proceed},
-           {"Cancel", "Leaves everything as it is", std::move(stay)}},
+          what + " discards unsaved milling.",
+          {{"Save", "Saves the milled bone as a scan and continues", std::move(save)},
+           {"Discard", "Continues without saving", on_proceed},
+           {"Cancel", "Changes nothing", std::move(stay)}},
           std::move(is_saved),
           on_proceed};
 }
 
 Dialogue report_question(Dialogue::Action report, Dialogue::Action close) {
-  return {
-      "Close osteomill",
-      "You made a recording. Shall its report be written before the window closes?",
-      {{"Make the report and close", "Writes a page about the recording, and then closes", std::move(report)},
-       {"Close without", "Closes the window; the recording is kept", std::move(close)},
-       {"Stay", "Leaves the window open", {}}},
-      {},
-      {}};
+  return {"Close osteomill",
+          "You made a recording. Write its report before closing the window?",
+          {{"Make the report and close", "Writes a report of the recording, then closes the window",
+            std::move(report)},
+           {"Close without", "Closes the window; the recording is kept", std::move(close)},
+           {"Stay", "Keeps the window open", {}}},
+          {},
+          {}};
 }
 
 Dialogue unfinished_question(Dialogue::Action measure, Dialogue::Action close) {
   return {"Close osteomill",
-          "The exercise is not finished. Shall it be measured before the window closes?",
-          {{"Measure and close", "Writes the results of what you did, and then closes", std::move(measure)},
+          "The exercise is not finished. Measure it before closing the window?",
+          {{"Measure and close", "Writes the results so far, then closes the window", std::move(measure)},
            {"Close without", "Closes the window; the recording is kept", std::move(close)},
-           {"Stay", "Leaves the window open", {}}},
+           {"Stay", "Keeps the window open", {}}},
           {},
           {}};
 }
@@ -89,7 +89,7 @@ Dialogue measuring_message(std::function<bool()> is_measured, Dialogue::Action c
   return {"Close osteomill",
           "The exercise is being measured.",
           {{"Close without results", "Closes the window at once; the recording is kept", close},
-           {"Stay", "Leaves the window open", {}}},
+           {"Stay", "Keeps the window open", {}}},
           std::move(is_measured),
           close};
 }
@@ -97,16 +97,15 @@ Dialogue measuring_message(std::function<bool()> is_measured, Dialogue::Action c
 Dialogue leftover_question(const SessionStart& leftover, Dialogue::Action open, Dialogue::Action remove,
                            Dialogue::Action later) {
   // Removed pieces do not count as milled.
-  const std::string what =
-      leftover.removed_mm3 > 0
-          ? fmt::format("{:.1f} mm³ of this bone had been milled and", leftover.removed_mm3)
-          : "pieces of this bone had been removed and";
-  return {"Milled bone that was not saved",
-          fmt::format("When osteomill last ended, {} not saved:\n{}\n"
-                      "(isovalue {:g}). Shall it be opened as it was?",
+  const std::string what = leftover.removed_mm3 > 0
+                               ? fmt::format("{:.1f} mm³ of milled bone", leftover.removed_mm3)
+                               : "removed pieces of bone";
+  return {"Unsaved milling",
+          fmt::format("When osteomill last ended, {} had not been saved:\n{}\n"
+                      "(isovalue {:g}). Open it again?",
                       what, leftover.run.scan_name, leftover.run.isovalue),
-          {{"Open it", "Opens the scan with what was milled of it", std::move(open)},
-           {"Delete it", "Deletes what was milled; the scan stays", std::move(remove)},
+          {{"Open it", "Opens the scan as it had been milled", std::move(open)},
+           {"Delete it", "Deletes the unsaved milling but not the scan", std::move(remove)},
            {"Later", "Asks again at the next start", std::move(later)}},
           {},
           {}};

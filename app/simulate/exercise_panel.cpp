@@ -62,7 +62,7 @@ void draw_burrs(ViewState& view, const Exercise& exercise) {
   for (const AllowedBurr& burr : exercise.burrs) {
     const std::string label = burr.label();
     if (&burr != &exercise.burrs.front()) ui::same_line_if_room(label);
-    if (ui::radio((label + "##burr").c_str(), "Puts this burr, which the exercise allows, on the tool",
+    if (ui::radio((label + "##burr").c_str(), "Fits this burr, one of those allowed in the exercise",
                   burr.is_in(setup))) {
       burr.put_into(setup);
       is_changed = true;
@@ -73,7 +73,7 @@ void draw_burrs(ViewState& view, const Exercise& exercise) {
     if (!exercise.burrs.empty()) ui::same_line_if_room("diamond");
     bool diamond = setup.burr == BurrEdge::diamond;
     if (ui::checkbox("diamond##burr",
-                     "A burr set with diamonds, which grinds; else one with teeth, which cuts", &diamond)) {
+                     "Uses a diamond burr, which grinds, instead of a toothed one, which cuts", &diamond)) {
       setup.burr = diamond ? BurrEdge::diamond : BurrEdge::cutting;
       is_changed = true;
     }
@@ -85,13 +85,14 @@ void draw_burrs(ViewState& view, const Exercise& exercise) {
 void draw_switches(ExerciseWork& work) {
   bool guidance = work.has_guidance(), beat = work.has_beat();
   if (ui::checkbox("guidance (G)##exercise",
-                   "Shows step, distance and colours; the recording says when they were shown", &guidance))
+                   "Shows step, distance and colours; the recording stores when they were shown", &guidance))
     work.show_guidance(guidance);
   if (work.placed().structures.empty()) return;
   ImGui::SameLine();
   if (ui::checkbox(
           "beat (M)##exercise",
-          "A beat that quickens as the burr comes near a structure; each structure has its own pitch", &beat))
+          "Plays a beat that quickens as the burr nears a structure; each structure has its own pitch",
+          &beat))
     work.play_beat(beat);
 }
 
@@ -131,9 +132,8 @@ void draw_work(ViewState& view, Simulation& simulation, FilesPanel& files, const
   if (work.is_measuring()) {
     ImGui::TextUnformatted("Measuring ...");
   } else if (simulation.milling.is_recording()) {
-    if (ui::button("Finish", "Ends the recording, measures it and shows the results"))
-      view.finish_requested = true;
-  } else if (ui::button("Work on", "Goes on with this bone in a new recording")) {
+    if (ui::button("Finish", "Ends the recording and shows the results")) view.finish_requested = true;
+  } else if (ui::button("Work on", "Continues with this bone in a new recording")) {
     files.begin_recording(view, simulation, "exercise.h5");
   }
   ImGui::End();
@@ -171,23 +171,23 @@ void draw_results(ViewState& view, Simulation& simulation, const FilesPanel& fil
   place_between_columns(size, ui::px(8), 0);
   ImGui::Begin(fmt::format("Results: {}###results", work.placed().exercise.title).c_str(), nullptr, kFixed);
   draw_rows("##items", work.results(), true);
-  if (ui::header("All measures", "Everything that was measured, also without a limit", view.open.measures)) {
+  if (ui::header("All measures", "Shows all measures, including those without a limit", view.open.measures)) {
     ImGui::BeginChild("##all", {0, 0.4f * static_cast<float>(size.height)});
     draw_rows("##measures", work.results(), false);
     ImGui::EndChild();
   }
   ImGui::TextWrapped("%s", (work.folder() / "debrief.html").string().c_str());
   if (ui::button("Open page",
-                 "Shows bone, course and every error in the browser; nothing leaves the machine"))
+                 "Shows bone, course and every error in the browser; no data leave this computer"))
     view.dialogues.run_reporting_errors([&] { work.open_page(); });
   ui::same_line_if_room("Back to the bone");
   if (ui::button("Back to the bone", "Closes the results and shows the bone as you left it"))
     work.close_results();
   ui::same_line_if_room("Try again");
-  if (ui::button("Try again", "Begins the exercise again with the whole bone"))
+  if (ui::button("Try again", "Restarts the exercise with the whole bone"))
     view.exercise_requested = work.recorded().file;
   ui::same_line_if_room("Play it back");
-  if (ui::button("Play it back", "Shows what you did again, from which you may mill on at any moment"))
+  if (ui::button("Play it back", "Plays the recording back; you can continue milling from any moment"))
     view.scan_requested = files.last_recording().string();
   ui::same_line_if_room("Start page");
   if (ui::button("Start page", kStartPageHint)) view.start_page_requested = true;

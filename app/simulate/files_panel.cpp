@@ -35,7 +35,7 @@ void open_outside(const fs::path& path) {
   char* const arguments[] = {program.data(), argument.data(), nullptr};
   pid_t child = 0;
   if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
-    throw InputError(argument, "cannot be opened from here: there is no xdg-open");
+    throw InputError(argument, "cannot be opened: xdg-open is not installed");
   }
   std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
 }
@@ -178,21 +178,21 @@ float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, co
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                    ImGuiWindowFlags_NoFocusOnAppearing);
   const ImVec4 going_on = ui::ink(ui::Ink::note);
-  if (preparing) ImGui::TextColored(going_on, "preparing ...");
-  if (is_busy()) ImGui::TextColored(going_on, "writing ...");
+  if (preparing) ImGui::TextColored(going_on, "Preparing ...");
+  if (is_busy()) ImGui::TextColored(going_on, "Writing ...");
   if (!view.message.empty()) {
     ImGui::TextWrapped("%s", view.message.c_str());
     if (!view.report.empty()) {
-      if (ui::button("Open report", "Shows the page of the report in the browser"))
+      if (ui::button("Open report", "Shows the report in the browser"))
         view.dialogues.run_reporting_errors([&] { open_outside(view.report); });
       ImGui::SameLine();
     }
     if (!view.result.empty()) {
-      if (ui::button("Open folder", "Shows the folder that holds what was written"))
+      if (ui::button("Open folder", "Shows the folder of the saved file"))
         view.dialogues.run_reporting_errors([&] { open_outside(fs::absolute(view.result).parent_path()); });
       ImGui::SameLine();
     }
-    if (ui::button("Hide", "Takes this message away; the file stays")) {
+    if (ui::button("Hide", "Hides this message; the file is kept")) {
       view.message.clear();
       view.result.clear();
       view.report.clear();
@@ -209,11 +209,10 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
     view.dialogues.run_reporting_errors([&] { simulation.milling.stop_recording(); });
     view.message.clear();
   }
-  if (!ui::header("Record and save", "Record what you do, and save bone and pictures as files",
-                  view.open.files))
+  if (!ui::header("Record and save", "Record the session, and save bone and pictures", view.open.files))
     return;
   if (ui::button(simulation.milling.is_recording() ? "Stop recording##r" : "Record##r",
-                 "Records all that you do and feel from here on, until it is pressed again")) {
+                 "Starts or stops recording your motions and the forces")) {
     // Stopping the recording of an exercise shows its results.
     if (simulation.exercise && simulation.milling.is_recording())
       view.finish_requested = true;
@@ -222,17 +221,17 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   }
   ImGui::SameLine();
   const bool free = !is_busy();
-  if (ui::button("Report", "Writes a page of figures and tables about the last recording",
+  if (ui::button("Report", "Writes a report with charts and tables of the last recording",
                  free && !last_recording_.empty()))
     make_report();
   ImGui::SameLine();
-  if (ui::button("Play back", "Shows the last recording, from which you may mill on at any moment",
+  if (ui::button("Play back", "Plays the last recording back; you can continue milling from any moment",
                  free && !last_recording_.empty()))
     view.scan_requested = last_recording_.string();
-  if (ui::button("Save scan", "Writes the milled bone as a scan (NRRD)", free)) save_scan(view, simulation);
+  if (ui::button("Save scan", "Saves the milled bone as a scan (NRRD)", free)) save_scan(view, simulation);
   ImGui::SameLine();
-  if (ui::button("Save surface", "Writes the surface of the milled bone as triangles (PLY), as for a printer",
-                 free)) {
+  if (ui::button("Save surface",
+                 "Saves the surface of the milled bone as triangles (PLY), e.g. for 3D printing", free)) {
     view.dialogues.run_reporting_errors([&] {
       BrickMesh mesh;
       simulation.milling.follower().read(
@@ -242,7 +241,7 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
     });
   }
   ImGui::SameLine();
-  if (ui::button("Save picture", "Writes the view of the bone, without these panels, as a picture (PNG)"))
+  if (ui::button("Save picture", "Saves the view of the bone, without panels, as a picture (PNG)"))
     view.picture_requested = true;
 }
 

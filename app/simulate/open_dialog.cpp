@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kFolderHint = "A folder; a double click or Enter shows it";
-constexpr const char* kFileHint = "A scan or a recording; a double click or Enter opens it";
+constexpr const char* kFolderHint = "A folder; double-click or press Enter to show it";
+constexpr const char* kFileHint = "A scan or a recording; double-click or press Enter to open it";
 
 fs::path home() {
   const char* const folder = std::getenv("HOME");
@@ -38,10 +38,10 @@ fs::path first_folder(const std::vector<std::string>& recent) {
 OpenKind draw_open_buttons() {
   OpenKind request = OpenKind::none;
   if (ui::button("Open",
-                 "Opens a scan (DICOM, NRRD, MetaImage, NIfTI, or a zip of one) or a recording; Ctrl+O"))
+                 "Opens a scan (DICOM, NRRD, MetaImage, NIfTI, or a zip of one) or a recording (Ctrl+O)"))
     request = OpenKind::file;
   ImGui::SameLine();
-  if (ui::button("Open a folder", "Opens a folder of DICOM slices, with the folders in it"))
+  if (ui::button("Open a folder", "Opens a folder of DICOM slices, including its subfolders"))
     request = OpenKind::folder;
   const ImGuiIO& io = ImGui::GetIO();
   const bool by_key = io.KeyCtrl && !io.WantTextInput && ui::is_key_pressed(GLFW_KEY_O);
@@ -100,8 +100,8 @@ void OpenDialog::take_keys() {
 }
 
 void OpenDialog::draw_places() {
-  if (ui::row("Home", "Shows your own folder", false)) go_to(home());
-  if (!recent_.empty()) ImGui::TextDisabled("Opened last");
+  if (ui::row("Home", "Shows your home folder", false)) go_to(home());
+  if (!recent_.empty()) ImGui::TextDisabled("Recent");
   for (const std::string& scan : recent_) {
     if (ui::row(fs::path(scan).filename().string().append("##").append(scan).c_str(), "Opens " + scan, false))
       chosen_ = scan;
@@ -113,7 +113,7 @@ void OpenDialog::draw_files() {
   if (reader_.is_reading()) ImGui::TextDisabled("Reading the folder ...");
   if (!listing_.complaint.empty()) ui::warning(listing_.complaint);
   if (!reader_.is_reading() && listing_.complaint.empty() && listing_.entries.empty())
-    ImGui::TextDisabled("No folder and no file that can be opened");
+    ImGui::TextDisabled("No folders, and no files that can be opened");
   std::optional<FolderListing::Entry> entered;
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(listing_.entries.size()));
@@ -130,7 +130,7 @@ void OpenDialog::draw_files() {
       }
     }
   }
-  if (listing_.has_more) ImGui::TextDisabled("and more: type a name above");
+  if (listing_.has_more) ImGui::TextDisabled("More entries: type a path above");
   if (entered) enter(*entered);
 }
 
@@ -159,11 +159,10 @@ std::optional<std::string> OpenDialog::draw(OpenKind request, bool is_waiting, s
     return std::nullopt;
   take_keys();
   bool is_cancelled = !ImGui::IsWindowAppearing() && ui::is_key_pressed(GLFW_KEY_ESCAPE);
-  if (ui::button("Up", "Shows the folder that holds this one; Backspace does it, too"))
-    go_to(folder_.parent_path());
+  if (ui::button("Up", "Shows the parent folder (Backspace)")) go_to(folder_.parent_path());
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-ui::px(44));
-  if (ui::text_field("path", "Path of a file or folder; Enter opens it", path_.data(), path_.size(),
+  if (ui::text_field("path", "Path of a file or folder; press Enter to open it", path_.data(), path_.size(),
                      ImGuiInputTextFlags_AutoSelectAll) &&
       path_[0] != 0)
     go_to(folder_ / path_.data());
@@ -176,11 +175,11 @@ std::optional<std::string> OpenDialog::draw(OpenKind request, bool is_waiting, s
   draw_files();
   ImGui::EndChild();
   const bool is_selected = selected_ >= 0 && static_cast<std::size_t>(selected_) < listing_.entries.size();
-  if (ui::button("Open selected", "Opens the file that is selected, or shows the folder", is_selected))
+  if (ui::button("Open selected", "Opens the selected file, or shows the selected folder", is_selected))
     enter(listing_.entries[static_cast<std::size_t>(selected_)]);
   ImGui::SameLine();
   if (ui::button("Open this folder",
-                 "Opens the DICOM slices, or the only scan, of this folder and those in it"))
+                 "Opens the DICOM slices, or the only scan, in this folder and its subfolders"))
     chosen_ = folder_.string();
   ImGui::SameLine();
   is_cancelled = ui::button("Cancel", "Opens nothing") || is_cancelled;
@@ -197,7 +196,7 @@ Dialogue series_question(const std::string& scan, const std::vector<SeriesSummar
                          const std::function<void(const std::string& number)>& open,
                          Dialogue::Action cancel) {
   Dialogue question{"Series",
-                    fmt::format("{} holds {} series. Which one shall be opened?", scan, series.size()),
+                    fmt::format("{} holds {} series. Which one do you want to open?", scan, series.size()),
                     {},
                     {},
                     {}};
@@ -206,9 +205,9 @@ Dialogue series_question(const std::string& scan, const std::vector<SeriesSummar
     std::string label = fmt::format("{}: {} \"{}\", ", one.number, one.modality, one.description);
     if (!one.told_by.empty()) label += one.told_by + ", ";
     label += fmt::format("{} slices of {} x {}", one.slices, one.columns, one.rows);
-    label += one.thickness_mm ? fmt::format(", {:.4g} mm thick", *one.thickness_mm) : ", no volume";
+    label += one.thickness_mm ? fmt::format(", {:.4g} mm thick", *one.thickness_mm) : ", not a volume";
     question.choices.push_back(
-        {label, "Opens this series alone", [open, number = one.number] { open(number); }});
+        {label, "Opens only this series", [open, number = one.number] { open(number); }});
   }
   question.choices.push_back({"Cancel", "Opens none of them", std::move(cancel)});
   return question;

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Prepare = std::function<PreparedMilling(std::shared_ptr<Volume> bone)>;
 
-constexpr const char* kMilledIsovalue = "as it was milled with";
+constexpr const char* kMilledIsovalue = "from the earlier session";
 
 // Stops reading a folder before its pixels are read.
 struct SeveralSeries {

@@ -16,24 +16,24 @@ namespace {
 
 constexpr const char* kControls[][2] = {
     {"Turn, pan, zoom the view", "left drag, middle (or Shift+left) drag, right drag or wheel"},
-    {"Take the tool in hand, let it go", "T (or drag the tool itself)"},
+    {"Take the tool, let it go", "T (or drag the tool itself)"},
     {"Bring it to the bone under the pointer", "B"},
     {"Move it", "mouse, or arrow keys"},
     {"Press it in, pull it back", "wheel, or W and S, or Page Up and Page Down"},
     {"Turn it", "Shift and mouse, or Shift and arrow keys"},
-    {"Mill", "left button while the tool is in hand; Space switches the spindle on and off"},
-    {"Move a cut, change its greys", "Ctrl and left drag on it, Ctrl and right drag on it"},
+    {"Mill", "left button while you hold the tool; Space switches the spindle on and off"},
+    {"Move a cut, change its greys", "Ctrl and left drag on it; Ctrl and right drag on it"},
     {"See the burr through bone in front of it", "X"},
     {"Follow the burr, loupe, measure", "V, L, R and click two points of bone"},
-    {"Choose a piece of bone to keep or remove", "right click on it"},
+    {"Choose a piece of bone to keep or remove", "right-click it"},
     {"Pause; undo the last cut, redo it", "P; Ctrl+Z, Ctrl+Y"},
     {"Full screen, this page", "F11, F1"},
     {"With a SpaceMouse", "push and twist it; a button switches the spindle on and off"},
     {"With a game controller",
-     "left stick moves, right stick turns, triggers press in and pull back; A mills, B lets go, X takes back "
+     "left stick moves, right stick turns, triggers press in and pull back; A mills, B lets go, X undoes "
      "the last cut"},
     {"With a haptic device",
-     "its first button mills; while you hold C or its second, your hand moves and the tool stays"},
+     "first button mills; while you hold C or the second, your hand moves and the tool stays"},
 };
 
 // One ID for all dialogues: two at once would hide each other.
@@ -94,10 +94,8 @@ void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span)
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(
       "Gold and grey: the tool, which bone stops. Blue: your hand; the deeper it is in the bone, the harder "
-      "you "
-      "press. The green arrow is the force on your hand, the amber one the torque; the red point is where "
-      "they "
-      "act (with 1 line-proxy, where bone holds the shaft, if it does).");
+      "you press. Green arrow: force on your hand. Amber arrow: torque. Red point: where they act (with 1 "
+      "line-proxy: where bone holds the shaft, if it does).");
   // Tight spacing, so that everything fits into a window of the usual size.
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui::px(8), ui::px(1)});
   for (const auto& [what, how] : kControls) {
@@ -116,7 +114,7 @@ void draw_help(ViewState& view, const PixelSize& size, const VerticalSpan& span)
 void draw_hand(const ViewState& view) {
   if (!view.holding_tool) return;
   const float line_px = ImGui::GetTextLineHeight();
-  ui::badge("The tool is in your hand; T or Esc lets it go", ImGui::GetIO().DisplaySize.y - 3.5f * line_px,
+  ui::badge("You hold the tool: T or Esc lets it go", ImGui::GetIO().DisplaySize.y - 3.5f * line_px,
             0.5f * line_px, IM_COL32(40, 70, 100, 230), false);
 }
 

@@ -16,14 +16,13 @@
 namespace osteomill::app {
 
 /// Hints of controls that appear in several panels.
-inline constexpr const char* kWholeHint = "Shows all of the bone from the same side";
+inline constexpr const char* kWholeHint = "Fits the whole bone into the view, from the same side";
 inline constexpr const char* kStartPageHint =
-    "Closes this bone and shows the exercises and scans to begin with";
-inline constexpr const char* kGhostHint = "Shows in blue where your hand is if bone holds the tool back";
-inline constexpr const char* kSeeThroughHint =
-    "Shows the tool through bone that lies between you and the burr (key X)";
+    "Closes this bone and shows the start page with exercises and scans";
+inline constexpr const char* kGhostHint = "Shows your hand in blue when bone holds the tool back";
+inline constexpr const char* kSeeThroughHint = "Makes bone in front of the burr translucent (X)";
 inline constexpr const char* kArrowsHint =
-    "Shows the force on your hand as a green arrow and the torque as an amber one";
+    "Shows the force on your hand as a green arrow, the torque as an amber one";
 
 /// Draws the left column: all settings.
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);

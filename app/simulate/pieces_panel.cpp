@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kMenu = "##piece";
 constexpr const char* kNotInExercise =
-    "Pieces cannot be removed in an exercise, whose results count all bone that is gone";
+    "Pieces cannot be removed in an exercise, because its results count all removed bone";
 
 // Counts the pieces in a copy, which shares its memory with the bone, so that milling can continue.
 void choose(ChosenPiece& chosen, const Simulation& simulation, const VoxelIndex& voxel) {
@@ -92,7 +92,7 @@ std::string text_of(const BonePiece& piece, double voxel_mm3) {
       1 + std::ranges::count_if(piece.sizes, [&](std::size_t size) { return size > piece.voxels; });
   const double mm3 = static_cast<double>(piece.voxels) * voxel_mm3;
   const std::string volume = fmt::format("{:.{}f} mm³", mm3, mm3 < 100 ? 2 : 0);
-  if (piece.sizes.size() == 1) return volume + ", all of the bone";
+  if (piece.sizes.size() == 1) return volume + ", the whole bone";
   if (place == 1) return fmt::format("{}, the largest of {} pieces", volume, piece.sizes.size());
   return fmt::format("{}, number {} of {} pieces by size", volume, place, piece.sizes.size());
 }
@@ -108,20 +108,20 @@ std::optional<PieceRemoval> draw_actions(ChosenPiece& chosen, double voxel_mm3, 
   std::optional<PieceRemoval> removal;
   if (ui::button(
           "Keep only this piece",
-          "Removes all other pieces of bone, as the table under a scanned head. Undo cut brings them back",
+          "Removes all other pieces of bone, e.g. the table under a scanned head. Undo cut restores them",
           is_free && sizes.size() > 1))
     removal = {Which::all_but_chosen, *chosen.voxel};
-  if (ui::button("Remove this piece", "Removes the piece in the box. Undo cut brings it back",
+  if (ui::button("Remove this piece", "Removes the piece in the box. Undo cut restores it",
                  is_free && sizes.size() > 1))
     removal = {Which::chosen, *chosen.voxel};
   if (ui::button("Remove pieces below",
-                 "Removes every piece of bone that is smaller than the volume beside this button, as crumbs "
-                 "and noise. Undo cut brings them back",
+                 "Removes every piece of bone smaller than the volume next to this button, e.g. crumbs and "
+                 "noise. Undo cut restores them",
                  is_free && small > 0 && small < sizes.size()))
     removal = {Which::smaller, {}, min_mm3};
   ImGui::SameLine();
   ImGui::SetNextItemWidth(ui::px(130));
-  ui::slider("volume", "Volume from which on pieces stay. Drag, or hold Ctrl and click to type a number",
+  ui::slider("volume", "Smallest volume of pieces to keep. Drag, or Ctrl+click to type a number",
              &chosen.min_mm3, 0.1f, 100000, "%.1f mm³",
              ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
   if (chosen.piece)
@@ -140,11 +140,9 @@ void measure_bone(ChosenPiece& chosen, const Simulation& simulation) {
 
 void draw_piece_controls(ViewState& view, const Simulation& simulation) {
   bool& choosing = view.chosen_piece.choosing;
-  const char* const hint =
-      simulation.exercise
-          ? kNotInExercise
-          : "Lets your next click on bone choose the piece that it belongs to, to keep or remove it. A click "
-            "with the right button does the same at any time";
+  const char* const hint = simulation.exercise ? kNotInExercise
+                                               : "Then click a piece of bone to keep or remove it. A right "
+                                                 "click on bone does the same at any time";
   if (ui::button(choosing ? "Click on bone ...##choose" : "Choose piece##choose", hint,
                  !simulation.exercise && !view.holding_tool))
     choosing = !choosing;

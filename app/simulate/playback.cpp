@@ -119,7 +119,7 @@ Playback::Playback(RecordedWork work)
                         if (stopped_) throw WorkStopped();
                       });
                   if (verified.difference) return "The replay " + verified.difference->sentence();
-                  return fmt::format("Comes out again to the bit: {} ticks", verified.ticks);
+                  return fmt::format("Replay is bit-identical: {} ticks", verified.ticks);
                 } catch (const std::exception& error) {
                   return error.what();
                 }
@@ -132,7 +132,7 @@ Playback::~Playback() {
 
 std::string Playback::verdict() const {
   if (is_verified()) return verified_.get();
-  return fmt::format("Checked to the bit: {} of {} ticks", checked_.load(), recording().records.size());
+  return fmt::format("Verifying the replay: {} of {} ticks", checked_.load(), recording().records.size());
 }
 
 const ViewSample* Playback::view() const {

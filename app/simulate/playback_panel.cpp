@@ -74,9 +74,9 @@ void draw_time_line(Playback& playback) {
   auto time_s = static_cast<float>(playback.record().time_s);
   ImGui::SetCursorScreenPos({from_px, ImGui::GetCursorScreenPos().y});
   ImGui::PushItemWidth(width_px);
-  if (ui::slider("##time", "Goes to a time of the recording. Drag, or hold Ctrl and click to type a time",
-                 &time_s, static_cast<float>(playback.begin_s()), static_cast<float>(playback.end_s()),
-                 "%.3f s", ImGuiSliderFlags_AlwaysClamp)) {
+  if (ui::slider("##time", "Goes to a time of the recording. Drag, or Ctrl+click to type a time", &time_s,
+                 static_cast<float>(playback.begin_s()), static_cast<float>(playback.end_s()), "%.3f s",
+                 ImGuiSliderFlags_AlwaysClamp)) {
     playback.play(false);
     playback.go_to_time(static_cast<double>(time_s));
   }
@@ -127,7 +127,7 @@ void draw_plot(const Playback& playback, const char* name, const char* unit,
   list.AddRectFilled(place, {place.x + width_px, place.y + height_px}, ImGui::GetColorU32(ImGuiCol_FrameBg));
   list.AddPolyline(line.data(), static_cast<int>(line.size()), ImGui::GetColorU32(colour), 0, 1);
   draw_cursor(axis, now_s, place.y, place.y + height_px);
-  const std::string text = fmt::format("{} {:.2f} {}; {:g} at the top, {:g} s to each side", name,
+  const std::string text = fmt::format("{} {:.2f} {}; full scale {:g}, ±{:g} s", name,
                                        magnitude(playback.record()), unit, scale, kAround_s);
   list.AddText(ImGui::GetFont(), 0.85f * ImGui::GetFontSize(), {place.x + ui::px(4), place.y + 1},
                ImGui::GetColorU32(ImGuiCol_Text, 0.8f), text.c_str());
@@ -136,25 +136,26 @@ void draw_plot(const Playback& playback, const char* name, const char* unit,
 
 void draw_buttons(Playback& playback) {
   if (ui::button(playback.is_playing() ? "Pause##play" : "Play##play",
-                 "Plays the recording, or holds it; Space does the same"))
+                 "Plays or pauses the recording (Space)"))
     playback.play(!playback.is_playing());
   for (const auto& [label, by] : {std::pair{"< tick", -1}, {"tick >", 1}}) {
     ImGui::SameLine();
-    if (!ui::button(label, by < 0 ? "Goes back by one tick" : "Goes on by one tick")) continue;
+    if (!ui::button(label, by < 0 ? "Goes one tick back" : "Goes one tick forward")) continue;
     playback.play(false);
     playback.go_to_tick(static_cast<std::size_t>(
         std::max<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(playback.tick()) + by, 0)));
   }
   for (const auto& [label, speed] : {std::pair{"0.1x", 0.1}, {"1x", 1.0}, {"4x", 4.0}, {"16x", 16.0}}) {
     ImGui::SameLine();
-    if (ui::radio(label, fmt::format("Plays {:g} times as fast as it was recorded", speed),
+    if (ui::radio(label, fmt::format("Plays at {:g} times the recorded speed", speed),
                   playback.speed() == speed))
       playback.set_speed(speed);
   }
   ImGui::SameLine();
   bool follows = playback.follows_recorded_view();
   ImGui::BeginDisabled(playback.view() == nullptr);
-  if (ui::checkbox("recorded camera", "Looks as the trainee did. To look freely, drag the picture", &follows))
+  if (ui::checkbox("recorded camera", "Shows the trainee's view. To look around freely, drag the picture",
+                   &follows))
     playback.follow_recorded_view(follows);
   ImGui::EndDisabled();
 }
@@ -172,7 +173,7 @@ void draw_facts(const Playback& playback) {
   row("scan", work.bone.name);
   if (work.exercise) row("exercise", work.exercise->title);
   if (const auto from = branch_point(work.recording.description))
-    row("goes on from", fmt::format("{} at {:.3f} s", from->recording, from->time_s));
+    row("continues", fmt::format("{} at {:.3f} s", from->recording, from->time_s));
   row("time", fmt::format("{:.3f} s, tick {} of {}", record.time_s, playback.tick() + 1,
                           work.recording.records.size()));
   row("burr", fmt::format("{:g} mm, {:.0f} rpm", 2 * playback.run().tool.burr_radius_mm,
@@ -182,7 +183,7 @@ void draw_facts(const Playback& playback) {
   if (record.no_go_distance_mm < 100) row("no-go", fmt::format("{:.2f} mm away", record.no_go_distance_mm));
   if (const ViewSample* view = playback.view(); view != nullptr && view->step > 0)
     row("step", std::to_string(view->step));
-  row("hand gets", record.fault == WrenchFault::none ? "as computed" : std::string(name_of(record.fault)));
+  row("output", record.fault == WrenchFault::none ? "as computed" : std::string(name_of(record.fault)));
   ImGui::TextWrapped("%s", playback.verdict().c_str());
 }
 
@@ -199,8 +200,9 @@ void draw_playback(ViewState& view, Playback& playback, const PixelSize& size) {
   ImGui::SetNextWindowPos({ui::px(8), ui::px(8)});
   ImGui::SetNextWindowSize({ui::px(300), 0});
   ImGui::Begin("Playback", nullptr, kFixed);
-  if (ui::button("Again from here",
-                 "Mills on from this tick: with its bone, tool, settings and clock, into a new recording")) {
+  if (ui::button(
+          "Again from here",
+          "Continues milling from this tick, with its bone, tool, settings and time, in a new recording")) {
     playback.play(false);
     view.branch_requested = BranchOptions{playback.recording().path.string(), playback.record().time_s};
   }

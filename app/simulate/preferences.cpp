@@ -69,13 +69,12 @@ const std::vector<Field<P>>& kept_numbers() {
             "window-top", "px", kPlace, "Upper edge of the window on the screens",
             [](auto& p) -> auto& { return p.place.top; }),
         number(
-            "window-width", "px", kSize, "Width of the window; 0: as usual",
+            "window-width", "px", kSize, "Width of the window; 0: default",
             [](auto& p) -> auto& { return p.place.width; }),
         number(
-            "window-height", "px", kSize, "Height of the window; 0: as usual",
+            "window-height", "px", kSize, "Height of the window; 0: default",
             [](auto& p) -> auto& { return p.place.height; }),
-        number("text-scale", "", {0, kMaxScale}, "Scale of the text; 0: as the screen asks for",
-               &P::text_scale),
+        number("text-scale", "", {0, kMaxScale}, "Scale of the text; 0: follows the screen", &P::text_scale),
         field<P>({.range = NumberRange::count(0, 1),
                   .doc = "Colours of the panels",
                   .option = "theme",
@@ -85,11 +84,11 @@ const std::vector<Field<P>>& kept_numbers() {
         on_or_off("arrows", "Show force and torque as arrows", &P::arrows),
         on_or_off("see-through", "Show the burr through bone in front of it", &P::see_through),
         on_or_off("label-colours", "Colour the bone by its labels", &P::labels),
-        on_or_off("help-seen", "The page that explains the controls was shown", &P::help_seen),
-        on_or_off("sound", "Let the spindle be heard", &P::sound),
+        on_or_off("help-seen", "The help page was shown", &P::help_seen),
+        on_or_off("sound", "Play the sound of the spindle", &P::sound),
         on_or_off("follow-burr", "Keep the burr in the middle of the view", &P::follow_burr),
         on_or_off("loupe", "Show the surroundings of the burr magnified", &P::loupe),
-        number("loupe-power", "", {2, 4}, "How much larger the loupe shows the bone", &P::loupe_power),
+        number("loupe-power", "", {2, 4}, "Magnification of the loupe", &P::loupe_power),
         group("show-controls", "Show the column of controls", &O::controls),
         group("show-readings", "Show the readings", &O::readings),
         group("open-milling", "Open the group Milling", &O::milling),
@@ -109,7 +108,7 @@ const std::vector<Field<P>>& kept_numbers() {
 
 const std::vector<Field<P, std::string>>& kept_texts() {
   static const std::vector<Field<P, std::string>> all = {field<P>(
-      {.doc = "Folder from which a scan was opened last", .option = "last-folder"}, &P::last_folder)};
+      {.doc = "Folder from which a scan was last opened", .option = "last-folder"}, &P::last_folder)};
   return all;
 }
 
@@ -154,14 +153,14 @@ Preferences read_preferences() {
   try {
     return preferences_in(file.string());
   } catch (const InputError& error) {
-    print_error(fmt::format("osteomill: {}; the window begins as at first\n", error.what()));
+    print_error(fmt::format("osteomill: {}; using default window settings\n", error.what()));
     return {};
   }
 }
 
 std::string preferences_text(const Preferences& preferences) {
   std::ostringstream text;
-  text << "# Kept by the window of osteomill simulate. Without this file it begins as at first.\n";
+  text << "# Window settings of osteomill simulate. Delete this file to restore the defaults.\n";
   for (const Field<P>& field : kept_numbers()) {
     const double value = field.get(preferences);
     const bool is_switch = field.choices.empty() && field.range == NumberRange::on_or_off();

@@ -51,8 +51,8 @@ void plot(const char* name, const char* unit, const Simulation& simulation,
   const double max = static_cast<double>(*std::max_element(points.begin(), points.end()));
   const double scale = round_up(std::max(max, min_scale));
   const double now = history.empty() ? 0 : magnitude(history.back());
-  ImGui::Text("%s  %.2f %s, at most %.2f", name, now, unit, max);
-  ui::tooltip("Now, and the greatest of the last 5 s");
+  ImGui::Text("%s  %.2f %s, max %.2f", name, now, unit, max);
+  ui::tooltip("Present value, and maximum of the last 5 s");
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const float width_px = ImGui::GetContentRegionAvail().x;
   ImGui::Dummy({width_px, height_px});
@@ -85,17 +85,16 @@ void draw_faults(const std::deque<TickRecord>& history) {
   // Excludes ticks without a pose: a clutch is held, or the device's own line reports it.
   const int zero = faults.not_finite() + faults.unsafe();
   const bool held_back = !history.empty() && history.back().fault == WrenchFault::held_back;
-  const std::string text = held_back     ? "nothing: lift the tool out"
+  const std::string text = held_back     ? "off: lift the tool out"
                            : zero > 0    ? fmt::format("no force, {} ticks", zero)
                            : limited > 0 ? fmt::format("limited, {} ticks", limited)
                                          : "as computed";
-  row("hand gets", text,
+  row("output", text,
       held_back || zero + limited > 0 ? ui::ink(ui::Ink::warning) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
   ui::tooltip(fmt::format(
-      "Of the last {} ticks, {} would have been stronger than the limits of force and torque. {} had "
-      "none: in {} the hand was moved too fast, or the tick came too late, to be safe, and in {} "
-      "there was no number to send. {} had none since the tool was in bone when the device began to be "
-      "driven, and has to leave it first.",
+      "Of the last {} ticks, {} were limited in force or torque. {} had no force: in {} the hand moved too "
+      "fast or the tick came too late to be safe, and in {} the result was not a number. {} more had no "
+      "force because the tool was in bone when the device was switched on and must first leave it.",
       history.size(), limited, zero, faults.unsafe(), faults.not_finite(), faults.held_back()));
 }
 
@@ -106,8 +105,7 @@ void save_device_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_B
   const auto turn_deg = turn_by_moves_deg(can, view.calibration.right_B_mm, up_B_mm);
   if (!turn_deg) {
     view.dialogues.add_error(
-        "The two moves were shorter than 10 mm, or both went the same way. What is known of the device stays "
-        "as it was.");
+        "The two moves were shorter than 10 mm, or in the same direction. The calibration was not changed.");
     return;
   }
   WorkspaceSettings settings = device.workspace();
@@ -116,7 +114,7 @@ void save_device_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_B
   const std::filesystem::path path = workspace_path(can.name);
   view.dialogues.run_reporting_errors([&] {
     if (!path.empty()) save_workspace(path, settings);
-    view.message = "How the device stands before you is kept in " + path.string();
+    view.message = "Saved the device's orientation in " + path.string();
   });
 }
 
@@ -124,18 +122,19 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   ViewState::Calibration& calibration = view.calibration;
   if (calibration.step == Step::none) {
     ImGui::SameLine(ui::px(kCalibrate_px));
-    if (ui::button("Calibrate",
-                   "Two moves of your hand tell how the device stands before you; the tool stays meanwhile"))
+    if (ui::button(
+            "Calibrate",
+            "Calibrates the device's orientation by two moves of your hand; the tool stays still meanwhile"))
       calibration = {Step::right, handle_B_mm, Vec3::Zero()};
     return;
   }
   const bool to_the_right = calibration.step == Step::right;
-  ImGui::TextWrapped("%s", to_the_right ? "Move your hand some centimetres to the right, then press"
-                                        : "Now move it some centimetres up, then press");
+  ImGui::TextWrapped("%s", to_the_right ? "Move your hand a few centimetres to the right, then press"
+                                        : "Now move it a few centimetres up, then press");
   const bool moved = ui::button(to_the_right ? "That was right" : "That was up",
-                                "Takes the move that your hand has made since the last press");
+                                "Uses the motion of your hand since the last press");
   ImGui::SameLine();
-  if (ui::button("Cancel##calibration", "Leaves what is known of the device as it was")) {
+  if (ui::button("Cancel##calibration", "Ends the calibration without changing it")) {
     calibration = {};
   } else if (moved && to_the_right) {
     calibration = {Step::up, handle_B_mm, handle_B_mm - calibration.from_B_mm};
@@ -149,7 +148,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
 void draw_complaint(const std::string& complaint) {
   float& room_px = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("complaint"));
   const float from_px = ImGui::GetCursorPosY();
-  if (!complaint.empty()) ui::warning("It " + complaint);
+  if (!complaint.empty()) ui::warning("The device " + complaint);
   room_px = std::max(room_px, ImGui::GetCursorPosY() - from_px);
   ImGui::SetCursorPosY(from_px);
   if (room_px > 0) ImGui::Dummy({0, room_px - ImGui::GetStyle().ItemSpacing.y});
@@ -190,10 +189,10 @@ void draw_row(const Simulation& simulation, std::size_t n) {
   ImGui::PopTextWrapPos();
   const LabelCount::Entry& entry = simulation.label_count.entries()[n];
   if (entry.contacts > 0) {
-    ui::tooltip(
-        fmt::format("The burr touched it for {:.1f} s, first at {:.1f} s, and pressed with {:.2f} N on "
-                    "average and {:.2f} N at most",
-                    entry.time_s, entry.first_s, entry.force_mean_N, entry.force_max_N));
+    ui::tooltip(fmt::format(
+        "The burr touched it for {:.1f} s, first at {:.1f} s, with {:.2f} N on average and {:.2f} N at "
+        "most",
+        entry.time_s, entry.first_s, entry.force_mean_N, entry.force_max_N));
   }
   const std::vector<double>& removed_mm3 = simulation.removed_by_label_mm3;
   if (n + 1 >= removed_mm3.size() || (entry.contacts == 0 && removed_mm3[n + 1] == 0)) return;
@@ -209,7 +208,7 @@ static void draw_timing(const Simulation& simulation, double pictures_per_s) {
   const TimingSummary timing = simulation.milling.timing();
   row("haptic rate", fmt::format("{:.0f} ticks/s", timing.recent_ticks_per_s));
   row("step", fmt::format("{:.0f} us, p99 {:.0f} us", timing.step.p50_us, timing.step.p99_us));
-  ui::tooltip("Time to compute the force of one tick: the median, and that of the slowest of a hundred");
+  ui::tooltip("Time to compute the force of one tick: median and 99th percentile");
   row("late ticks", fmt::format("{} of {}", timing.late_ticks + timing.missed_ticks, timing.ticks));
   row("pictures", fmt::format("{:.0f} / s", pictures_per_s));
 }
@@ -233,17 +232,16 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
     draw_timing(simulation, pictures_per_s);
   } else {
     row("force", fmt::format("{:.2f} N", record.wrench.force_N.norm()));
-    ui::tooltip("Strength of the force on your hand");
+    ui::tooltip("Magnitude of the force on your hand");
   }
   draw_faults(simulation.history);
   row("removed", fmt::format("{:.2f} mm³", record.removed_mm3));
   ui::tooltip(
-      "Volume that what was removed would have at the scan's usual density of bone: half as dense counts "
-      "half. "
-      "The results of an exercise count the voxels that are no longer bone instead");
+      "Removed volume, weighted by density: bone half as dense as usual in this scan counts half. The "
+      "results of an exercise count removed voxels instead");
   const double set_rpm = simulation.milling.setup().cutting.spindle_speed_rpm;
   row("spindle", fmt::format("{:.0f} of {:.0f} rpm", std::max(record.spindle_rpm, 0.0), set_rpm));
-  ui::tooltip("The spindle's speed, and the one that it is set to");
+  ui::tooltip("Present and set speed of the spindle");
   if (simulation.tool_source.hardware != nullptr) draw_device(view, *simulation.tool_source.hardware);
   if (view.open.laboratory) draw_plots(simulation, size);
   if (const std::string& refused = simulation.milling.refused_real_time(); !refused.empty())
@@ -262,7 +260,7 @@ float draw_labels(ViewState& view, const Simulation& simulation, const VerticalS
   ui::begin_side_panel("Labels", span.top_px, nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
   ui::checkbox(
       "label colours",
-      "Shows bone in the colours of its label map. Beside each label stands how much of it was removed",
+      "Shows the bone in the colours of its label map. The list shows the removed volume of each label",
       &view.labels);
   ImGui::BeginChild("##labels", {0, std::max(rows, kMinRows) * line_px});
   for (std::size_t n = 0; n < count; ++n) draw_row(simulation, n);

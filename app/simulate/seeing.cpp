@@ -140,21 +140,20 @@ void draw_seeing(ViewState& view, const FilesPanel& files) {
                   view.open.closer))
     return;
   ui::checkbox("see through", kSeeThroughHint, &view.see_through);
-  ui::checkbox("follow the burr (V)", "Keeps the burr in the middle of the view", &view.follow_burr);
-  ui::checkbox("loupe (L)", "Shows the surroundings of the burr magnified, in a picture of their own",
-               &view.loupe);
+  ui::checkbox("follow the burr (V)", "Keeps the burr at the centre of the view", &view.follow_burr);
+  ui::checkbox("loupe (L)", "Shows a magnified picture of the burr's surroundings", &view.loupe);
   if (view.loupe)
-    ui::slider("power", "How many times larger the loupe shows the bone than the view", &view.loupe_power, 2,
-               4, "%.1f x", ImGuiSliderFlags_AlwaysClamp);
+    ui::slider("power", "Magnification of the loupe relative to the view", &view.loupe_power, 2, 4, "%.1f x",
+               ImGuiSliderFlags_AlwaysClamp);
   ui::checkbox("measure (R)",
-               "Marks points of the bone that you click, and gives the distance of each two in mm",
+               "Marks the points of bone that you click, and shows the distance of each pair in mm",
                &view.measuring);
   if (view.landmarks.empty()) return;
   draw_list(view.landmarks);
   if (ui::button("Copy points", "Copies names and coordinates (LPS, mm) as a table"))
     ImGui::SetClipboardText(table_text(view.landmarks).c_str());
   ui::same_line_if_room("Save points");
-  if (ui::button("Save points", "Writes the points as a file of markups that 3D Slicer opens"))
+  if (ui::button("Save points", "Saves the points as a 3D Slicer markups file"))
     files.save_text(view, "landmarks.mrk.json", markups_text(view.landmarks));
   ui::same_line_if_room("Clear points");
   if (ui::button("Clear points", "Removes all points and distances")) view.landmarks.clear();
@@ -166,7 +165,8 @@ void draw_grey(ViewState& view, const WindowLevel& first) {
   ImGui::Text("grey: level %.0f, window %.0f", 0.5 * (grey.black + grey.white), grey.white - grey.black);
   ui::tooltip("Drag a cut with Ctrl and the right button: right for less contrast, down for lighter greys");
   ImGui::SameLine();
-  if (ui::button("Reset grey", "Shows the cuts' grey values as at first", view.grey_window.has_value()))
+  if (ui::button("Reset grey", "Restores the initial window and level of the cuts",
+                 view.grey_window.has_value()))
     view.grey_window.reset();
 }
 

@@ -19,8 +19,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   options->milling.setup.vibration.on = true;
   options->milling.setup.law = CuttingLaw::chips;
   CLI::App* command = program.add_subcommand(
-      "simulate",
-      "Open the window: see the bone, take the burr, mill; or play a recording in the scan's place");
+      "simulate", "Open a window to mill a bone, or to play back a recording given in place of the scan");
   command->group("In a window");
   add_scan_options(*command, options->scan);
   add_exercise_options(*command, options->exercise);
@@ -41,11 +40,11 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
       ->capture_default_str();
   command
       ->add_option("--ui-scale", options->ui_scale,
-                   "Scale of the text, 1 is usual and 2 suits 4K (default: as the screen asks for)")
+                   "Scale of the text; 1 is normal, 2 suits 4K screens (default: follows the screen)")
       ->check(number_of({.min = kMinScale, .max = kMaxScale}))
       ->type_name("NUMBER");
   command->add_flag("--no-help", options->no_help,
-                    "Begin without the page that explains the controls (default: shown on the first start)");
+                    "Start without the help page (default: shown on the first start)");
   command->callback([=] {
     apply_config_file(*command);
     settle_law(*command, options->milling.setup);

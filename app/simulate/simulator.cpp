@@ -248,7 +248,7 @@ void Simulator::cancel_opening() {
 }
 
 void Simulator::give_up(const std::string& what) {
-  stage_.view.message = "Opening " + what + " was given up";
+  stage_.view.message = "Opening " + what + " was cancelled";
   // Without a scan or a page the window would stay empty.
   if (!milling_ && !start_page_ && !playback_) closing_ = true;
 }
@@ -286,7 +286,7 @@ void Simulator::open_another() {
   }
   if (!view.scan_requested.empty()) asked.push_back(std::exchange(view.scan_requested, {}));
   if (asked.size() > 1) {
-    view.dialogues.add_error("One scan at a time: a file, or the folder of a series");
+    view.dialogues.add_error("Only one scan can be opened at a time: a file, or the folder of a series");
   } else if (!asked.empty() && !opened_) {
     begin_scan(asked.front());
   }
@@ -367,7 +367,7 @@ void Simulator::begin_milling(PreparedScan opened) {
 
 // Returns to the start page, after asking about unsaved milling.
 void Simulator::show_start_page() {
-  ask_before("Going to the start page", [this] {
+  ask_before("Returning to the start page", [this] {
     after_writing("Writing ...", [this] {
       if (milling_) {
         stage_.files.end_recording(stage_.view, *simulation());

@@ -111,7 +111,7 @@ bool StartPage::draw_entry(const Entry& entry, float width_px) const {
     ImGui::Image(texture, {width_px, width_px / entry.width_by_height});
     is_chosen = ImGui::IsItemClicked();
   }
-  is_chosen = ui::button(entry.title.c_str(), "Opens this exercise and begins to record it") || is_chosen;
+  is_chosen = ui::button(entry.title.c_str(), "Opens this exercise and starts recording") || is_chosen;
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width_px);
   ImGui::TextUnformatted(entry.task.c_str());
   ImGui::PopTextWrapPos();
@@ -139,10 +139,10 @@ void StartPage::draw_scans(std::optional<StartChoice>& choice) {
   if (const OpenKind open = draw_open_buttons(); open != OpenKind::none)
     choice = StartChoice{"", "", "", open};
   ImGui::SameLine();
-  if (ui::button("Built-in tooth", "Opens a tooth that comes with the program, to try it"))
+  if (ui::button("Built-in tooth", "Opens the tooth included with the program"))
     choice = StartChoice{"", "", "builtin:tooth"};
   for (const std::string& scan : recent_)
-    if (ui::button(scan.c_str(), "Opens this scan, which was open before"))
+    if (ui::button(scan.c_str(), "Opens this scan, which was opened recently"))
       choice = StartChoice{"", "", scan};
 }
 
@@ -154,7 +154,7 @@ std::optional<StartChoice> StartPage::draw(const PixelSize& size) {
   ImGui::Begin("osteomill##start", nullptr,
                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
   ImGui::PushItemWidth(ui::px(220));
-  ui::text_field("your name, or none##start", "It is kept in the recording of an exercise", name_.data(),
+  ui::text_field("your name, or none##start", "Stored in the recording of an exercise", name_.data(),
                  name_.size());
   ImGui::PopItemWidth();
   ImGui::Spacing();

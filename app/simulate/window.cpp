@@ -106,7 +106,7 @@ PixelSize fitting_size(const PixelSize& size, const std::optional<double>& ui_sc
 Window::Window(const std::string& title, const PixelSize& size, const std::optional<double>& ui_scale,
                const WindowPlace& place)
     : asked_scale_(ui_scale) {
-  if (glfwInit() == GLFW_FALSE) throw InputError("simulate", "no window can be opened: " + last_complaint());
+  if (glfwInit() == GLFW_FALSE) throw InputError("simulate", "cannot open a window: " + last_complaint());
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -120,7 +120,7 @@ Window::Window(const std::string& title, const PixelSize& size, const std::optio
   if (window_ == nullptr) {
     const std::string reason = last_complaint();
     glfwTerminate();
-    throw InputError("simulate", "no window can be opened: " + reason);
+    throw InputError("simulate", "cannot open a window: " + reason);
   }
   if (is_placed) glfwSetWindowPos(window_, place.left, place.top);
   glfwMakeContextCurrent(window_);

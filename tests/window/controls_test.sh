@@ -355,7 +355,7 @@ for saved in scan surface picture; do
   value saved-$saved message | grep -q "^Saved out/" || fault "what Save $saved wrote is not named"
 done
 is hidden message ""; hides hidden "Open folder"; shows saved-picture "Open report"
-is given-up scan ball.nrrd; is given-up message "Opening large.nrrd was given up"; hides given-up Cancel
+is given-up scan ball.nrrd; is given-up message "Opening large.nrrd was cancelled"; hides given-up Cancel
 is start scan ball.nrrd; is opened scan other.nrrd; is at-fault scan other.nrrd
 value at-fault dialogue | grep -q "^bad.nrrd: ." || fault "the scan at fault is not named"
 is fault-read dialogue ""; hides fault-read Close

@@ -44,7 +44,7 @@ open large.nrrd ;; wait 0.3 ;; quit ;; wait 100 ;; state never
 END
 for moment in by-button by-key; do
   is $moment scan ball.nrrd
-  is $moment message "Opening large.nrrd was given up"
+  is $moment message "Opening large.nrrd was cancelled"
   ! value $moment shown | grep -qF "[Cancel]" || fail "at $moment it still loads"
 done
 is instead scan other.nrrd

@@ -76,7 +76,7 @@ work() {
   first=$(value results last_recording)
   for fact in unexplained cut_off outside covered; do is opened $fact ""; is fast $fact ""; done
   is opened tick 0; is opened playing false; is opened recorded_camera true
-  value opened verdict | grep -q "^Comes out again to the bit: [0-9]* ticks$" || fail "$(value opened verdict)"
+  value opened verdict | grep -q "^Replay is bit-identical: [0-9]* ticks$" || fail "$(value opened verdict)"
   [ "$(value opened bone)" = 0 ] || fail "the bone is not as scanned at first"
   is played playing true; is paused playing false; less opened played tick; less opened paused tick
   [ "$(value still tick)" = "$(value paused tick)" ] || fail "it plays on after a pause"
