@@ -56,7 +56,7 @@ struct PreparedScan {
   /// A recording to play from `play_at_s`; nothing is milled then.
   std::unique_ptr<Playback> playback = {};
   double play_at_s = 0;
-  /// The series of a folder, if there are several and none was named. All other members are then empty.
+  /// The series of a folder, if there are several and none was named; the scan itself was then not read.
   std::vector<SeriesSummary> series = {};
 };
 

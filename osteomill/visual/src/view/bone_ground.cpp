@@ -24,7 +24,7 @@ void main() {
 }
 )";
 
-// Grey values, or labels' colours; what is as dark as air lets the view through.
+// Draws grey values or label colours; pixels as dark as air are transparent.
 constexpr std::string_view kCutFragment = R"(#version 330 core
 in vec2 place;
 uniform sampler2D pixels;
