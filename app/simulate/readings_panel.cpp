@@ -94,7 +94,7 @@ void draw_faults(const std::deque<TickRecord>& history) {
   ui::tooltip(fmt::format(
       "Of the last {} ticks, {} were limited in force or torque. {} had no force: in {} the hand moved too "
       "fast or the tick came too late to be safe, and in {} the result was not a number. {} more had no "
-      "force because the tool was in bone when the device was switched on and must first leave it.",
+      "force because the tool was in bone when the device was engaged and must first leave it.",
       history.size(), limited, zero, faults.unsafe(), faults.not_finite(), faults.held_back()));
 }
 
