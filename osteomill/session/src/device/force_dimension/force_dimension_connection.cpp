@@ -126,7 +126,8 @@ class ForceDimensionConnection final : public Connection {
     if (opened < 0) fail(dhd_.last_error());
     id_ = static_cast<char>(opened);
     const Model model = model_of(dhd_.system_type(id_));
-    capabilities_.name = std::string("Force Dimension ") + dhd_.system_name(id_);
+    const char* const model_name = dhd_.system_name(id_);
+    capabilities_.name = fmt::format("Force Dimension {}", model_name == nullptr ? "device" : model_name);
     if (unsigned short serial = 0; dhd_.serial_number(&serial, id_) >= 0)
       capabilities_.name += fmt::format(" {}", serial);
     capabilities_.sensed = dhd_.has_wrist(id_) ? 6 : 3;

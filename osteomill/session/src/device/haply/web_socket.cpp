@@ -76,7 +76,8 @@ struct WebSocket::Impl {
   // Waits for input or the timeout. Does not use the library's own wait, which may sleep for half a minute if
   // its timer fires before it goes to sleep.
   void serve(std::chrono::microseconds wait) {
-    const timespec time{0, 1000 * std::max<std::int64_t>(wait.count(), 0)};
+    const std::int64_t wait_us = std::max<std::int64_t>(wait.count(), 0);
+    const timespec time{wait_us / 1'000'000, wait_us % 1'000'000 * 1000};
     pollfd wanted{socket == nullptr ? -1 : lws_get_socket_fd(socket), POLLIN, 0};
     ::ppoll(&wanted, 1, &time, nullptr);
     constexpr int kAtOnce = -1;

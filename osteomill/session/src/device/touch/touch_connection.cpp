@@ -86,15 +86,18 @@ struct Hd {
 struct OpenedDevice {
   explicit OpenedDevice(const std::string& address)
       : handle(hd.init_device(address.empty() ? nullptr : address.c_str())) {
-    if (const unsigned code = hd.get_error().code; code != 0 || handle == kInvalidHandle) {
-      const char* const why = hd.error_string(code);
-      throw InputError("hd", code != 0 && why != nullptr ? why : "the device cannot be opened");
-    }
+    if (const unsigned code = hd.get_error().code; code != 0 || handle == kInvalidHandle)
+      throw InputError("hd", reason_of(code, "the device cannot be opened"));
   }
   ~OpenedDevice() { hd.disable_device(handle); }
   OpenedDevice(const OpenedDevice&) = delete;
   OpenedDevice& operator=(const OpenedDevice&) = delete;
 
+  // Returns the library's reason for an error code, or `otherwise` if it has none.
+  std::string reason_of(unsigned code, const char* otherwise) const {
+    const char* const reason = code == 0 ? nullptr : hd.error_string(code);
+    return reason == nullptr ? otherwise : reason;
+  }
   int integer(unsigned parameter) const {
     int value = 0;
     hd.get_integers(parameter, &value);
@@ -132,9 +135,9 @@ class TouchConnection final : public Connection {
       hd_.start_scheduler();
     }
     if (const unsigned code = hd_.get_error().code; code != 0) {
-      const std::string why = hd_.error_string(code);
+      const std::string reason = device_.reason_of(code, "the scheduler does not start");
       close();
-      throw InputError("hd", why);
+      throw InputError("hd", reason);
     }
   }
   ~TouchConnection() override {
