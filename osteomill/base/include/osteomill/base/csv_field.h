@@ -6,9 +6,9 @@
 
 namespace osteomill {
 
-/// Returns free text as a CSV field (RFC 4180), quoted if it contains a comma, a quote or a line feed.
+/// Returns free text as a CSV field (RFC 4180), quoted if it contains a comma, a quote or a line break.
 inline std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
