@@ -81,7 +81,7 @@ Socket::Socket(const std::string& device, const HostAndPort& at, Kind kind) : ki
     throw InputError(device, gai_strerror(error));
   socket_ = ::socket(found->ai_family, found->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   // Also for datagrams, to ignore those from other senders.
-  int reason = ::connect(socket_, found->ai_addr, found->ai_addrlen) == 0 ? 0 : errno;
+  int reason = socket_ >= 0 && ::connect(socket_, found->ai_addr, found->ai_addrlen) == 0 ? 0 : errno;
   freeaddrinfo(found);
   if (reason == EINPROGRESS) {
     socklen_t size = sizeof(reason);
