@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxRecent = 8;
-constexpr float kEntry_px = 220;
+// Widths of an exercise's picture and text.
+constexpr float kMinEntry_px = 220, kMaxEntry_px = 300;
 
 bool is_there(const fs::path& path) {
   std::error_code unreadable;
@@ -121,14 +122,12 @@ bool StartPage::draw_entry(const Entry& entry, float width_px) const {
 
 void StartPage::draw_exercises(std::optional<StartChoice>& choice) {
   ImGui::TextUnformatted("Exercises");
-  const float width_px = ui::px(kEntry_px), between_px = 2 * ImGui::GetStyle().ItemSpacing.x;
-  const float room_px = ImGui::GetContentRegionAvail().x;
-  const auto columns =
-      std::max<std::size_t>(1, static_cast<std::size_t>((room_px + between_px) / (width_px + between_px)));
-  if (!ImGui::BeginTable("##exercises", static_cast<int>(columns))) return;
+  const float between_px = 2 * ImGui::GetStyle().ItemSpacing.x;
+  const float columns = (ImGui::GetContentRegionAvail().x + between_px) / (ui::px(kMinEntry_px) + between_px);
+  if (!ImGui::BeginTable("##exercises", std::max(1, static_cast<int>(columns)))) return;
   for (const Entry& entry : entries_) {
     ImGui::TableNextColumn();
-    if (draw_entry(entry, std::min(width_px, ImGui::GetContentRegionAvail().x)))
+    if (draw_entry(entry, std::min(ui::px(kMaxEntry_px), ImGui::GetContentRegionAvail().x - between_px)))
       choice = StartChoice{entry.file, name_.data(), ""};
   }
   ImGui::EndTable();
@@ -154,7 +153,7 @@ std::optional<StartChoice> StartPage::draw(const PixelSize& size) {
   ImGui::Begin("osteomill##start", nullptr,
                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
   ImGui::PushItemWidth(ui::px(220));
-  ui::text_field("your name, or none##start", "Stored in the recording of an exercise", name_.data(),
+  ui::text_field("your name (optional)##start", "Stored in the recording of an exercise", name_.data(),
                  name_.size());
   ImGui::PopItemWidth();
   ImGui::Spacing();

@@ -24,7 +24,7 @@ is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")
 actions() {
   local middle=$(($1 / 2)) target=$(($2 * 43 / 100))
   sed 's/ *;; */\n/g' <<END
-wait 1 ;; screenshot start.png ;; click your name, or none ;; type Trainee 7 ;; wait 0.2
+wait 1 ;; screenshot start.png ;; click your name (optional) ;; type Trainee 7 ;; wait 0.2
 say chosen ;; await chosen ;; settle ;; wait 0.5 ;; state begun ;; screenshot work.png
 say hidden ;; await hidden ;; state hidden ;; screenshot hidden.png
 say shown ;; await shown ;; state shown

@@ -30,7 +30,8 @@ constexpr double kMargin = 1.0 / 20;
 constexpr int kSupersampling = 2;
 // Radius of cavity darkening as a fraction of the picture's height: about a burr's radius.
 constexpr double kCavityReach = 1.0 / 16;
-// Picture height for which annotations are laid out, px; they scale with the actual height.
+// Picture height for which annotations are laid out, px. They grow with larger pictures; in smaller ones they
+// keep their size, to stay legible.
 constexpr double kAnnotatedHeight_px = 480;
 // Light reflected by white paper.
 constexpr std::array<float, 3> kLightFromBelow{0.47f, 0.45f, 0.42f};
