@@ -113,7 +113,12 @@ void save_device_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_B
   device.set_workspace(settings);
   const std::filesystem::path path = workspace_path(can.name);
   view.dialogues.run_reporting_errors([&] {
-    if (!path.empty()) save_workspace(path, settings);
+    if (path.empty()) {
+      view.message =
+          "The device's orientation is set until the window closes: there is no folder to save it in";
+      return;
+    }
+    save_workspace(path, settings);
     view.message = "Saved the device's orientation in " + path.string();
   });
 }

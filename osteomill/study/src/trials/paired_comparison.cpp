@@ -50,7 +50,7 @@ std::vector<PairedComparison> compare_algorithms(const Study& study, std::string
       const double lesser =
           std::min(std::abs(distribution_of(first).median), std::abs(distribution_of(second).median));
       pair.difference = std::abs(distribution_of(differences).median);
-      pair.share = pair.difference / lesser;
+      pair.share = pair.difference > 0 ? pair.difference / lesser : 0;
       pair.is_noticeable = pair.difference >= least_noticeable(figure, lesser);
       // False if no other tremors were tried.
       pair.is_less_than_tremor =

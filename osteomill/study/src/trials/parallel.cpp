@@ -11,6 +11,21 @@
 
 namespace osteomill {
 
+namespace {
+
+// Calls `work`. Returns its exception, or null.
+template <typename Work>
+std::exception_ptr exception_of(const Work& work) {
+  try {
+    work();
+  } catch (...) {
+    return std::current_exception();
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 void run_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& task,
                      const std::function<void(std::size_t)>& done) {
   std::mutex mutex;
@@ -22,15 +37,10 @@ void run_in_parallel(std::size_t count, std::size_t threads, const std::function
     while (next < count && !fault) {
       const std::size_t mine = next++;
       lock.unlock();
-      std::exception_ptr mine_failed;
-      try {
-        task(mine);
-      } catch (...) {
-        mine_failed = std::current_exception();
-      }
+      const std::exception_ptr mine_failed = exception_of([&] { task(mine); });
       lock.lock();
-      if (mine_failed && !fault) fault = mine_failed;
-      if (!fault) done(++finished);
+      if (!fault) fault = mine_failed;
+      if (!fault) fault = exception_of([&] { done(++finished); });
     }
   };
   const WorkProgress::Listener progress = WorkProgress::of_this_thread();
