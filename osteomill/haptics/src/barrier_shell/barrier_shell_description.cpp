@@ -55,7 +55,7 @@ const Fields& fields() {
 AlgorithmDescription description() {
   return with_settings<BarrierShell, Settings>(
       {.id = {"barrier-shell", "4 barrier-shell", "#1565c0"},
-       .summary = "The tool rests on a soft skin around the bone's points that no force can push it through",
+       .summary = "The tool rests on a soft skin around the bone's points; no force pushes it through",
        .resolution_setting = "point-spacing",
        .resolution_name = "spacing",
        .has_guards = true},

@@ -36,8 +36,8 @@ const Fields& fields() {
 AlgorithmDescription description() {
   return with_settings<LineProxy, Settings>(
       {.id = {"line-proxy", "1 line-proxy", "#c8102e"},
-       .summary = "The tool as a line of vertices; a proxy of tip and shaft stays on the surface, and "
-                  "springs pull the tool to it",
+       .summary = "The tool is a line of vertices; proxies of tip and shaft stay on the surface, and "
+                  "springs pull the hand towards them",
        .resolution_setting = "vertices",
        .resolution_name = "vertices"},
       fields());

@@ -37,8 +37,8 @@ const Fields& fields() {
 AlgorithmDescription description() {
   return with_settings<PointShell, Settings>(
       {.id = {"point-shell", "3 point-shell", "#111111"},
-       .summary = "The bone as a shell of points, the tool as a signed distance field, with a virtual "
-                  "coupling to the device",
+       .summary = "The bone is a shell of points, the tool a signed distance field; a virtual coupling "
+                  "connects tool and hand",
        .resolution_setting = "scale",
        .resolution_name = "scale"},
       fields());

@@ -46,8 +46,8 @@ const Fields& fields() {
 AlgorithmDescription description() {
   return with_settings<SurfacePoints, Settings>(
       {.id = {"surface-points", "2 surface-points", "#3fae49"},
-       .summary = "Vertices on the tool's surface; each in bone is a spring back to the surface, and their "
-                  "sum goes directly to the hand",
+       .summary = "A spring pushes each vertex of the tool's surface that is in bone back towards the "
+                  "tool's centre; the hand feels their sum",
        .resolution_setting = "slices",
        .resolution_name = "slices"},
       fields());
