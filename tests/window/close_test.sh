@@ -3,14 +3,8 @@
 #   close_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 bash "$here/ball.sh" >ball.nrrd
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 # Operates the window with the given lines; a click on a missing control ends the program with an error.
 window() {
   printf '%s\n' "wait 0.3" "$@" >actions

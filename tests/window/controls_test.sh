@@ -4,13 +4,8 @@
 # Skipped (exit 77) without Xvfb. Screenshots stay in OSTEOMILL_PICTURES if that is set.
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 source_folder=$here/../../app/simulate
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
 "$here/ball.sh" >ball.nrrd
 "$here/ball.sh" 4 >other.nrrd
 "$here/ball.sh" 1 >small.nrrd
@@ -26,8 +21,6 @@ window() {
     echo "FAILED: exit code $?"; cat errors; exit 1; }
   [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true
 }
-value() { sed -n "s/^$1\.$2=//p" said; }
-part() { value "$1" "$2" | cut -d' ' -f"$3"; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fault "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 # For two moments $1 and $2: `changed A B KEY`, `same A B KEY`, `more A B KEY PART` (of a list of numbers).
 changed() { [ "$(value "$1" "$3")" != "$(value "$2" "$3")" ] || fault "$3 stays '$(value "$1" "$3")' from $1 to $2"; }

@@ -3,13 +3,7 @@
 #   exercise_test.sh OSTEOMILL_DRIVER OSTEOMILL EXERCISES
 set -euo pipefail
 driver=$1 osteomill=$2 exercises=$3
-for tool in xvfb-run xdotool; do
-  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
-done
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run xdotool
 mkdir -p state/osteomill
 echo "help-seen = true" >state/osteomill/window.toml
 # Replaces the desktop's browser and logs the page to open.
@@ -17,9 +11,6 @@ mkdir bin
 printf '#!/bin/sh\necho "$1" >%s/opened\n' "$folder" >bin/xdg-open
 chmod +x bin/xdg-open
 export PATH=$folder/bin:$PATH
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
-value() { sed -n "s/^$1\.$2=//p" said; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 
 actions() {
   local middle=$(($1 / 2)) target=$(($2 * 43 / 100))

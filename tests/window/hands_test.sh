@@ -5,16 +5,7 @@
 #   hands_test.sh OSTEOMILL GAMEPAD_STAND_IN
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-for tool in xvfb-run xdotool; do
-  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
-done
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state DBUS_SESSION_BUS_ADDRESS=unix:path=$folder/no-bus
-pictures() { [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true; }
-fail() { pictures; echo "FAILED: $1"; cat said errors; exit 1; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run xdotool
 "$here/ball.sh" >ball.nrrd
 
 moments=(taken pushed pulled milled beyond hovered escaped retaken dialogue closed unfocused)
@@ -58,9 +49,6 @@ screen=${OSTEOMILL_SCREEN:-1280x800}
 xvfb-run -a -s "-screen 0 ${screen}x24" timeout 100 bash hands "$osteomill" || fail "exit code $?"
 pictures
 
-value() { sed -n "s/^$1\.$2=//p" said; }
-part() { value "$1" "$2" | cut -d' ' -f"$3"; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 less() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }' || fail "$3: $1 is not below $2"; }
 is start in_hand false; is taken in_hand true
 is pushed spindle true; is pulled spindle true; is milled spindle false

@@ -3,11 +3,7 @@
 #   help_once_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 bash "$here/ball.sh" >ball.nrrd
 fail() { echo "FAILED: $1"; cat errors; exit 1; }
 # Operates the window with the actions on standard input; a click on a missing control ends the program with an error.
@@ -16,7 +12,6 @@ window() {
   xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 "$osteomill" simulate ball.nrrd "$@" --script actions >said 2>errors
 }
 
-export XDG_STATE_HOME=$folder/state
 window --no-help <<<"close" || fail "exit code $?"
 grep -qx "help-seen = false .*" state/osteomill/window.toml || fail "a page that was not shown counts as seen"
 printf '%s\n' "wait 0.3" "click Start milling" close | window || fail "no help the first time"

@@ -3,15 +3,9 @@
 #   let_go_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 fail() { echo "FAILED: $1"; cat errors; grep force_N said; exit 1; }
 "$here/ball.sh" >ball.nrrd
-value() { sed -n "s/^$1\.$2=//p" said; }
 
 # Mills a hole with a non-default burr; then presses and releases the tool in each way.
 sed 's/ *;; */\n/g' >actions <<'END'

@@ -3,13 +3,7 @@
 #   loading_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 "$here/ball.sh" >ball.nrrd
 "$here/ball.sh" 4 >other.nrrd
 # Bone below air: 480^3 voxels of one byte.
@@ -20,8 +14,6 @@ window() {
   sed 's/ *;; */\n/g' >actions
   xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 "$osteomill" simulate "$@" --no-help --script actions >said 2>errors
 }
-value() { sed -n "s/^$1\.$2=//p" said; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 
 # While the first scan is loading: the window closes, and `state`, which needs a scan, prints nothing.
 for way in quit "click Cancel" "key escape"; do

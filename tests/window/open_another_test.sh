@@ -4,12 +4,7 @@
 # SCAN is opened too, if it exists.
 set -euo pipefail
 osteomill=$1 real=${2:-}
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 "$osteomill" save --out good.nrrd >/dev/null
 echo "not a scan" >bad.nrrd
 

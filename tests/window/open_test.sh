@@ -5,20 +5,8 @@
 # Screenshots stay in OSTEOMILL_PICTURES if that is set.
 set -euo pipefail
 osteomill=$1 portal=$2 two_series=${3:-}
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-for tool in xvfb-run xdotool dbus-run-session; do
-  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
-done
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state HOME=$folder/home
-# Without a session bus there is no portal.
-export DBUS_SESSION_BUS_ADDRESS=unix:path=$folder/no-bus
-pictures() { [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true; }
-fail() { pictures; echo "FAILED: $1"; cat said errors; exit 1; }
-value() { sed -n "s/^$1\.$2=//p" said; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run xdotool dbus-run-session
+export HOME=$folder/home
 shows() { value "$1" shown | grep -qF "[$2]" || fail "at $1 there is no '$2'"; }
 hides() { ! value "$1" shown | grep -qF "[$2]" || fail "at $1 there is still '$2'"; }
 window() {

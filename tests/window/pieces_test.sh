@@ -4,17 +4,7 @@
 #   pieces_test.sh OSTEOMILL_DRIVER OSTEOMILL EXERCISES SHARED
 set -euo pipefail
 driver=$1 osteomill=$2 exercises=$3 shared=$4
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-for tool in xvfb-run xdotool; do
-  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
-done
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
-value() { sed -n "s/^$1\.$2=//p" said; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run xdotool
 between() { awk -v x="$(value "$1" "$2")" -v a="$3" -v b="$4" 'BEGIN { exit !(x + 0 > a && x + 0 < b) }' || fail "at $1, $2 is $(value "$1" "$2")"; }
 keep_pictures() { [ -z "${OSTEOMILL_PICTURES:-}" ] || for picture in *.png; do mv "$picture" "$OSTEOMILL_PICTURES/pieces-$1-$picture"; done; }
 "$here/balls.sh" >balls.nrrd

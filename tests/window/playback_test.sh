@@ -3,18 +3,9 @@
 #   playback_test.sh OSTEOMILL_DRIVER OSTEOMILL EXERCISES
 set -euo pipefail
 driver=$1 osteomill=$2 exercises=$3
-for tool in xvfb-run xdotool; do
-  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
-done
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run xdotool
 mkdir -p state/osteomill
 echo "help-seen = true" >state/osteomill/window.toml
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
-value() { sed -n "s/^$1\.$2=//p" said; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 less() { awk -v a="$(value "$1" "$3")" -v b="$(value "$2" "$3")" 'BEGIN { exit !(a < b) }' || fail "$3 is '$(value "$1" "$3")' at $1 and '$(value "$2" "$3")' at $2"; }
 
 actions() {

@@ -4,13 +4,7 @@
 #   preferences_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 "$here/ball.sh" >ball.nrrd
 "$here/ball.sh" 2 >small.nrrd
 kept=state/osteomill/window.toml
@@ -20,8 +14,6 @@ window() {
     >said 2>errors || fail "exit code $?"
   [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true
 }
-value() { sed -n "s/^$1\.$2=//p" said; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 shows() { value "$1" shown | grep -qF "[$2]" || fail "at $1 there is no '$2'"; }
 hides() { ! value "$1" shown | grep -qF "[$2]" || fail "at $1 there is still '$2'"; }
 

@@ -3,15 +3,7 @@
 #   real_keys_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-for tool in xvfb-run xdotool; do
-  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
-done
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run xdotool
 "$here/ball.sh" >ball.nrrd
 
 # The window's script pauses at each `await` until the real events have been sent.
@@ -60,8 +52,6 @@ wait "$program"
 END
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 200 bash hands "$osteomill" || fail "exit code $?"
 
-value() { sed -n "s/^$1\.$2=//p" said; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 for fact in in_hand spindle help; do is start $fact false; is taps $fact true; done
 is taps paused false; is paused paused true
 is chord in_hand false; is chord paused false

@@ -3,12 +3,7 @@
 #   same_second_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 fail() { echo "FAILED: $1"; cat said-* errors-*; exit 1; }
 "$here/ball.sh" >ball.nrrd
 

@@ -4,21 +4,9 @@
 #   seeing_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-for tool in xvfb-run xdotool; do
-  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
-done
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state DBUS_SESSION_BUS_ADDRESS=unix:path=$folder/no-bus
-pictures() { [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true; }
-fail() { pictures; echo "FAILED: $1"; cat said errors; exit 1; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run xdotool
 "$here/ball.sh" >ball.nrrd
 
-value() { sed -n "s/^$1\.$2=//p" said; }
-part() { value "$1" "$2" | cut -d' ' -f"$3"; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 holds() { awk -v a="$1" -v b="$2" "BEGIN { exit !($3) }" || fail "$4: $1, $2"; }
 
 # Runs at the smallest and the default size; clicks the bone's left and right edges along the view's axes.

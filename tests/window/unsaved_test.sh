@@ -3,13 +3,7 @@
 #   unsaved_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-export XDG_STATE_HOME=$folder/state
-fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 "$here/ball.sh" >ball.nrrd
 "$here/ball.sh" 4 >other.nrrd
 # Operates the window with the lines of standard input; ";;" separates actions in a line.
@@ -19,8 +13,6 @@ window() {
   xvfb-run -a -s "-screen 0 1280x800x24" timeout 60 "$osteomill" simulate ball.nrrd --no-help --out out "$@" \
     --script actions >said 2>errors
 }
-value() { sed -n "s/^$1\.$2=//p" said; }
-is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 shows() { value "$1" shown | grep -qF "[$2]" || fail "at $1 there is no '$2'"; }
 hides() { ! value "$1" shown | grep -qF "[$2]" || fail "at $1 there is still '$2'"; }
 autosaves() { find state -name '*.h5' 2>/dev/null | wc -l; }

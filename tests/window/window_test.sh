@@ -6,15 +6,8 @@ set -euo pipefail
 osteomill=$1 needs=$2
 shift 2
 scan=("$@")
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" xvfb-run
 [ -z "$needs" ] || [ -e "$needs" ] || { echo "SKIPPED: needs $needs, which is not on this machine"; exit 77; }
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-# Uses an empty state folder, so that each test is a first start.
-export XDG_STATE_HOME=$folder/state
-fail() { echo "FAILED: $1"; cat said errors 2>/dev/null; exit 1; }
 
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 200 "$osteomill" simulate "${scan[@]}" --out out \
   --script "$here/mill_a_hole.txt" >said 2>errors || fail "exit code $?"
