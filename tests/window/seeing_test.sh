@@ -87,7 +87,7 @@ END
       'BEGIN { exit !((x - a)^2 + (y - b)^2 < 16) }' || fail "at $moment the burr is at $(value $moment tool_px)"
   done
   [ "$(value followed tool_W)" != "$(value followed-on tool_W)" ] || fail "the tool did not move"
-  [ "$(value left-behind focus)" = "$(value left-behind focus)" ] || fail "the view still follows"
+  [ "$(value followed-on focus)" = "$(value left-behind focus)" ] || fail "the view still follows"
   holds "$(part left-behind tool_px 1)" $(($1 / 2)) 'a < b - 20' "the burr that is not followed"
   holds "$(part grey grey 2)" "$(part dragged grey 2)" 'b > a * 1.1 && b < a * 1.25' "the grey window after 80 pixels to the right"
   holds "$(part grey grey 1)" "$(part dragged grey 1)" 'b < a' "the grey level after 20 pixels down"
