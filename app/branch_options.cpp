@@ -37,11 +37,11 @@ void refuse_recorded_options(const CLI::App& command) {
   for (const std::string& option : shared_options()) refuse("--" + option);
   for (const Field<ScanOptions>& field : fields_of<ScanOptions>()) refuse("--" + field.option);
   for (const Field<MillingSetup>& field : fields_of<MillingSetup>())
-    if (!field.option.empty() && !field.has(kOfTheLimits)) refuse("--" + field.option);
+    if (!field.option.empty() && !field.has(kLimitField)) refuse("--" + field.option);
 }
 
-RecordedWork read_recorded_work(const std::string& recording, const ScanOptions& scan,
-                                const ExerciseOptions& exercise) {
+LoadedRecording load_recording(const std::string& recording, const ScanOptions& scan,
+                               const ExerciseOptions& exercise) {
   Recording read = read_recording_chain(recording);
   const std::optional<RecordedExercise> recorded = recorded_exercise(read.description);
   if (recorded || exercise.given()) {
@@ -51,7 +51,7 @@ RecordedWork read_recorded_work(const std::string& recording, const ScanOptions&
     LoadedExercise loaded = load_exercise(asked.file, scan, &read);
     const Exercise& task = loaded.placed.exercise;
     const ScanOptions of_task = scan_of(task, scan);
-    const RecordedExercise again = to_be_recorded(task, asked);
+    const RecordedExercise again = make_recorded_exercise(task, asked);
     return {std::move(read), std::move(loaded.bone), of_task, std::move(loaded.placed), again};
   }
   const ScanOptions of_recording = scan_of(read.description, scan);
@@ -64,9 +64,9 @@ RecordedWork read_recorded_work(const std::string& recording, const ScanOptions&
 }
 
 Branch open_branch(const BranchOptions& options, const ScanOptions& scan, const ExerciseOptions& exercise) {
-  RecordedWork work = [&] {
+  LoadedRecording work = [&] {
     const WorkProgress::Part reading(0.3);
-    return read_recorded_work(options.recording, scan, exercise);
+    return load_recording(options.recording, scan, exercise);
   }();
   const WorkProgress::Part replaying(1);
   const std::size_t ticks = ticks_until(work.recording, options.at_s);

@@ -30,7 +30,7 @@ void add_branch_options(CLI::App& command, BranchOptions& options);
 void refuse_recorded_options(const CLI::App& command);
 
 /// A recording with its scan, read as for the recording, and its exercise if it has one.
-struct RecordedWork {
+struct LoadedRecording {
   Recording recording;
   LoadedBone bone;
   ScanOptions scan;
@@ -39,16 +39,16 @@ struct RecordedWork {
 };
 /// Reads a recording with its scan and exercise. Those named in `scan` and `exercise` take precedence over
 /// the recorded ones. Throws InputError naming the recording if it was made with another scan or exercise.
-RecordedWork read_recorded_work(const std::string& recording, const ScanOptions& scan,
-                                const ExerciseOptions& exercise);
+LoadedRecording load_recording(const std::string& recording, const ScanOptions& scan,
+                               const ExerciseOptions& exercise);
 
 /// A resumed recording that a command continues.
 struct Branch {
-  RecordedWork work;
+  LoadedRecording work;
   ResumedRecording resumed;
   BranchPoint from;
 };
-/// Reads the recording and resumes it. Throws as `read_recorded_work` and `resume_recording` do. Long work.
+/// Reads the recording and resumes it. Throws as `load_recording` and `resume_recording` do. Long work.
 Branch open_branch(const BranchOptions& options, const ScanOptions& scan, const ExerciseOptions& exercise);
 
 }  // namespace osteomill::app

@@ -93,7 +93,7 @@ void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& tria
   std::vector<std::string> left_out;
   for (TrialPlan& trial : trials) {
     try {
-      trial.settings.haptics.named.push_back(setting_felt_as(felt_N_per_mm, trial.settings, wall));
+      trial.settings.haptics.named.push_back(match_felt_stiffness(felt_N_per_mm, trial.settings, wall));
       trial.matched_N_per_mm = felt_N_per_mm;
       matched.push_back(trial);
     } catch (const std::invalid_argument& error) {
@@ -212,18 +212,18 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
           extras.passivity = press_on_walls(options, trials, events_of_a_part(until_walls, 1));
         }
       },
-      is_of_a_comparison);
+      is_comparison_output);
   std::vector<Recording> recordings;
   for (const fs::path& path : paths) recordings.push_back(read_recording(path));
   std::vector<MeasuredRun> rows = group_runs(recordings, measured_phase).runs;
   rows.insert(rows.end(), extras.others.begin(), extras.others.end());
   for (const std::string& line : unreached_lines(Study(std::move(rows)))) warn(line);
-  std::vector<Table> came_out;
+  std::vector<Table> result_tables;
   const fs::path page =
-      write_comparison_report(recordings, options.out, extras, &came_out, [&](const Recording&) {
+      write_comparison_report(recordings, options.out, extras, &result_tables, [&](const Recording&) {
         return std::shared_ptr<const Volume>(std::shared_ptr<const Volume>(), &bone.volume);
       });
-  print_tables(came_out);
+  print_tables(result_tables);
   fmt::print("{}\n", page.string());
 }
 
@@ -246,7 +246,7 @@ void refuse_a_stiffness(const CLI::App& command) {
 void add_match_stiffness(CLI::App& command, CompareOptions& options) {
   const auto take = [&options](const std::string& text) {
     options.match_stiffness = true;
-    options.matched_N_per_mm = parsed_finite(text).value_or(0);
+    options.matched_N_per_mm = parse_finite(text).value_or(0);
   };
   const auto check = [](const std::string& text) {
     const bool usable = text.empty() || text == "softest" || positive_number()(std::string(text)).empty();
@@ -291,7 +291,7 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
-    settle_law(*command, options->trial.milling.setup);
+    apply_implied_law(*command, options->trial.milling.setup);
     if (options->seeds > 1) refuse_a_hand(*command);
     if (options->match_stiffness) refuse_a_stiffness(*command);
     run_compare(*options, command_line);

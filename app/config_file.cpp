@@ -64,7 +64,7 @@ void apply_config_file(CLI::App& command) {
   std::vector<std::string> own;
   const toml::table table = read_toml(file);
   for (const TomlEntry& entry : options_of(table)) {
-    const bool is_own = is_own_setting(entry.key);
+    const bool is_own = is_algorithm_setting(entry.key);
     const std::string name = is_own ? kSetOption : "--" + entry.key;
     const CLI::Option* option = command.get_option_no_throw(name);
     if (option == nullptr || option == config || entry.key == "help")

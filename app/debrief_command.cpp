@@ -84,7 +84,7 @@ std::string row_text(const MeasuredValue& row) {
   return text;
 }
 
-void leave_names_out(DebriefedAttempt& attempt, const std::string& name) {
+void anonymise(DebriefedAttempt& attempt, const std::string& name) {
   attempt.recording.clear();
   attempt.trainee = name;
 }
@@ -94,19 +94,21 @@ void write_attempt(const DebriefOptions& options, const LoadedExercise& loaded, 
                    std::vector<DebriefedAttempt> before) {
   const Attempt attempt = make_attempt(loaded.placed, loaded.bone.volume, recording);
   DebriefedAttempt own = debriefed(attempt, recording);
-  DebriefPeers peers = peers_of(attempt, recording);
+  DebriefPeers peers = load_peers(attempt, recording);
   peers.before = std::move(before);
   if (options.anonymous) {
-    leave_names_out(own, "");
-    if (peers.first) leave_names_out(peers.first->measured, "");
-    if (!peers.no_first.empty()) peers.no_first = "it cannot be read or measured.";
+    anonymise(own, "");
+    if (peers.first) anonymise(peers.first->measured, "");
+    if (!peers.original_missing_reason.empty())
+      peers.original_missing_reason = "it cannot be read or measured.";
   }
   write_debriefing(options.out, attempt, recording, own, peers);
   fmt::print("{}\n", loaded.placed.exercise.title);
   if (const auto from = branch_point(recording.description))
     fmt::print("continues {} at {:.3f} s, after {} ticks\n",
                options.anonymous ? "another recording" : from->recording, from->time_s, from->ticks);
-  if (!peers.no_first.empty()) warn("without the recording that it continues: " + peers.no_first);
+  if (!peers.original_missing_reason.empty())
+    warn("without the recording that it continues: " + peers.original_missing_reason);
   for (const MeasuredValue& row : own.rows)
     if (!row.limit.empty()) fmt::print("{}\n", row_text(row));
 }
@@ -207,12 +209,12 @@ Attempts attempts_of(std::vector<ReadAttempt> read, const std::vector<fs::path>&
 }
 
 // Replaces names by numbers in the order of the attempts.
-void number_names(std::vector<DebriefedAttempt>& attempts) {
+void pseudonymise(std::vector<DebriefedAttempt>& attempts) {
   std::map<std::string, std::string> names;
   for (DebriefedAttempt& attempt : attempts) {
     std::string& name = names[attempt.trainee];
     if (name.empty() && !attempt.trainee.empty()) name = fmt::format("person {}", names.size());
-    leave_names_out(attempt, name);
+    anonymise(attempt, name);
   }
 }
 
@@ -224,7 +226,7 @@ void debrief_many(const DebriefOptions& options) {
   std::set<std::string> names;
   for (const DebriefedAttempt& attempt : attempts) names.insert(attempt.trainee);
   const std::string last = attempts.back().recording;
-  if (options.anonymous) number_names(attempts);
+  if (options.anonymous) pseudonymise(attempts);
   if (names.size() == 1) {
     attempts.pop_back();
     write_attempt(options, *exercise, read_recording_chain(last), std::move(attempts));

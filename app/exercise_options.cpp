@@ -80,7 +80,8 @@ BoneToMill load_bone_to_mill(const ExerciseOptions& exercise, const ScanOptions&
   LoadedExercise loaded = load_exercise(exercise.file, options);
   const Exercise& task = loaded.placed.exercise;
   require_allowed_burr(task, setup);
-  return {std::move(loaded.bone), scan_of(task, options), to_be_recorded(task, exercise), task.entry_W_mm};
+  return {std::move(loaded.bone), scan_of(task, options), make_recorded_exercise(task, exercise),
+          task.entry_W_mm};
 }
 
 void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup) {
@@ -96,7 +97,7 @@ void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup) {
                                fmt::join(names, ", "), setup.tool.burr_radius_mm));
 }
 
-void take_allowed_burr(const Exercise& exercise, MillingSetup& setup) {
+void select_allowed_burr(const Exercise& exercise, MillingSetup& setup) {
   const std::vector<AllowedBurr>& burrs = exercise.burrs;
   if (burrs.empty() || std::ranges::any_of(burrs, [&](const AllowedBurr& one) { return one.is_in(setup); }))
     return;
@@ -106,7 +107,7 @@ void take_allowed_burr(const Exercise& exercise, MillingSetup& setup) {
   std::ranges::min_element(burrs, {}, apart_mm)->put_into(setup);
 }
 
-RecordedExercise to_be_recorded(const Exercise& exercise, const ExerciseOptions& options) {
+RecordedExercise make_recorded_exercise(const Exercise& exercise, const ExerciseOptions& options) {
   return {options.file, text_fingerprint(options.file), exercise.title, options.trainee,
           options.has_guidance};
 }

@@ -62,9 +62,9 @@ ScanOptions scan_of(const Exercise& exercise, const ScanOptions& options);
 /// Throws InputError, naming the exercise, if its burrs do not include the setup's.
 void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup);
 /// Replaces the setup's burr by the exercise's burr of the nearest radius, unless the exercise allows it.
-void take_allowed_burr(const Exercise& exercise, MillingSetup& setup);
+void select_allowed_burr(const Exercise& exercise, MillingSetup& setup);
 
 /// Returns the exercise's entry for a recording.
-RecordedExercise to_be_recorded(const Exercise& exercise, const ExerciseOptions& options);
+RecordedExercise make_recorded_exercise(const Exercise& exercise, const ExerciseOptions& options);
 
 }  // namespace osteomill::app

@@ -78,7 +78,7 @@ void end_recording(LiveMilling& milling, LiveFigures& figures) {
   try {
     milling.stop_recording();
   } catch (const InputError& error) {
-    warn_always(error.what());
+    warn_despite_quiet(error.what());
     figures.has_recording_failed = true;
   }
 }
@@ -93,7 +93,7 @@ class LiveToolSource {
 
   const ConnectedDevice* hardware() const { return hardware_.get(); }
   // Places the tool in front of the entry, and applies the hardware's limits to the setup.
-  Device& take_tool(const TrialOptions& trial, MillingSetup& setup, const MillingEntry& entry) {
+  Device& place_tool(const TrialOptions& trial, MillingSetup& setup, const MillingEntry& entry) {
     const Pose X_WT = pose_above(entry, setup.tool, kStartHeight_mm);
     if (hardware_) {
       setup.guard.limits = hardware_->limits_W(setup.guard.limits);
@@ -117,7 +117,7 @@ class LiveToolSource {
   void close() {
     if (!hardware_) return;
     if (const std::string message = hardware_->close(); !message.empty())
-      warn_always(hardware_->capabilities().name + ": " + message);
+      warn_despite_quiet(hardware_->capabilities().name + ": " + message);
   }
 
   void print() const {
@@ -162,7 +162,7 @@ LiveFigures run_for(LiveMilling& milling, double seconds, const std::shared_ptr<
   const auto take = [&] {
     while (const auto record = milling.next_record()) {
       figures.faults.add(*record);
-      if (const auto touched = figures.labels.add(*record)) warn_always(*touched);
+      if (const auto touched = figures.labels.add(*record)) warn_despite_quiet(*touched);
     }
     figures.bricks += milling.take_changed_bricks().size();
     if (milling.has_recording_failed()) end_recording(milling, figures);
@@ -195,7 +195,7 @@ std::optional<Branch> take_branch(LiveOptions& options) {
   return branch;
 }
 
-BoneToMill to_mill(RecordedWork& work) {
+BoneToMill to_mill(LoadedRecording& work) {
   std::optional<Vec3> entry_W_mm;
   if (work.placed) entry_W_mm = work.placed->exercise.entry_W_mm;
   return {std::move(work.bone), work.scan, work.exercise, entry_W_mm};
@@ -214,7 +214,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const std::shared_ptr<const LabelMap> labels = bone->labels();
   const MillingEntry entry = place_entry(*bone, loaded.name, options.trial);
-  Device& device = tool_source.take_tool(options.trial, setup, entry);
+  Device& device = tool_source.place_tool(options.trial, setup, entry);
   PreparedMilling prepared =
       branch ? prepare_milling(bone, branch->resumed, setup.guard) : prepare_milling(bone, setup);
   const BoneDensities densities = prepared.session->densities();
@@ -236,7 +236,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
       return png;
     };
     if (const std::string kept = milling.start_recording(options.record, run, picture); !kept.empty())
-      warn_always(kept);
+      warn_despite_quiet(kept);
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
@@ -284,7 +284,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
-    settle_law(*command, options->trial.milling.setup);
+    apply_implied_law(*command, options->trial.milling.setup);
     if (options->from.given()) refuse_recorded_options(*command);
     run_live(*options, command_line);
   });

@@ -19,7 +19,7 @@ namespace {
 struct Limit {
   std::string scan;
   std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t taken_before = 0;
+  std::uint64_t baseline_bytes = 0;
 };
 
 std::mutex mutex;
@@ -42,7 +42,7 @@ std::uint64_t bytes_in(const char* path, std::initializer_list<std::string_view>
 }
 
 // Counts a page shared by two copies of the bone once, and excludes the program's own files.
-std::uint64_t memory_taken() {
+std::uint64_t used_memory_bytes() {
   return bytes_in("/proc/self/smaps_rollup", {"Pss_Anon:", "Pss_Shmem:"});
 }
 
@@ -54,10 +54,10 @@ double gigabytes(std::uint64_t bytes) {
 
 void limit_memory(const std::string& scan, std::uint64_t bytes) {
   const std::lock_guard lock(mutex);
-  limit = {scan, bytes, memory_taken()};
+  limit = {scan, bytes, used_memory_bytes()};
 }
 
-void check_memory_taken() {
+void check_memory_limit() {
   constexpr std::chrono::milliseconds kEvery{100};
   thread_local std::chrono::steady_clock::time_point next;
   if (std::chrono::steady_clock::now() < next) return;
@@ -66,14 +66,14 @@ void check_memory_taken() {
   next = std::chrono::steady_clock::now() + kEvery;
   // The resident size is an upper bound that the kernel keeps up to date; proportional shares cost a walk
   // over all pages.
-  if (bytes_in("/proc/self/status", {"RssAnon:", "RssShmem:"}) <= allowed.taken_before + allowed.bytes)
+  if (bytes_in("/proc/self/status", {"RssAnon:", "RssShmem:"}) <= allowed.baseline_bytes + allowed.bytes)
     return;
-  const std::uint64_t taken = memory_taken();
-  if (taken <= allowed.taken_before + allowed.bytes) return;
+  const std::uint64_t taken = used_memory_bytes();
+  if (taken <= allowed.baseline_bytes + allowed.bytes) return;
   throw InputError(
       allowed.scan,
       fmt::format("takes {:.3g} GB so far, with the data derived from it, and the limit is {:.3g} GB",
-                  gigabytes(taken - allowed.taken_before), gigabytes(allowed.bytes)));
+                  gigabytes(taken - allowed.baseline_bytes), gigabytes(allowed.bytes)));
 }
 
 std::string out_of_memory_text() {

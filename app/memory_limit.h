@@ -11,7 +11,7 @@ void limit_memory(const std::string& scan, std::uint64_t bytes);
 
 /// Throws InputError, naming the scan and the amounts, if the limit is exceeded. Cheap enough for frequent
 /// calls from a WorkProgress listener.
-void check_memory_taken();
+void check_memory_limit();
 
 /// Returns the message for an allocation that failed below the limit.
 std::string out_of_memory_text();

@@ -44,7 +44,7 @@ std::vector<std::string> setting_names(const AlgorithmDescription& algorithm) {
 
 }  // namespace
 
-void set_own(HapticSettings& haptics, const std::string& name, const std::string& text) {
+void set_algorithm_setting(HapticSettings& haptics, const std::string& name, const std::string& text) {
   const std::size_t dot = name.find('.');
   HapticSettings::Named named{name.substr(0, dot), name.substr(dot + 1), 0};
   const AlgorithmDescription* algorithm = find_algorithm(named.algorithm);
@@ -57,7 +57,7 @@ void set_own(HapticSettings& haptics, const std::string& name, const std::string
     throw CLI::ValidationError("--set", fmt::format("{} has no setting {}{}", named.algorithm, named.setting,
                                                     did_you_mean(named.setting, known)));
   }
-  const auto number = parsed_number<double>(text);
+  const auto number = parse_number<double>(text);
   if (!number || std::isnan(*number)) throw CLI::ValidationError("--set", text + " is not a number");
   named.value = *number;
   try {
@@ -68,7 +68,7 @@ void set_own(HapticSettings& haptics, const std::string& name, const std::string
   haptics.named.push_back(std::move(named));
 }
 
-void set_shared(HapticSettings& haptics, const std::string& option, double value) {
+void set_shared_option(HapticSettings& haptics, const std::string& option, double value) {
   std::string fault;
   bool is_taken = false;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
@@ -115,7 +115,7 @@ void set_named(HapticSettings& haptics, const std::string& text) {
   const std::size_t dot = text.find('.'), equals = text.find('=');
   if (dot == std::string::npos || equals == std::string::npos || equals < dot)
     throw CLI::ValidationError("--set", text + " is not of the form ALGORITHM.SETTING=VALUE");
-  set_own(haptics, text.substr(0, equals), text.substr(equals + 1));
+  set_algorithm_setting(haptics, text.substr(0, equals), text.substr(equals + 1));
 }
 
 void add_named_settings(CLI::App& command, HapticSettings& haptics) {
@@ -139,7 +139,7 @@ void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
     const AlgorithmDescription& first = *std::ranges::find_if(all_algorithms(), has_it);
     command
         .add_option_function<double>(
-            "--" + option, [&haptics, option](double value) { set_shared(haptics, option, value); },
+            "--" + option, [&haptics, option](double value) { set_shared_option(haptics, option, value); },
             meaning_of_option(option))
         ->type_name(setting_of_option(first, option)->range.whole ? "COUNT" : "NUMBER");
   }
@@ -150,19 +150,19 @@ void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
 void add_milling_options(CLI::App& command, MillingOptions& options) {
   MillingSetup& setup = options.setup;
   command.option_defaults()->group("Tool");
-  add_fields(command, setup, kOfTheTool);
+  add_fields(command, setup, kToolField);
   command.option_defaults()->group("Settings of the algorithms");
   add_shared_settings(command, setup.haptics);
   add_named_settings(command, setup.haptics);
   command.option_defaults()->group("Cutting");
-  add_fields(command, setup, kOfTheCutting, kFollows);
+  add_fields(command, setup, kCuttingField, kDerivedField);
   command.option_defaults()->group("Limits of the device");
-  add_fields(command, setup, kOfTheLimits);
+  add_fields(command, setup, kLimitField);
   command.option_defaults()->group("Options");
   add_config_option(command);
 }
 
-void take_given_options(const CLI::App& command, const MillingSetup& given, MillingSetup& setup) {
+void apply_given_options(const CLI::App& command, const MillingSetup& given, MillingSetup& setup) {
   for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
     if (!field.option.empty() && command.count("--" + field.option) > 0) field.set(setup, field.get(given));
   }
@@ -173,7 +173,7 @@ void add_rate_option(CLI::App& command, double& tick_s) {
              [&tick_s](double rate_hz) { tick_s = 1 / rate_hz; });
 }
 
-void settle_law(const CLI::App& command, MillingSetup& setup) {
+void apply_implied_law(const CLI::App& command, MillingSetup& setup) {
   for (const char* option : {"--removal-rate", "--cutting-energy"}) {
     if (command.count(option) == 0 || setup.law == CuttingLaw::constant_energy) continue;
     if (command.count("--law") > 0)

@@ -16,14 +16,14 @@ struct MillingOptions {
 };
 
 /// Copies from `given` to `setup` only the fields whose options were given on the command line.
-void take_given_options(const CLI::App& command, const MillingSetup& given, MillingSetup& setup);
+void apply_given_options(const CLI::App& command, const MillingSetup& given, MillingSetup& setup);
 
 /// Sets the setting "ALGORITHM.SETTING" to the number in `text`. Throws CLI::ValidationError, and sets
 /// nothing, if the setting is unknown or the value out of range.
-void set_own(HapticSettings& haptics, const std::string& name, const std::string& text);
+void set_algorithm_setting(HapticSettings& haptics, const std::string& name, const std::string& text);
 /// Sets an option shared by algorithms, such as "stiffness". Throws CLI::ValidationError if the value is out
 /// of range for every algorithm; an algorithm with a narrower range throws when it is made.
-void set_shared(HapticSettings& haptics, const std::string& option, double value);
+void set_shared_option(HapticSettings& haptics, const std::string& option, double value);
 /// Returns the shared options, without dashes.
 std::vector<std::string> shared_options();
 
@@ -32,7 +32,7 @@ void add_milling_options(CLI::App& command, MillingOptions& options);
 
 /// Switches to the law of constant energy if one of its options was given without --law. Throws
 /// CLI::ValidationError if one was given with --law chips. Call it when all options are read.
-void settle_law(const CLI::App& command, MillingSetup& setup);
+void apply_implied_law(const CLI::App& command, MillingSetup& setup);
 
 /// Adds --rate, which sets the length of a tick.
 void add_rate_option(CLI::App& command, double& tick_s);

@@ -59,7 +59,7 @@ std::vector<RunSetting> recorded(const std::vector<std::string>& words) {
   return all;
 }
 
-TEST(MillingOptions, WhateverIsSaidOfATrialStandsInItsRecordings) {
+TEST(MillingOptions, RecordsEveryOptionOfATrial) {
   CLI::App command;
   TrialOptions options;
   add_trial_options(command, options);
@@ -80,7 +80,7 @@ TEST(MillingOptions, OptionsOfConstantEnergyChooseItUnlessTheLawIsNamed) {
     options.setup.law = CuttingLaw::chips;
     add_milling_options(command, options);
     parse(command, words);
-    settle_law(command, options.setup);
+    apply_implied_law(command, options.setup);
     return options.setup.law;
   };
   EXPECT_EQ(law_after({}), CuttingLaw::chips);
@@ -103,7 +103,7 @@ TEST(MillingOptions, SizesOfTheCommandLineWinOverABurrOfTheConfiguration) {
   EXPECT_EQ(options.setup.burr, BurrEdge::diamond);
 }
 
-TEST(MillingOptions, WhatIsSaidToAReplayIsTakenOverAndNothingElse) {
+TEST(MillingOptions, CopiesOnlyGivenOptions) {
   const auto settings_after = [](const std::vector<std::string>& words) {
     CLI::App command;
     MillingOptions options;
@@ -111,7 +111,7 @@ TEST(MillingOptions, WhatIsSaidToAReplayIsTakenOverAndNothingElse) {
     parse(command, words);
     MillingSetup setup;
     setup.tool.burr_radius_mm = 1.25;
-    take_given_options(command, options.setup, setup);
+    apply_given_options(command, options.setup, setup);
     RunDescription run;
     set_session_settings(run, {setup, {0, 1000}}, 0);
     EXPECT_EQ(run.tool.burr_radius_mm, 1.25);
@@ -122,7 +122,7 @@ TEST(MillingOptions, WhatIsSaidToAReplayIsTakenOverAndNothingElse) {
   MillingOptions options;
   add_milling_options(command, options);
   for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
-    if (field.option.empty() || field.has(kOfTheRecording)) continue;
+    if (field.option.empty() || field.has(kRecordedField)) continue;
     EXPECT_NE(settings_after(words_for(*command.get_option("--" + field.option))), usual) << field.option;
   }
 }

@@ -174,7 +174,7 @@ std::string number_fault(const std::string& text, const NumberRange& range, doub
     value = text == "true" ? 1 : 0;
     return "";
   }
-  value = parsed_number<double>(text).value_or(std::numeric_limits<double>::quiet_NaN());
+  value = parse_number<double>(text).value_or(std::numeric_limits<double>::quiet_NaN());
   if (range.contains(value)) return "";
   const bool is_positive = range == NumberRange::positive();
   return fmt::format("{} is not {}", text, is_positive ? "a positive number" : range_text(range));
@@ -271,7 +271,7 @@ void add_text(CLI::App& command, const FieldDescription& field,
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {
   return CLI::Validator(
       [=](std::string& text) {
-        const auto value = parsed_number<std::uint64_t>(text);
+        const auto value = parse_number<std::uint64_t>(text);
         const bool good = value && *value >= min && *value <= max;
         return good ? std::string() : fmt::format("{} is not a whole number from {} to {}", text, min, max);
       },
@@ -298,7 +298,7 @@ bool is_switch(const CLI::Option& option) {
 void check_values(CLI::App& command) {
   const CLI::Validator finite(
       [](std::string& text) {
-        const bool good = !parsed_number<double>(text) || parsed_finite(text);
+        const bool good = !parse_number<double>(text) || parse_finite(text);
         return good ? std::string() : text + " is not a finite number";
       },
       "");

@@ -56,7 +56,7 @@ std::string ProgressText::at(std::string_view what, double fraction_done, double
                      time_text(passed_s * (1 - fraction_done) / fraction_done));
 }
 
-bool ProgressText::take_line() {
+bool ProgressText::claim_line() {
   constexpr double kMaxSilence_s = 60;
   const int tenths = static_cast<int>(10 * fraction_done_ + 1e-9);
   if (tenths <= tenths_written_ && now_s_ - line_s_ < kMaxSilence_s) return false;
@@ -72,7 +72,7 @@ void show_progress(std::string_view what, double fraction_done) {
   if (text.empty()) return;
   if (is_on_terminal()) {
     print_error("\r\033[K" + text);
-  } else if (progress.take_line()) {
+  } else if (progress.claim_line()) {
     print_error(text + "\n");
   }
 }
@@ -88,7 +88,7 @@ void print_error(std::string_view text) {
 }
 
 void warn(std::string_view line) {
-  if (!quiet) warn_always(line);
+  if (!quiet) warn_despite_quiet(line);
 }
 
 void print_tables(const std::vector<Table>& tables) {
@@ -96,13 +96,13 @@ void print_tables(const std::vector<Table>& tables) {
   for (const Table& table : tables) print_error(plain_text(table) + "\n");
 }
 
-void warn_always(std::string_view line) {
+void warn_despite_quiet(std::string_view line) {
   if (is_on_terminal()) print_error("\r\033[K");
   print_error(fmt::format("osteomill: warning: {}\n", in_one_line(line)));
 }
 
 RunEvents events_on_terminal() {
-  return {show_progress, warn, warn_always};
+  return {show_progress, warn, warn_despite_quiet};
 }
 
 }  // namespace osteomill::app

@@ -22,7 +22,7 @@ class ProgressText {
   std::string at(std::string_view what, double fraction_done, double now_s);
   /// Returns whether to print the text last returned as a permanent line: at each tenth, and after a minute
   /// without one. If so, counts it as printed.
-  bool take_line();
+  bool claim_line();
 
  private:
   std::string what_;
@@ -50,7 +50,7 @@ void warn(std::string_view line);
 void print_tables(const std::vector<Table>& tables);
 
 /// Writes a warning even with --quiet, for example about a no-go contact or a failed recording.
-void warn_always(std::string_view line);
+void warn_despite_quiet(std::string_view line);
 
 /// Returns events that call the functions above.
 RunEvents events_on_terminal();

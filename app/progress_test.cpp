@@ -13,7 +13,7 @@ std::vector<std::string> lines_of(double seconds, double fraction_per_s) {
   std::vector<std::string> lines;
   for (int n = 0; n <= seconds; ++n) {
     const std::string line = text.at("compare", fraction_per_s * n, 1e5 + n);
-    if (!line.empty() && text.take_line()) lines.push_back(line);
+    if (!line.empty() && text.claim_line()) lines.push_back(line);
   }
   return lines;
 }

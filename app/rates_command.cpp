@@ -61,7 +61,7 @@ void add_rates_command(CLI::App& program) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
-    settle_law(*command, options->trial.milling.setup);
+    apply_implied_law(*command, options->trial.milling.setup);
     run_rates(*options);
   });
 }

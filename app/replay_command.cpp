@@ -65,7 +65,7 @@ class Log {
   void add(const TickRecord& record) {
     log_.push_back(record);
     faults_.add(record);
-    if (const auto touched = labels_.add(record)) warn_always(*touched);
+    if (const auto touched = labels_.add(record)) warn_despite_quiet(*touched);
     if (log_.size() % 1000 == 0)
       show_progress("replay", static_cast<double>(log_.size()) / static_cast<double>(ticks_));
   }
@@ -90,7 +90,7 @@ class Log {
 void begin_recorder(std::optional<Recorder>& recorder, const std::string& path, const RunDescription& run,
                     Recorder::FirstSession begins) {
   recorder.emplace(path, run, begins, Recorder::UnfinishedFile::remove);
-  if (const std::string kept = recorder->leftover_note(); !kept.empty()) warn_always(kept);
+  if (const std::string kept = recorder->leftover_note(); !kept.empty()) warn_despite_quiet(kept);
 }
 
 void end_recorder(std::optional<Recorder>& recorder, const std::string& path) {
@@ -189,7 +189,7 @@ RunDescription run_as(const ReplayOptions& options, RunDescription run, const Gr
   // Drops settings that were recorded for another algorithm.
   if (!(run.algorithm == algorithm->id)) setup.haptics = {};
   setup.haptics.named.insert(setup.haptics.named.end(), chosen.named.begin(), chosen.named.end());
-  take_given_options(*options.command, given, setup);
+  apply_given_options(*options.command, given, setup);
   warn_of_settings(setup, scan);
   set_session_settings(run, session, 0);
   return run;
@@ -238,7 +238,7 @@ void begin_branch(std::optional<Recorder>& recorder, const ReplayOptions& option
   recorder->begin_session(0, {.continues_from = name, .continues_after = from.ticks});
 }
 
-void require_beside(const ReplayOptions& options) {
+void require_same_folder(const ReplayOptions& options) {
   const auto folder_of = [](const std::string& file) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path());
   };
@@ -249,7 +249,7 @@ void require_beside(const ReplayOptions& options) {
 
 // Continues a recording at a tick along a trajectory, or without one, with its own remaining ticks.
 void replay_from(const ReplayOptions& options, const std::string& command_line) {
-  require_beside(options);
+  require_same_folder(options);
   const std::vector<TrajectoryPoint> trajectory =
       options.input.empty() ? std::vector<TrajectoryPoint>{} : read_trajectory(options.input);
   const Recording recording = read_recording_chain(options.from.recording);
@@ -304,7 +304,7 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
 }
 
 // A recording can be replayed with another algorithm and its settings, but not with another tool or bone.
-void refuse_what_is_recorded(const ReplayOptions& options) {
+void refuse_recorded_settings(const ReplayOptions& options) {
   const auto refuse = [&](const std::string& option) {
     if (options.is_given(option))
       throw CLI::ValidationError(option, "is defined by the recording, and cannot be given");
@@ -312,7 +312,7 @@ void refuse_what_is_recorded(const ReplayOptions& options) {
   for (const Field<ScanOptions>& option : fields_of<ScanOptions>()) refuse("--" + option.option);
   for (const char* option : {"--exercise", "--trainee"}) refuse(option);
   for (const Field<MillingSetup>& setting : fields_of<MillingSetup>()) {
-    if (setting.has(kOfTheRecording)) refuse("--" + setting.option);
+    if (setting.has(kRecordedField)) refuse("--" + setting.option);
   }
 }
 
@@ -345,7 +345,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
-    settle_law(*command, options->milling.setup);
+    apply_implied_law(*command, options->milling.setup);
     if (options->from.given()) {
       refuse_recorded_options(*command);
       for (const char* option : {"--verify", "--exercise", "--trainee", "--force-limit", "--torque-limit",
@@ -355,7 +355,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
       return replay_from(*options, command_line);
     }
     if (options->input.empty()) throw CLI::RequiredError("input");
-    if (is_hdf5(options->input)) refuse_what_is_recorded(*options);
+    if (is_hdf5(options->input)) refuse_recorded_settings(*options);
     run_replay(*options, command_line);
   });
 }

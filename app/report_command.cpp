@@ -41,10 +41,10 @@ void write_into(const std::filesystem::path& folder, const ReportOptions& option
     for (Recording& stretch : split_by_setup(std::move(recording))) recordings.push_back(std::move(stretch));
   }
   end_progress();
-  if (are_of_comparison(recordings)) {
-    std::vector<Table> came_out;
-    write_comparison_report(recordings, folder, std::nullopt, &came_out, recorded_scan);
-    print_tables(came_out);
+  if (is_comparison(recordings)) {
+    std::vector<Table> result_tables;
+    write_comparison_report(recordings, folder, std::nullopt, &result_tables, recorded_scan);
+    print_tables(result_tables);
   } else {
     write_report(recordings, folder, recorded_scan);
   }

@@ -135,7 +135,7 @@ int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
   }
   const std::unique_ptr<CLI::App> made = osteomill::app::make_program(command_line_of(argc, argv), driver);
   CLI::App& program = *made;
-  const osteomill::WorkProgress watched([](double) { osteomill::app::check_memory_taken(); });
+  const osteomill::WorkProgress watched([](double) { osteomill::app::check_memory_limit(); });
   try {
     osteomill::app::require_known_words(program, argc, argv);
     program.parse(argc, argv);

@@ -85,7 +85,7 @@ void run_mesh(const WriteOptions& options) {
   const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
   if (mesh.empty()) throw InputError(bone.name, "no bone is left to mesh");
   const LabelMap* const labels = bone.volume.labels().get();
-  if (labels != nullptr && !holds_colours(format))
+  if (labels != nullptr && !has_vertex_colours(format))
     warn(out + ": STL has no colours, so labels are not written; .ply and .obj keep them");
   write_mesh(out, mesh, labels);
   fmt::print("{}\n", out);

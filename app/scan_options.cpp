@@ -28,7 +28,7 @@ Vec3 spacing_of(const std::string& given) {
   Vec3 spacing_mm;
   const auto numbers = csv_fields(given);
   for (std::size_t n = 0; n < 3 && numbers.size() == 3; ++n) {
-    const auto number = parsed_finite(numbers[n]);
+    const auto number = parse_finite(numbers[n]);
     if (!number || *number <= 0) break;
     spacing_mm[static_cast<Eigen::Index>(n)] = *number;
     if (n == 2) return spacing_mm;
@@ -111,13 +111,13 @@ void add_bone_options(CLI::App& command, ScanOptions& options) {
   add_texts(command, options, kBoneChoiceField);
 }
 
-void add_scan_source(CLI::App& command, ScanOptions& options, const std::string& without_one) {
+void add_scan_source(CLI::App& command, ScanOptions& options, const std::string& default_scan) {
   command
       .add_option(
           "scan", options.scan,
           "DICOM folder or file, NRRD, MetaImage or NIfTI file, folder of PNG or TIFF slices, zip file of "
           "any of these, or builtin:tooth, builtin:layers or builtin:mastoid; the default is " +
-              without_one)
+              default_scan)
       ->check(not_empty());
   add_texts(command, options, kSourceField);
   command
@@ -132,9 +132,9 @@ void add_scan_source(CLI::App& command, ScanOptions& options, const std::string&
       ->type_name("GB");
 }
 
-void add_scan_options(CLI::App& command, ScanOptions& options, const std::string& without_one) {
+void add_scan_options(CLI::App& command, ScanOptions& options, const std::string& default_scan) {
   command.option_defaults()->group("Scan");
-  add_scan_source(command, options, without_one);
+  add_scan_source(command, options, default_scan);
   add_bone_options(command, options);
   add_texts(command, options, kNoGoField);
 }
@@ -174,7 +174,7 @@ LabelGuess guess_content(const ScanOptions& options, const Scan& scan) {
   if (options.as_labels) return of(*options.as_labels);
   if (options.bone_fingerprint != 0 && options.isovalue) {
     DensityGrid labelled = bone_of_labels(scan.grid, *options.isovalue);
-    if (!options.pieces.keeps_all()) leave_out_pieces(labelled, *options.isovalue, options.pieces);
+    if (!options.pieces.keeps_all()) discard_pieces(labelled, *options.isovalue, options.pieces);
     return of(fingerprint_of(scan.grid) != options.bone_fingerprint &&
               fingerprint_of(labelled) == options.bone_fingerprint);
   }
@@ -220,9 +220,9 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
 
 ChosenBone bone_of(Scan scan, double isovalue, const PieceChoice& pieces) {
   DensityGrid grid = scan.is_labels ? bone_of_labels(scan.grid, isovalue) : std::move(scan.grid);
-  PiecesLeftOut left_out;
+  DiscardedPieces left_out;
   if (!pieces.keeps_all()) {
-    left_out = leave_out_pieces(grid, isovalue, pieces);
+    left_out = discard_pieces(grid, isovalue, pieces);
     if (left_out.kept == 0)
       throw InputError(scan.name, fmt::format("has no piece of bone of {:g} mm^3", pieces.min_mm3));
   }

@@ -64,9 +64,10 @@ inline constexpr const char* kBuiltinTooth = "built-in tooth";
 /// Returns whether the program generates this scan: "builtin:" and a name, or empty for the tooth.
 bool is_builtin(const std::string& scan);
 
-/// Adds SCAN, --series, --spacing, --as and --max-memory. `without_one` is the default scan in the help text.
+/// Adds SCAN, --series, --spacing, --as and --max-memory. `default_scan` is the default scan in the help
+/// text.
 void add_scan_source(CLI::App& command, ScanOptions& options,
-                     const std::string& without_one = "the built-in tooth");
+                     const std::string& default_scan = "the built-in tooth");
 
 /// Adds the options that select bone, and the labels: --iso, --keep-largest, --min-piece, --labels,
 /// --label-table.
@@ -74,7 +75,7 @@ void add_bone_options(CLI::App& command, ScanOptions& options);
 
 /// Adds the options of add_scan_source and add_bone_options, and --no-go.
 void add_scan_options(CLI::App& command, ScanOptions& options,
-                      const std::string& without_one = "the built-in tooth");
+                      const std::string& default_scan = "the built-in tooth");
 
 /// Reads the scan, or generates a built-in one. Its first warning reports if it is read as labels. Throws
 /// InputError as `read_scan` does.
@@ -86,7 +87,7 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
 /// A bone, and the pieces removed from it.
 struct ChosenBone {
   Volume volume;
-  PiecesLeftOut left_out;
+  DiscardedPieces left_out;
 };
 /// Makes the bone of a scan: its densities with the isovalue, or for a label map, all voxels with labels
 /// above the isovalue, at one density. Removes the pieces that `pieces` excludes; throws InputError if none

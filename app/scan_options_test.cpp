@@ -24,7 +24,7 @@ RunDescription run_on(const ScanOptions& options) {
   return run;
 }
 
-TEST(ScanOptions, OfARunAreThoseItWasMadeWith) {
+TEST(ScanOptions, RoundTripThroughARunDescription) {
   const ScanOptions was = all_set(), again = scan_of(run_on(was));
   EXPECT_EQ(was.scan, again.scan);
   EXPECT_EQ(was.isovalue, again.isovalue);
@@ -34,7 +34,7 @@ TEST(ScanOptions, OfARunAreThoseItWasMadeWith) {
     EXPECT_EQ(field.get(was), field.get(again)) << field.option;
 }
 
-TEST(ScanOptions, GivenNowGoBeforeThoseOfTheRun) {
+TEST(ScanOptions, GivenOptionsOverrideRecordedOnes) {
   ScanOptions given;
   given.scan = "moved/head.nrrd";
   given.labels.map = "moved/bones.seg.nrrd";

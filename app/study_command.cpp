@@ -44,8 +44,8 @@ struct StudyOptions {
   bool list = false, estimate = false, status = false, resume = false, report = false, drop_unreached = false;
 };
 
-struct BegunStudy {
-  explicit BegunStudy(const fs::path& path)
+struct StudyInFolder {
+  explicit StudyInFolder(const fs::path& path)
       : folder{path, record_in(path)}, trials((path / "study.toml").string(), folder.record.scans_from) {
     folder.test = trials.design().test;
     if (folder.record.trials != trials.design().trial_count())
@@ -93,9 +93,9 @@ std::vector<double> time_three_trials(StudyTrials& study) {
     const std::size_t number = count * sixth / 6;
     const std::vector<TrialPlan> trial = study.make(number, 1);
     try {
-      taken_s.push_back(try_trial(study.design().test, trial.front()).cpu_s);
+      taken_s.push_back(run_single_trial(study.design().test, trial.front()).cpu_s);
     } catch (...) {
-      throw_of_trial(study.file(), number);
+      rethrow_with_trial(study.file(), number);
     }
   }
   std::sort(taken_s.begin(), taken_s.end());
@@ -140,7 +140,7 @@ void status(const StudyFolder& folder) {
   fmt::print("\n");
 }
 
-void run_slice(BegunStudy& study, std::size_t number, int threads, const RunEvents& events) {
+void run_slice(StudyInFolder& study, std::size_t number, int threads, const RunEvents& events) {
   const StudyFolder& folder = study.folder;
   const std::vector<TrialPlan> trials =
       study.trials.make(folder.record.first_of(number), folder.record.size_of(number));
@@ -148,7 +148,7 @@ void run_slice(BegunStudy& study, std::size_t number, int threads, const RunEven
               osteomill::run_slice(folder, number, trials, static_cast<std::size_t>(threads), events));
 }
 
-void run_here(BegunStudy& study, const std::vector<std::size_t>& slices, int threads) {
+void run_here(StudyInFolder& study, const std::vector<std::size_t>& slices, int threads) {
   RunEvents events = events_on_terminal();
   for (std::size_t n = 0; n < slices.size(); ++n) {
     events.progress = [&](std::string_view what, double fraction) {
@@ -159,7 +159,7 @@ void run_here(BegunStudy& study, const std::vector<std::size_t>& slices, int thr
   end_progress();
 }
 
-void run_missing_slices(BegunStudy& study, const StudyOptions& options, std::size_t array_limit) {
+void run_missing_slices(StudyInFolder& study, const StudyOptions& options, std::size_t array_limit) {
   const StudyStatus now = study_status(study.folder);
   require_none_locked(now);
   const std::vector<std::size_t>& missing = now.missing;
@@ -205,11 +205,11 @@ void begin(const StudyOptions& options) {
   const std::size_t array_limit = options.on.empty() ? 0 : slurm_array_limit();
   const OutputFolder folder(options.out);
   create_study_folder(options);
-  BegunStudy study(options.out);
+  StudyInFolder study(options.out);
   run_missing_slices(study, options, array_limit);
 }
 
-void go_on(BegunStudy& study, const StudyOptions& options) {
+void continue_study(StudyInFolder& study, const StudyOptions& options) {
   const StudyFolder& folder = study.folder;
   if (options.status) return status(folder);
   if (options.report) {
@@ -244,8 +244,8 @@ void run_study(const StudyOptions& options) {
   if (fs::is_directory(options.study)) {
     if (!options.status && !options.report && !options.resume && !options.slice)
       throw CLI::ValidationError("study", "is a folder, which needs --status, --resume, --report or --slice");
-    BegunStudy study(options.study);
-    return go_on(study, options);
+    StudyInFolder study(options.study);
+    return continue_study(study, options);
   }
   if (options.list || options.estimate) {
     StudyTrials study(options.study, fs::absolute(options.study).parent_path());

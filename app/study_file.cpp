@@ -63,7 +63,7 @@ class Reader {
   }
 
   void require_known(const TomlEntry& option) const {
-    const Keys known = is_own_setting(option.key) ? algorithm_names() : keys_;
+    const Keys known = is_algorithm_setting(option.key) ? algorithm_names() : keys_;
     if (std::ranges::find(known, option.key.substr(0, option.key.find('.'))) == known.end())
       refuse(*option.value,
              fmt::format("a trial has no option {}{}", option.key, did_you_mean(option.key, known)));
@@ -194,7 +194,7 @@ class Reader {
     if (shown.empty()) refuse(at, fmt::format("a map needs {}", key));
     Keys known = keys_;
     for (const Field<TrialRow>& column : columns_of(test)) known.push_back(column.name);
-    for (const std::string& name : names_in(shown)) {
+    for (const std::string& name : operands_of(shown)) {
       if (name.find('.') == std::string::npos && std::find(known.begin(), known.end(), name) == known.end())
         refuse(at, fmt::format("there is no option and no column {}{}", name, did_you_mean(name, known)));
     }

@@ -93,22 +93,22 @@ std::vector<Field<TrialSpec>> trial_numbers() {
 void set_one(TrialSpec& asked, const std::string& key, const std::string& text) {
   HapticSettings& haptics = asked.trial.milling.setup.haptics;
   if (text.empty()) throw std::invalid_argument(key + " is empty");
-  if (is_own_setting(key)) {
-    set_own(haptics, key, text);
-  } else if (const Field<TrialSpec>* number = field_of_option(numbers_of_a_trial(), key)) {
+  if (is_algorithm_setting(key)) {
+    set_algorithm_setting(haptics, key, text);
+  } else if (const Field<TrialSpec>* number = field_of_option(trial_number_fields(), key)) {
     number->set(asked, value_of(*number, text));
-  } else if (const Text* known = field_of_option(texts_of_a_trial(), key)) {
+  } else if (const Text* known = field_of_option(trial_text_fields(), key)) {
     known->set(asked, text);
   } else {
-    set_shared(haptics, key, value_of({"", "", NumberRange::finite(), "", 0, key}, text));
+    set_shared_option(haptics, key, value_of({"", "", NumberRange::finite(), "", 0, key}, text));
   }
 }
 
 // Returns the options of a trial with their units.
 StudySettings options_and_units() {
   StudySettings options;
-  for (const Text& text : texts_of_a_trial()) options.emplace_back(text.option, "");
-  for (const Field<TrialSpec>& number : numbers_of_a_trial())
+  for (const Text& text : trial_text_fields()) options.emplace_back(text.option, "");
+  for (const Field<TrialSpec>& number : trial_number_fields())
     options.emplace_back(number.option, number.unit);
   for (const std::string& option : shared_options()) options.emplace_back(option, "");
   return options;
@@ -125,12 +125,12 @@ StudyDesign read_design(const std::string& file) {
 
 }  // namespace
 
-const std::vector<Field<TrialSpec>>& numbers_of_a_trial() {
+const std::vector<Field<TrialSpec>>& trial_number_fields() {
   static const std::vector<Field<TrialSpec>> all = trial_numbers();
   return all;
 }
 
-const std::vector<Text>& texts_of_a_trial() {
+const std::vector<Text>& trial_text_fields() {
   static const std::vector<Text> all = trial_texts();
   return all;
 }
@@ -146,13 +146,13 @@ TrialSpec trial_spec(const StudySettings& settings) {
   return asked;
 }
 
-std::string bone_text(const TrialSpec& asked) {
+std::string bone_key(const TrialSpec& asked) {
   std::string words;
   const auto add = [&](const FieldDescription& field, const std::string& value) {
     if (field.has(kBoneField)) words += fmt::format("{}{}={}", words.empty() ? "" : " ", field.option, value);
   };
-  for (const Text& text : texts_of_a_trial()) add(text, text.get(asked));
-  for (const Field<TrialSpec>& number : numbers_of_a_trial())
+  for (const Text& text : trial_text_fields()) add(text, text.get(asked));
+  for (const Field<TrialSpec>& number : trial_number_fields())
     add(number, fmt::format("{}", number.get(asked)));
   return words;
 }
@@ -161,7 +161,7 @@ StudyTrials::StudyTrials(const std::string& file, std::filesystem::path scans_fr
     : file_(file), scans_from_(std::move(scans_from)), design_(read_design(file)) {}
 
 StudyTrials::Bone& StudyTrials::bone_of(const TrialSpec& asked) {
-  const std::string words = bone_text(asked);
+  const std::string words = bone_key(asked);
   std::unique_ptr<Bone>& bone = bones_[words];
   if (bone) return *bone;
   ScanOptions scan = asked.scan;
@@ -199,7 +199,7 @@ TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
   TrialPlan plan = asked.draw_hand ? with_seed(as_set, asked.trial.seed) : as_set;
   plan.grip = asked.grip;
   HandSettings& hand = plan.settings.hand_and_device.hand;
-  hand = gripping(hand, asked.grip);
+  hand = with_firmer_grip(hand, asked.grip);
   return plan;
 }
 
@@ -218,7 +218,7 @@ std::vector<TrialPlan> StudyTrials::make(std::size_t first, std::size_t count) {
       if (!warnings.empty() && warned_trials_.insert(number).second && warned_trials_.size() == 1)
         first_warning_ = fmt::format("{}: trial {}: {}", file_, number, warnings.front());
     } catch (...) {
-      throw_of_trial(file_, number);
+      rethrow_with_trial(file_, number);
     }
   }
   return trials;

@@ -30,8 +30,8 @@ struct TrialSpec {
 };
 
 /// Return the numeric and the text fields of a trial that have an option.
-const std::vector<Field<TrialSpec>>& numbers_of_a_trial();
-const std::vector<Field<TrialSpec, std::string>>& texts_of_a_trial();
+const std::vector<Field<TrialSpec>>& trial_number_fields();
+const std::vector<Field<TrialSpec, std::string>>& trial_text_fields();
 
 /// Returns the trial that a study's settings describe. Throws std::invalid_argument or CLI::Error if a value
 /// is out of range.
@@ -39,7 +39,7 @@ TrialSpec trial_spec(const StudySettings& settings);
 
 /// Returns a key for the trial's bone, made from its fields with kBoneField. Trials with the same key share a
 /// bone.
-std::string bone_text(const TrialSpec& asked);
+std::string bone_key(const TrialSpec& asked);
 
 /// A study from a file, and its trials. Loads each bone once.
 class StudyTrials {
@@ -52,7 +52,7 @@ class StudyTrials {
   const std::string& file() const { return file_; }
   const StudyDesign& design() const { return design_; }
 
-  /// Sets the fingerprints that bones must have from now on, by key (bone_text).
+  /// Sets the fingerprints that bones must have from now on, by key (bone_key).
   void expect(const std::vector<std::pair<std::string, std::uint64_t>>& bones) {
     fingerprints_ = {bones.begin(), bones.end()};
   }
@@ -81,7 +81,7 @@ class StudyTrials {
   std::string file_;
   std::filesystem::path scans_from_;
   StudyDesign design_;
-  // Bones and fingerprints by bone_text, walls by tool. Fingerprints stay when their bones are freed.
+  // Bones and fingerprints by bone_key, walls by tool. Fingerprints stay when their bones are freed.
   std::map<std::string, std::unique_ptr<Bone>> bones_;
   std::map<std::string, Volume> walls_;
   std::map<std::string, std::uint64_t> fingerprints_;

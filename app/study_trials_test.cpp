@@ -20,7 +20,7 @@ namespace {
 
 TEST(StudyTrials, AnAxisSetsEveryField) {
   std::set<std::string> options;
-  for (const Field<TrialSpec>& field : numbers_of_a_trial()) {
+  for (const Field<TrialSpec>& field : trial_number_fields()) {
     EXPECT_TRUE(options.insert(field.option).second) << field.option << " is there twice";
     if (!field.choices.empty()) {
       const std::string& last = field.choices.back();
@@ -37,8 +37,8 @@ TEST(StudyTrials, AnAxisSetsEveryField) {
   EXPECT_GT(options.size(), 20u);
 }
 
-TEST(StudyTrials, NoNumberCanBeNotANumberOrAWord) {
-  for (const Field<TrialSpec>& field : numbers_of_a_trial()) {
+TEST(StudyTrials, RefusesNonFiniteNumbersAndWords) {
+  for (const Field<TrialSpec>& field : trial_number_fields()) {
     for (const char* text : {"nan", "-nan", "inf", "push", ""})
       EXPECT_THROW(trial_spec({{field.option, text}}), std::invalid_argument) << field.option << " " << text;
   }
@@ -87,17 +87,17 @@ TEST_F(StudyOfScans, EachTrialHasTheBoneThatItsAxesName) {
 
 TEST_F(StudyOfScans, EveryFieldOfTheBoneTellsBonesApart) {
   std::size_t reported = 0;
-  for (const auto& field : texts_of_a_trial()) {
+  for (const auto& field : trial_text_fields()) {
     const bool of_the_bone = field.has(kBoneField);
     const std::string value = field.option == "as"          ? "labels"
                               : "algorithm" == field.option ? "line-proxy"
                                                             : "1,2,3";
-    EXPECT_EQ(bone_text(trial_spec({{field.option, value}})) != bone_text({}), of_the_bone) << field.option;
+    EXPECT_EQ(bone_key(trial_spec({{field.option, value}})) != bone_key({}), of_the_bone) << field.option;
     reported += of_the_bone ? 1 : 0;
   }
   EXPECT_EQ(reported, 7u);
-  EXPECT_NE(bone_text(trial_spec({{"iso", "300"}})), bone_text(trial_spec({{"iso", "400"}})));
-  EXPECT_EQ(bone_text(trial_spec({{"push", "2"}, {"burr-radius", "2"}})), bone_text({}));
+  EXPECT_NE(bone_key(trial_spec({{"iso", "300"}})), bone_key(trial_spec({{"iso", "400"}})));
+  EXPECT_EQ(bone_key(trial_spec({{"push", "2"}, {"burr-radius", "2"}})), bone_key({}));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ toml::table parse_toml(const std::string& file) {
 
 toml::table read_toml(const std::string& file) {
   toml::table table = parse_toml(file);
-  note_input(file);
+  register_input(file);
   return table;
 }
 
@@ -74,7 +74,7 @@ std::vector<TomlEntry> options_of(const toml::table& table) {
   return options;
 }
 
-bool is_own_setting(const std::string& key) {
+bool is_algorithm_setting(const std::string& key) {
   return key.find('.') != std::string::npos;
 }
 

@@ -25,7 +25,7 @@ std::vector<TomlEntry> entries_of(const toml::table& table);
 /// Returns the entries of a table of options. Settings in a nested table named after an algorithm become
 /// entries with its name as a prefix, "point-shell.scale".
 std::vector<TomlEntry> options_of(const toml::table& table);
-bool is_own_setting(const std::string& key);
+bool is_algorithm_setting(const std::string& key);
 
 /// Returns an error that names the file and the line of `place`.
 InputError error_at(const toml::node& place, const std::string& file, const std::string& reason);

@@ -23,7 +23,7 @@ Vec3 three_numbers(const std::string& text) {
   const std::vector<std::string_view> parts = csv_fields(text);
   Vec3 numbers;
   for (std::size_t n = 0; n < 3; ++n) {
-    const auto number = n < parts.size() ? parsed_finite(parts[n]) : std::nullopt;
+    const auto number = n < parts.size() ? parse_finite(parts[n]) : std::nullopt;
     if (!number || parts.size() != 3) throw std::invalid_argument(text + " is not three numbers, X,Y,Z");
     numbers[static_cast<Eigen::Index>(n)] = *number;
   }

@@ -70,7 +70,7 @@ std::string name_of(Bone bone) {
   return "tooth_512";
 }
 
-bool is_here(Bone bone) {
+bool is_available(Bone bone) {
   const bool is_real = bone == Bone::real_tooth || bone == Bone::real_tooth_refined;
   return !is_real || std::filesystem::exists(kRealTooth);
 }

@@ -20,7 +20,7 @@ enum class Bone {
 
 std::string name_of(Bone bone);
 /// Returns whether the scan is on this machine.
-bool is_here(Bone bone);
+bool is_available(Bone bone);
 const Volume& bone_volume(Bone bone);
 
 /// Returns a block of bone that fills a 512 x 512 x 352 grid except for a margin, with a through hole along i

@@ -71,7 +71,7 @@ std::string name(const Trial& trial) {
 }
 
 void add(const Trial& trial) {
-  if (!is_here(trial.bone)) return;
+  if (!is_available(trial.bone)) return;
   benchmark::RegisterBenchmark(name(trial).c_str(), closed_loop, trial)
       ->Iterations(1)
       ->Unit(benchmark::kMillisecond);

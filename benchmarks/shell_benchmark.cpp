@@ -53,7 +53,7 @@ void make_mill(benchmark::State& state, Bone bone) {
 
 const bool kAdded = [] {
   for (const Bone bone : {Bone::builtin, Bone::builtin_refined, Bone::real_tooth, Bone::real_tooth_refined}) {
-    if (!is_here(bone)) continue;
+    if (!is_available(bone)) continue;
     const auto register_one = [&](const char* what, auto function) {
       benchmark::RegisterBenchmark((std::string(what) + "/" + name_of(bone)).c_str(), function, bone)
           ->Iterations(1)

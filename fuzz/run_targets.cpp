@@ -118,9 +118,9 @@ std::vector<std::string> slice_seeds(const fs::path& folder) {
 }
 
 // Interprets the bytes as a sequence of instructions.
-class Orders {
+class Instructions {
  public:
-  explicit Orders(Bytes bytes) : bytes_(bytes) {}
+  explicit Instructions(Bytes bytes) : bytes_(bytes) {}
   unsigned next() { return fill(1).front(); }
   std::vector<unsigned char> fill(std::size_t count) {
     std::vector<unsigned char> taken(count);
@@ -134,7 +134,7 @@ class Orders {
   Bytes bytes_;
 };
 
-void change_attribute(hid_t object, const std::string& name, Orders& orders) {
+void change_attribute(hid_t object, const std::string& name, Instructions& orders) {
   const unsigned order = orders.next() % 8;
   if (order == 1) H5Adelete(object, name.c_str());
   if (order == 2) {
@@ -155,7 +155,7 @@ void change_attribute(hid_t object, const std::string& name, Orders& orders) {
   }
 }
 
-void change_column(hid_t file, const std::string& name, Orders& orders) {
+void change_column(hid_t file, const std::string& name, Instructions& orders) {
   const unsigned order = orders.next() % 8;
   const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
   if (order == 1) H5Ldelete(file, name.c_str(), H5P_DEFAULT);
@@ -189,7 +189,7 @@ std::vector<std::string> attributes_of(hid_t object) {
 void read_changed_recording(Bytes bytes, const fs::path& folder) {
   static const std::string whole = unfinished_recording(folder / "a.h5");
   write_bytes(folder / "a.h5", {reinterpret_cast<const unsigned char*>(whole.data()), whole.size()});
-  Orders orders(bytes);
+  Instructions orders(bytes);
   const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   struct Object {
     std::string name;

@@ -90,7 +90,7 @@ class Anonymous : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
-TEST_F(Anonymous, NothingThatIsWrittenHoldsAName) {
+TEST_F(Anonymous, OutputFilesContainNoPatientData) {
   EXPECT_EQ(run("info ../scan"), 0);
   EXPECT_EQ(run("info ../scan --json"), 0);
   EXPECT_EQ(run("save ../scan --out a.nrrd"), 0);
@@ -103,7 +103,7 @@ TEST_F(Anonymous, NothingThatIsWrittenHoldsAName) {
   expect_no_name();
 }
 
-TEST_F(Anonymous, NorDoesWhatIsSaidOfASeriesThatIsAtFault) {
+TEST_F(Anonymous, MessagesAboutInvalidSeriesContainNoPatientData) {
   EXPECT_EQ(run("info ../scan --series 9"), 1);
   for (const char* spacing : {"0\\0", "0.7\\0.7", "Zzyzx"}) {
     write_slice(folder_ / "scan" / "slice3", 3, spacing);

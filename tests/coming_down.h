@@ -8,10 +8,10 @@ namespace osteomill::testing_support {
 
 /// A device that descends along z from free space, 8 mm/s at 1 kHz, to a given height; a session drives a
 /// device only once it was out of bone. After put_at it stays at that pose.
-class ComingDown : public Device {
+class DescendingDevice : public Device {
  public:
   static constexpr double kFrom_mm = 3;
-  explicit ComingDown(double down_to_mm) : down_to_mm_(down_to_mm) {}
+  explicit DescendingDevice(double down_to_mm) : down_to_mm_(down_to_mm) {}
 
   Pose X_WD{{0, 0, kFrom_mm}, Quat::Identity()};
 

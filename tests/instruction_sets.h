@@ -8,7 +8,7 @@
 namespace osteomill::testing_support {
 
 /// Returns the vector instruction sets that this processor supports and a kernel was compiled for.
-inline std::vector<std::int64_t> instruction_sets_here(std::int64_t compiled) {
+inline std::vector<std::int64_t> available_instruction_sets(std::int64_t compiled) {
   std::vector<std::int64_t> sets;
   const std::int64_t both = hwy::SupportedTargets() & compiled;
   for (int place = 0; place < 63; ++place) {

@@ -61,7 +61,7 @@ class LongWork : public ::testing::TestWithParam<std::string> {
       fs::temp_directory_path() / ("osteomill-long-work-" + std::to_string(::getpid()) + ".nrrd");
 };
 
-TEST_P(LongWork, SaysHowFarItIs) {
+TEST_P(LongWork, ReportsProgressEvenly) {
   std::vector<double> reported{0};
   {
     const WorkProgress progress([&](double share) { reported.push_back(share); });
@@ -76,7 +76,7 @@ TEST_P(LongWork, SaysHowFarItIs) {
   EXPECT_LE(reported.back(), 1.0);
 }
 
-TEST_P(LongWork, CanBeStoppedAtAnyMomentAndGivesItsMemoryBack) {
+TEST_P(LongWork, FreesMemoryWhenCancelled) {
   open();
   const long before_kB = resident_kB();
   for (const double at : {0.0, 0.2, 0.4, 0.55, 0.6, 0.65, 0.7, 0.8}) {

@@ -23,7 +23,7 @@ struct ScriptedDevice {
   /// and cannot be opened.
   bool silent = false;
   bool busy = false;
-  bool deaf = false;
+  bool reports_lost = false;
   bool gone = false;
   bool throws = false;
   std::vector<Got> got;
@@ -35,7 +35,7 @@ struct ScriptedDevice {
   ScriptedDevice& operator=(const ScriptedDevice&) = delete;
 
   OpenConnection way() {
-    return [this] { return std::make_unique<Way>(*this); };
+    return [this] { return std::make_unique<ScriptedConnection>(*this); };
   }
   std::function<double()> clock() {
     return [this] { return now_s; };
@@ -55,17 +55,17 @@ struct ScriptedDevice {
   }
 
  private:
-  class Way final : public Connection {
+  class ScriptedConnection final : public Connection {
    public:
-    explicit Way(ScriptedDevice& scripted) : device_(scripted) {
-      if (device_.gone || device_.deaf) throw InputError(device_.can.name, "cannot be had");
+    explicit ScriptedConnection(ScriptedDevice& scripted) : device_(scripted) {
+      if (device_.gone || device_.reports_lost) throw InputError(device_.can.name, "cannot be had");
       ++device_.opened;
     }
-    ~Way() override { ++device_.closed; }
+    ~ScriptedConnection() override { ++device_.closed; }
     const DeviceCapabilities& capabilities() const override { return device_.can; }
     ConnectionStatus read(DeviceInput& heard) override {
       if (device_.throws) throw std::runtime_error("the cable came off");
-      if (device_.gone || device_.deaf) return ConnectionStatus::lost;
+      if (device_.gone || device_.reports_lost) return ConnectionStatus::lost;
       if (device_.silent) return ConnectionStatus::silent;
       heard = device_.input;
       return ConnectionStatus::fresh;

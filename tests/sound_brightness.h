@@ -34,11 +34,11 @@ inline double brightness(const std::vector<float>& sound, double tone_hz) {
 }
 
 /// One feature value per sound, for two classes of sounds.
-using TwoKinds = std::array<std::vector<double>, 2>;
+using TwoClasses = std::array<std::vector<double>, 2>;
 
 /// Returns the share of `tried` classified correctly by the threshold midway between the class means of
 /// `learnt`.
-inline double told_apart(const TwoKinds& learnt, const TwoKinds& tried) {
+inline double classification_accuracy(const TwoClasses& learnt, const TwoClasses& tried) {
   const auto mean_of = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };

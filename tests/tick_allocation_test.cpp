@@ -151,7 +151,7 @@ TEST(TickAllocation, NoTickOfAHapticThreadAllocates) {
   auto session = std::make_unique<MillingSession>(
       bone, estimate_densities(*bone),
       MillingSetup{.algorithm = algorithm_named("point-shell"), .vibration = {.on = true}});
-  testing_support::ComingDown device(kBallRadius_mm + tool.burr_radius_mm - 0.3);
+  testing_support::DescendingDevice device(kBallRadius_mm + tool.burr_radius_mm - 0.3);
   device.X_WD.position_mm.z() = kBallRadius_mm + tool.burr_radius_mm + 1;
   BoneFollower follower(bone);
   HapticThread live(std::move(session), device);

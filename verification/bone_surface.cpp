@@ -69,7 +69,7 @@ double BoneSurface::deepest_mm(const MillingTool& tool, const Pose& X_WT) const 
   return -nearest;
 }
 
-double BoneSurface::centreline_deep_mm(const MillingTool& tool, const Pose& X_WT) const {
+double BoneSurface::centreline_depth_mm(const MillingTool& tool, const Pose& X_WT) const {
   double deepest = 0;
   for (const Vec3& vertex_T : centreline_vertices(tool, kCentrelineVertices)) {
     const Vec3 vertex_W = X_WT * vertex_T;

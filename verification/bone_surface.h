@@ -19,7 +19,7 @@ class BoneSurface {
   double deepest_mm(const MillingTool& tool, const Pose& X_WT) const;
 
   /// Returns the depth in bone of the centreline's deepest point, mm; 0 if none is in bone.
-  double centreline_deep_mm(const MillingTool& tool, const Pose& X_WT) const;
+  double centreline_depth_mm(const MillingTool& tool, const Pose& X_WT) const;
 
  private:
   // Points in one cube of space.

@@ -36,14 +36,14 @@ double rebound(std::string_view algorithm, double stiffness, double height_mm, S
   const double resting_mm = centreline ? 0 : tool.burr_radius_mm;
   SimulatedHandle handle(HandleSettings{},
                          {(resting_mm + height_mm) * normal, smallest_rotation(Vec3::UnitZ(), normal)});
-  double came_with_Nmm = 0;
+  double impact_Nmm = 0;
   double before_Nmm = 0;
   for (int n = 0; n < static_cast<int>(kMax_s / kTick_s); ++n) {
     const HapticStep step = haptics->step(handle.read(), kTick_s);
     handle.command(step.wrench);
     const bool touches = step.contacts > 0;
-    if (touches && came_with_Nmm == 0) came_with_Nmm = before_Nmm;
-    if (!touches && came_with_Nmm > 0) return handle.kinetic_energy_Nmm() / came_with_Nmm;
+    if (touches && impact_Nmm == 0) impact_Nmm = before_Nmm;
+    if (!touches && impact_Nmm > 0) return handle.kinetic_energy_Nmm() / impact_Nmm;
     before_Nmm = handle.kinetic_energy_Nmm();
     fall(handle, normal);
   }

@@ -51,8 +51,9 @@ Section energy_of_barrier_shell(const Bones& bones, const Effort& effort) {
     section.add(
         {run.name, share(c.energy_rises), figure(c.energy_risen_Nmm), figure(c.worst_rise_Nmm),
          figure(static_cast<double>(c.passes) / static_cast<double>(c.ticks)), share(c.unfinished),
-         figure(c.nearest_share), figure(figures.metrics.force_N.mean), figure(figures.metrics.removed_mm3)},
-        c.worst_rise_Nmm <= 0.001 && c.energy_risen_Nmm <= 1e-3 * work_Nmm && c.nearest_share > 0);
+         figure(c.min_distance_share), figure(figures.metrics.force_N.mean),
+         figure(figures.metrics.removed_mm3)},
+        c.worst_rise_Nmm <= 0.001 && c.energy_risen_Nmm <= 1e-3 * work_Nmm && c.min_distance_share > 0);
   }
   return section;
 }

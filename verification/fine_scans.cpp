@@ -72,7 +72,7 @@ Phases run_trial(const Volume& bone, double phase_s, TrialSettings settings) {
 }
 
 // Replaces each tick's times by those of the same tick in another run if they are lower.
-void take_less(std::vector<TickRecord>& records, const std::vector<TickRecord>& others) {
+void keep_lower_times(std::vector<TickRecord>& records, const std::vector<TickRecord>& others) {
   for (std::size_t n = 0; n < records.size(); ++n) {
     for (const auto time_us : {&TickRecord::compute_us, &TickRecord::milling_us, &TickRecord::tick_cpu_us}) {
       records[n].*time_us = std::min(records[n].*time_us, others.at(n).*time_us);
@@ -85,8 +85,8 @@ Phases run_trials(const Volume& bone, double phase_s, int runs, const TrialSetti
   Phases phases = run_trial(bone, phase_s, settings);
   for (int run = 1; run < runs; ++run) {
     const Phases again = run_trial(bone, phase_s, settings);
-    take_less(phases.milling.records, again.milling.records);
-    take_less(phases.holding.records, again.holding.records);
+    keep_lower_times(phases.milling.records, again.milling.records);
+    keep_lower_times(phases.holding.records, again.holding.records);
   }
   return phases;
 }
@@ -109,7 +109,7 @@ Figures figures_of(const Volume& bone, double phase_s, int runs) {
   return figures;
 }
 
-std::string of_both(double fine, double coarse) {
+std::string with_difference(double fine, double coarse) {
   return fmt::format("{} ({:+.1f} %)", figure(fine), 100 * (fine / coarse - 1));
 }
 
@@ -118,8 +118,8 @@ void add_row(Section& section, const std::string& bone, const Figures& fine, con
     return std::abs(a.mean / b.mean - 1) <= kForceWithin;
   };
   const double tick_us = std::max(fine.milling.tick_us.max, fine.holding.tick_us.max);
-  section.add({bone, of_both(fine.milling.force_N.mean, coarse.milling.force_N.mean),
-               of_both(fine.holding.force_N.mean, coarse.holding.force_N.mean),
+  section.add({bone, with_difference(fine.milling.force_N.mean, coarse.milling.force_N.mean),
+               with_difference(fine.holding.force_N.mean, coarse.holding.force_N.mean),
                figure(fine.milling.force_N.step_max), figure(fine.milling.torque_Nmm.step_max),
                fmt::format("{}", fine.faults), figure(fine.milling.step_us.p99), figure(fine.milling_us.p99),
                figure(tick_us), fmt::format("{:.0f}", fine.memory_MiB)},

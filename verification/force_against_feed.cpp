@@ -296,13 +296,13 @@ void add_spindles(Section& section) {
   // Pushes harder in each run, in a plate longer than the cut, until the spindle stands still at the end. A
   // device that lags behind the bone stops it before its stall torque, so the stall torque is extrapolated
   // from the first and the last run.
-  constexpr double kTurbineBurr_mm = 0.8, kStep_N = 0.25, kMost_N = 20, kRun_s = 1.5, kEnd_s = 0.3;
+  constexpr double kTurbineBurr_mm = 0.8, kStep_N = 0.25, kMaxPush_N = 20, kRun_s = 1.5, kEnd_s = 0.3;
   constexpr int kPlate_voxels = 900;
   const Task plate = side_cut(kTurbineBurr_mm, kPlate_voxels);
   const MillingSetup turbine = driven(Handpiece::turbine, kTurbineBurr_mm, 500000);
   double power_W = 0;
   std::vector<double> speeds_rpm, torques_Nmm;
-  for (double push_N = kStep_N; push_N < kMost_N; push_N += kStep_N) {
+  for (double push_N = kStep_N; push_N < kMaxPush_N; push_N += kStep_N) {
     const std::vector<TickRecord> records = pushed(plate, turbine, kRun_s, [=](double) { return push_N; });
     if (records.back().spindle_rpm == 0) break;
     double end_W = 0, end_N = 0;

@@ -35,13 +35,13 @@ struct Options {
   Effort effort;
 };
 
-struct Named {
+struct NamedSection {
   std::string name;
   std::function<Section(const Bones&, const Effort&)> measure;
 };
 
-const std::vector<Named>& all_sections() {
-  static const std::vector<Named> sections{
+const std::vector<NamedSection>& all_sections() {
+  static const std::vector<NamedSection> sections{
       {"planes", [](const Bones&, const Effort&) { return force_on_planes(); }},
       {"levers", [](const Bones&, const Effort&) { return shaft_levers(); }},
       {"ball", [](const Bones&, const Effort&) { return slide_round_a_ball(); }},
@@ -62,12 +62,12 @@ const std::vector<Named>& all_sections() {
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
       {"reaction", milling_with_cutting_reaction},
-      {"rhythm", no_rhythm_of_its_own},
+      {"rhythm", half_rate_oscillation},
       {"second", milling_the_second_scan},
       {"paper", papers_findings},
       {"choices", papers_choices},
       {"energy", energy_of_barrier_shell},
-      {"rig", the_rig_itself},
+      {"rig", rig_noise},
       {"soak", soak},
   };
   return sections;
@@ -75,7 +75,7 @@ const std::vector<Named>& all_sections() {
 
 void add_options(CLI::App& program, Options& options) {
   std::vector<std::string> names;
-  for (const Named& section : all_sections()) names.push_back(section.name);
+  for (const NamedSection& section : all_sections()) names.push_back(section.name);
   program.add_option("--tooth", options.tooth, "Scan of a tooth (default: the built-in tooth)");
   program.add_option("--tooth-iso", options.tooth_iso, "Isovalue of the tooth's scan")->capture_default_str();
   program.add_option("--second", options.second, "Scan of a second bone, on which no setting was chosen");
@@ -112,7 +112,7 @@ Bones load_bones(const Options& options) {
   return bones;
 }
 
-bool wanted(const Options& options, const Named& section) {
+bool is_selected(const Options& options, const NamedSection& section) {
   return options.only.empty() ||
          std::find(options.only.begin(), options.only.end(), section.name) != options.only.end();
 }
@@ -121,8 +121,8 @@ bool wanted(const Options& options, const Named& section) {
 MeasuredSections measure(const Options& options) {
   const Bones bones = load_bones(options);
   MeasuredSections measured;
-  for (const Named& named : all_sections()) {
-    if (!wanted(options, named) || (named.name == "second" && !bones.second) ||
+  for (const NamedSection& named : all_sections()) {
+    if (!is_selected(options, named) || (named.name == "second" && !bones.second) ||
         (named.name == "spongy" && !bones.spongy)) {
       continue;
     }

@@ -16,7 +16,7 @@ constexpr std::uint64_t kFirstSeed = 11;
 
 constexpr double kPushes_N[] = {1.5, 3};
 // Upper limits for barrier-shell.
-constexpr double kMostHpOverMean = 0.02, kMostTorqueStep_Nmm = 0.1, kMostForceStep_N = 0.02;
+constexpr double kMaxHpOverMean = 0.02, kMaxTorqueStep_Nmm = 0.1, kMaxForceStep_N = 0.02;
 constexpr double kMinForce_N = 0.8;
 constexpr double kMinRemoved_mm3 = 30;
 constexpr double kMinTorque_Nmm = 4;
@@ -44,9 +44,9 @@ OverSeeds over_seeds(const std::vector<TrialFigures>& figures) {
 }
 
 bool holds(const OverSeeds& all, bool loaded) {
-  const bool calm = percentile(all.hp, 1) <= kMostHpOverMean &&
-                    percentile(all.torque_step, 1) <= kMostTorqueStep_Nmm &&
-                    percentile(all.force_step, 1) <= kMostForceStep_N;
+  const bool calm = percentile(all.hp, 1) <= kMaxHpOverMean &&
+                    percentile(all.torque_step, 1) <= kMaxTorqueStep_Nmm &&
+                    percentile(all.force_step, 1) <= kMaxForceStep_N;
   const bool paid = std::isnan(all.paid.front()) || (percentile(all.paid, 0) >= 1 - kPaidWithin &&
                                                      percentile(all.paid, 1) <= 1 + kPaidWithin);
   const bool works = percentile(all.force, 0) >= kMinForce_N &&
@@ -118,8 +118,8 @@ Section milling_the_tooth(const Bones& bones, const Effort& effort) {
           "burr's force paid for within 1 %. On {}, the simulated hand of `compare` for {:.0f} s, seeds "
           "{} to {} (settings were chosen on others); median (worst) over the seeds. Times were taken "
           "with another trial running in parallel.",
-          kMostHpOverMean, kMostTorqueStep_Nmm, kMostForceStep_N, kMinForce_N, kMinRemoved_mm3,
-          kMinTorque_Nmm, bones.tooth_name, effort.phase_s, kFirstSeed,
+          kMaxHpOverMean, kMaxTorqueStep_Nmm, kMaxForceStep_N, kMinForce_N, kMinRemoved_mm3, kMinTorque_Nmm,
+          bones.tooth_name, effort.phase_s, kFirstSeed,
           kFirstSeed + static_cast<std::uint64_t>(effort.seeds) - 1),
       kHeader,
       {},
@@ -147,7 +147,7 @@ Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort) 
   return section;
 }
 
-Section no_rhythm_of_its_own(const Bones& bones, const Effort& effort) {
+Section half_rate_oscillation(const Bones& bones, const Effort& effort) {
   constexpr double kMostHalfRate_Nmm = 0.01, kMostStep_Nmm = 0.05;
   struct Encoder {
     const char* name;

@@ -21,9 +21,9 @@ namespace {
 struct Hands {
   std::uint64_t first, last;
 };
-// Settings were chosen with kChosenWith, on the built-in tooth.
-constexpr Hands kChosenWith{1, 8};
-constexpr Hands kOthers{9, 24};
+// Settings were chosen with kTuningHands, on the built-in tooth.
+constexpr Hands kTuningHands{1, 8};
+constexpr Hands kTestHands{9, 24};
 
 using Change = std::function<void(TrialSettings&)>;
 
@@ -161,12 +161,12 @@ std::size_t add_choice(Section& section, const std::string& name, std::vector<Me
 // Adds a row for each choice. Returns, as text, the fewest findings that hold and the choice that leaves
 // them.
 std::string add_choices(Section& section, const Volume& bone, const std::string& name, double phase_s) {
-  const std::vector<MeasuredRun> as_it_is = rows_on(bone, kChosenWith, phase_s);
-  std::size_t fewest = add_choice(section, fmt::format("{}, unchanged", name), as_it_is);
+  const std::vector<MeasuredRun> unchanged_rows = rows_on(bone, kTuningHands, phase_s);
+  std::size_t fewest = add_choice(section, fmt::format("{}, unchanged", name), unchanged_rows);
   std::string with = "nothing changed";
   for (const Choice& choice : choices()) {
-    std::vector<MeasuredRun> rows = rows_on(bone, kChosenWith, phase_s, choice.algorithms, choice.change);
-    for (const MeasuredRun& row : as_it_is) {
+    std::vector<MeasuredRun> rows = rows_on(bone, kTuningHands, phase_s, choice.algorithms, choice.change);
+    for (const MeasuredRun& row : unchanged_rows) {
       const auto is_it = [&](std::size_t n) { return row.algorithm == kPapersAlgorithms[n - 1]; };
       if (std::none_of(choice.algorithms.begin(), choice.algorithms.end(), is_it)) rows.push_back(row);
     }
@@ -190,13 +190,13 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
           "to {}, with which the paper's open choices were settled on the built-in tooth, and {} to "
           "{}), and the phases of `compare --seconds {:g}`. Medians are over the hands in which the "
           "tool kept contact, if those are more than half; a finding that could not be tested misses.",
-          kChosenWith.first, kChosenWith.last, kOthers.first, kOthers.last, effort.phase_s),
+          kTuningHands.first, kTuningHands.last, kTestHands.first, kTestHands.last, effort.phase_s),
       {"bone, hands: the paper found", "medians", "holds in hands", ""},
       {},
       {}};
   const Volume builtin(builtin_tooth(), kBuiltinToothIsovalue);
   std::size_t unsettled = 0;
-  for (const Hands hands : {kChosenWith, kOthers}) {
+  for (const Hands hands : {kTuningHands, kTestHands}) {
     unsettled += add_findings(section, builtin, "the built-in tooth", hands, effort.phase_s);
     unsettled += add_findings(section, bones.tooth, bones.tooth_name, hands, effort.phase_s);
   }
@@ -212,7 +212,7 @@ Section papers_choices(const Bones& bones, const Effort& effort) {
           "Reported: the same findings, numbered as above from 1 to 9, with one choice, the hand or the "
           "device changed. Hands {} to {}, medians; force above 20 Hz (rms, N) and torque above 20 Hz "
           "(rms, N mm) of 1 / 2 / 3.",
-          kChosenWith.first, kChosenWith.last),
+          kTuningHands.first, kTuningHands.last),
       {"bone, with", "findings that hold", "force milling", "force holding", "torque milling",
        "torque holding"},
       {},

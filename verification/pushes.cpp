@@ -43,13 +43,14 @@ Push random_push(const BoneSurface& surface, const PushKind& kind, SeededRandom&
   return push;
 }
 
-void look(PushOutcome& outcome, const BoneSurface& surface, const MillingTool& tool, const HapticStep& step) {
-  outcome.centreline.look(surface.centreline_deep_mm(tool, step.X_WT));
-  outcome.tool.look(surface.deepest_mm(tool, step.X_WT));
+void record(PushOutcome& outcome, const BoneSurface& surface, const MillingTool& tool,
+            const HapticStep& step) {
+  outcome.centreline.record(surface.centreline_depth_mm(tool, step.X_WT));
+  outcome.tool.record(surface.deepest_mm(tool, step.X_WT));
 }
 
-PushOutcome carry_out(const Push& push, HapticAlgorithm& algorithm, const BoneSurface& surface,
-                      const MillingTool& tool) {
+PushOutcome run_push(const Push& push, HapticAlgorithm& algorithm, const BoneSurface& surface,
+                     const MillingTool& tool) {
   algorithm.reset();
   HandSettings hand;
   hand.push_N = push.force_N;
@@ -62,7 +63,7 @@ PushOutcome carry_out(const Push& push, HapticAlgorithm& algorithm, const BoneSu
   for (int n = 0; n < moving + 150; ++n) {
     const HapticStep step = algorithm.step(handle.read(), kTick_s);
     handle.command(make_safe(step.wrench, WrenchLimits{}).wrench);
-    if (n % kTicksBetweenLooks == 0) look(outcome, surface, tool, step);
+    if (n % kTicksBetweenChecks == 0) record(outcome, surface, tool, step);
     const Twist velocity{n < moving ? Vec3(push.speed_mm_s * push.direction_W) : Vec3::Zero(), Vec3::Zero()};
     target.position_mm += kTick_s * velocity.linear_mm_s;
     for (int substep = 0; substep < substeps; ++substep) {
@@ -82,7 +83,7 @@ std::vector<PushOutcome> push_outcomes(std::string_view algorithm, const Volume&
     made->prepare({&bone, kind.tool});
     SeededRandom random(100 + batch);
     for (std::size_t n = batch * kBatch; n < std::min(all.size(), (batch + 1) * kBatch); ++n) {
-      all[n] = carry_out(random_push(surface, kind, random), *made, surface, kind.tool);
+      all[n] = run_push(random_push(surface, kind, random), *made, surface, kind.tool);
     }
   });
   return all;

@@ -19,12 +19,12 @@ struct PushKind {
 
 /// Largest and final depth past the surface, mm; negative outside.
 struct Depth {
-  double ever_mm = -1;
-  double at_end_mm = -1;
+  double max_mm = -1;
+  double final_mm = -1;
 
-  void look(double deep_mm) {
-    at_end_mm = deep_mm;
-    ever_mm = std::max(ever_mm, deep_mm);
+  void record(double deep_mm) {
+    final_mm = deep_mm;
+    max_mm = std::max(max_mm, deep_mm);
   }
 };
 
@@ -34,10 +34,10 @@ struct PushOutcome {
   Depth tool;
 };
 
-inline constexpr int kTicksBetweenLooks = 4;
+inline constexpr int kTicksBetweenChecks = 4;
 
 /// Pushes towards random points of the bone's surface, from any side and in any pose, starting in free space.
-/// Every algorithm gets the same pushes. Depths are checked every `kTicksBetweenLooks` ticks, independently
+/// Every algorithm gets the same pushes. Depths are checked every `kTicksBetweenChecks` ticks, independently
 /// of the algorithm.
 std::vector<PushOutcome> push_outcomes(std::string_view algorithm, const Volume& bone,
                                        const BoneSurface& surface, const PushKind& kind, int count);

@@ -50,7 +50,7 @@ Section papers_findings(const Bones& bones, const Effort& effort);
 /// Measures the findings with one of the paper's open choices, the hand or the device changed.
 Section papers_choices(const Bones& bones, const Effort& effort);
 Section energy_of_barrier_shell(const Bones& bones, const Effort& effort);
-Section the_rig_itself(const Bones& bones, const Effort& effort);
+Section rig_noise(const Bones& bones, const Effort& effort);
 Section voxel_sizes(const Effort& effort);
 Section fine_scans(const Effort& effort);
 Section time_of_a_tick(const Effort& effort);
@@ -60,7 +60,7 @@ Section random_pushes(const Bones& bones, const Effort& effort);
 Section milling_the_tooth(const Bones& bones, const Effort& effort);
 Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort);
 /// Measures the torque's amplitude at half the haptic rate.
-Section no_rhythm_of_its_own(const Bones& bones, const Effort& effort);
+Section half_rate_oscillation(const Bones& bones, const Effort& effort);
 Section milling_the_second_scan(const Bones& bones, const Effort& effort);
 Section soak(const Bones& bones, const Effort& effort);
 

@@ -40,7 +40,7 @@ double resident_MiB() {
 
 // Figures of one part of the session.
 struct Stretch {
-  double force_sum_N = 0, force_max_N = 0, torque_max_Nmm = 0, apart_max_mm = 0, energy_max_Nmm = 0;
+  double force_sum_N = 0, force_max_N = 0, torque_max_Nmm = 0, tool_offset_max_mm = 0, energy_max_Nmm = 0;
   std::size_t ticks = 0;
   bool finite = true;
 
@@ -49,7 +49,7 @@ struct Stretch {
     force_sum_N += r.wrench.force_N.norm();
     force_max_N = std::max(force_max_N, r.wrench.force_N.norm());
     torque_max_Nmm = std::max(torque_max_Nmm, r.wrench.torque_Nmm.norm());
-    apart_max_mm = std::max(apart_max_mm, (r.X_WT.position_mm - r.X_WD.position_mm).norm());
+    tool_offset_max_mm = std::max(tool_offset_max_mm, (r.X_WT.position_mm - r.X_WD.position_mm).norm());
     energy_max_Nmm = std::max(energy_max_Nmm, r.energy_given_Nmm);
     finite = finite && is_finite(r.X_WT) && r.wrench.force_N.allFinite() && r.wrench.torque_Nmm.allFinite() &&
              r.burr_force_W_N.allFinite() && std::isfinite(r.removed_mm3);
@@ -195,7 +195,7 @@ Section soak(const Bones& bones, const Effort& effort) {
     section.add({fmt::format("{:.0f} to {:.0f}", from_s / 60, soak.time_s() / 60),
                  figure(stretch.force_sum_N / static_cast<double>(stretch.ticks)),
                  figure(stretch.force_max_N) + ", " + figure(stretch.torque_max_Nmm),
-                 figure(stretch.apart_max_mm), figure(stretch.energy_max_Nmm), figure(now_MiB)},
+                 figure(stretch.tool_offset_max_mm), figure(stretch.energy_max_Nmm), figure(now_MiB)},
                 stretch.finite && stretch.force_max_N <= 20 + 1e-9 && stretch.torque_max_Nmm <= 500 + 1e-9 &&
                     now_MiB <= 1.05 * memory_MiB);
   }

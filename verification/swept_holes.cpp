@@ -22,7 +22,7 @@ using testing_support::Carving;
 constexpr double kVolumeWithin = 0.02;
 constexpr double kPaidWithin = 0.01;
 // Largest difference between the cut shares of holes with the same burr and push.
-constexpr double kAlikeWithin = 0.015;
+constexpr double kShareTolerance = 0.015;
 
 struct Hole {
   const char* name;
@@ -109,7 +109,7 @@ void add_all_voxels(Section& section, const std::vector<Hole>& holes, const std:
   }
   const auto [least, greatest] = std::minmax_element(shares.begin(), shares.end());
   section.add({"all voxels", "", fmt::format("{:.3f} to {:.3f}", *least, *greatest), "", "", "", ""},
-              *greatest / *least - 1 <= kAlikeWithin);
+              *greatest / *least - 1 <= kShareTolerance);
 }
 
 }  // namespace
@@ -127,7 +127,7 @@ Section swept_holes(const Effort& effort) {
           "voxels around. Edges that remain between two passes are rounded within their voxels, because "
           "densities are interpolated; they are reported separately and not judged. With one burr and "
           "push the cut shares agree within {:g} % over all voxel sizes.",
-          100 * kVolumeWithin, 100 * kPaidWithin, effort.phase_s / 2, 100 * kAlikeWithin),
+          100 * kVolumeWithin, 100 * kPaidWithin, effort.phase_s / 2, 100 * kShareTolerance),
       {"voxels", "swept, mm3", "cut / swept", "left, mm", "lost, mm", "lost at edges, mm",
        "removed / paid for", ""},
       {},

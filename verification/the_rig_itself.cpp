@@ -11,11 +11,11 @@ namespace {
 
 // Largest ratio of force above 20 Hz over its mean with the spindle on to that with it off; two runs of one
 // hand differ by as much.
-constexpr double kNoExcess = 1.05;
+constexpr double kMaxRatio = 1.05;
 
 }  // namespace
 
-Section the_rig_itself(const Bones& bones, const Effort& effort) {
+Section rig_noise(const Bones& bones, const Effort& effort) {
   Section section{
       "Noise of the simulated rig",
       fmt::format("Must hold for 4: milling adds at most 5 % to the force above 20 Hz that the hand's tremor "
@@ -39,7 +39,7 @@ Section the_rig_itself(const Bones& bones, const Effort& effort) {
       for (const TrialFigures& run : f) cells.push_back(figure(run.hp_over_mean()));
       for (const TrialFigures& run : f) cells.push_back(figure(run.metrics.torque_Nmm.step_max));
       for (const TrialFigures& run : f) cells.push_back(figure(run.metrics.force_N.step_max));
-      section.add_of(algorithm, std::move(cells), f[0].hp_over_mean() <= kNoExcess * f[1].hp_over_mean());
+      section.add_of(algorithm, std::move(cells), f[0].hp_over_mean() <= kMaxRatio * f[1].hp_over_mean());
     }
   }
   return section;

@@ -14,18 +14,19 @@ namespace osteomill::verification {
 
 namespace {
 
-constexpr int kPushesAWay = 40;
+constexpr int kPushesPerApproach = 40;
 constexpr double kPast_mm = 5;
 constexpr double kDeepest_mm = 0.3;
 constexpr double kVoxel_mm = 0.25;
 
-struct Way {
+struct Approach {
   const char* name;
   /// Angle of the shaft from upright, degrees.
   double min_lean_deg;
   double max_lean_deg;
 };
-constexpr Way kWays[] = {{"burr first", 0, 50}, {"shaft first", 80, 95}, {"shaft's end first", 130, 180}};
+constexpr Approach kApproaches[] = {
+    {"burr first", 0, 50}, {"shaft first", 80, 95}, {"shaft's end first", 130, 180}};
 
 Volume sheet(double thick_mm) {
   GridGeometry geometry = testing_support::centred_cube(145, kVoxel_mm);
@@ -40,7 +41,7 @@ double lowest_mm(const Pose& X_WT, const MillingTool& tool) {
 }
 
 // Returns true if the simulated tool's centreline ends beyond the sheet that the device was pushed through.
-bool goes_through(HapticAlgorithm& algorithm, const MillingTool& tool, const Way& way, double thick_mm,
+bool goes_through(HapticAlgorithm& algorithm, const MillingTool& tool, const Approach& way, double thick_mm,
                   SeededRandom& random) {
   algorithm.reset();
   const double lean = random.uniform(way.min_lean_deg, way.max_lean_deg) / kDegrees;
@@ -72,7 +73,7 @@ Section thin_bone() {
           "pushes each with the burr, with the shaft and with the shaft's end first. The device goes {} "
           "mm past the sheet at 20 to 300 mm/s without resistance. Through: the tool's centreline ends "
           "more than {} mm beyond the sheet.",
-          kVoxel_mm, kPushesAWay, kPast_mm, kDeepest_mm),
+          kVoxel_mm, kPushesPerApproach, kPast_mm, kDeepest_mm),
       {"algorithm, sheet", "burr first", "shaft first", "shaft's end first", ""},
       {},
       {}};
@@ -81,13 +82,13 @@ Section thin_bone() {
     const Volume bone = sheet(thick_mm);
     for (const AlgorithmDescription& description : all_algorithms()) {
       const std::string& id = description.id.name;
-      std::vector<int> through(std::size(kWays));
+      std::vector<int> through(std::size(kApproaches));
       in_parallel(through.size(), [&](std::size_t n) {
         const auto algorithm = make_algorithm(description, {});
         algorithm->prepare({&bone, tool});
         SeededRandom random(7 + n);
-        for (int push = 0; push < kPushesAWay; ++push) {
-          through[n] += goes_through(*algorithm, tool, kWays[n], thick_mm, random) ? 1 : 0;
+        for (int push = 0; push < kPushesPerApproach; ++push) {
+          through[n] += goes_through(*algorithm, tool, kApproaches[n], thick_mm, random) ? 1 : 0;
         }
       });
       section.add_of(id,
@@ -115,11 +116,11 @@ Section spongy_bone(const Bones& bones) {
   kind.tool = {0.5, 0.35, 25};
   for (const std::string& id : algorithm_names()) {
     const std::vector<PushOutcome> all = push_outcomes(id, *bones.spongy, surface, kind, kPushes);
-    const std::size_t ever = count_deeper(all, &PushOutcome::tool, &Depth::ever_mm, kDeepest_mm);
+    const std::size_t ever = count_deeper(all, &PushOutcome::tool, &Depth::max_mm, kDeepest_mm);
     double deepest = -1;
-    for (const PushOutcome& one : all) deepest = std::max(deepest, one.tool.ever_mm);
+    for (const PushOutcome& one : all) deepest = std::max(deepest, one.tool.max_mm);
     section.add_of(id,
-                   {id, std::to_string(count_deeper(all, &PushOutcome::tool, &Depth::at_end_mm, kDeepest_mm)),
+                   {id, std::to_string(count_deeper(all, &PushOutcome::tool, &Depth::final_mm, kDeepest_mm)),
                     std::to_string(ever), figure(deepest)},
                    ever == 0);
   }

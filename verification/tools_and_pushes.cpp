@@ -14,11 +14,11 @@ namespace {
 constexpr double kPaidWithin = 0.01;
 constexpr double kDeepest_mm = 0.3;
 // Limits when breaking through: the smallest steps that one of our algorithms had reached, plus 5 %.
-constexpr double kMostForceStep_N = 0.052;
-struct MostTorqueStep {
+constexpr double kMaxForceStep_N = 0.052;
+struct MaxTorqueStep {
   double push_N, step_Nmm;
 };
-constexpr MostTorqueStep kMostTorqueSteps[] = {{1.5, 0.29}, {3, 0.71}};
+constexpr MaxTorqueStep kMaxTorqueSteps[] = {{1.5, 0.29}, {3, 0.71}};
 
 struct Case {
   MillingTool tool;
@@ -63,8 +63,8 @@ Section tools_and_pushes(const Bones& bones, const Effort& effort) {
       std::size_t ever = 0;
       if (is_first) {
         const std::vector<PushOutcome> all = push_outcomes(id, bones.tooth, surface, kind, pushes);
-        ever = count_deeper(all, &PushOutcome::tool, &Depth::ever_mm, kDeepest_mm);
-        felt = fmt::format("{} / {}", count_deeper(all, &PushOutcome::tool, &Depth::at_end_mm, kDeepest_mm),
+        ever = count_deeper(all, &PushOutcome::tool, &Depth::max_mm, kDeepest_mm);
+        felt = fmt::format("{} / {}", count_deeper(all, &PushOutcome::tool, &Depth::final_mm, kDeepest_mm),
                            ever);
       }
       const RunMetrics& m = milled[n].metrics;
@@ -87,8 +87,8 @@ Section breaking_through(const Effort& effort) {
           "Must hold for 4: the force steps by at most {} N, and the torque by {} N mm with a push of "
           "{} N, {} with {} N. A plate of 2.5 mm over a hollow, 0.125 mm voxels, is milled by the hand "
           "of `compare` for {:.0f} s, seed 11.",
-          kMostForceStep_N, kMostTorqueSteps[0].step_Nmm, kMostTorqueSteps[0].push_N,
-          kMostTorqueSteps[1].step_Nmm, kMostTorqueSteps[1].push_N, effort.phase_s),
+          kMaxForceStep_N, kMaxTorqueSteps[0].step_Nmm, kMaxTorqueSteps[0].push_N,
+          kMaxTorqueSteps[1].step_Nmm, kMaxTorqueSteps[1].push_N, effort.phase_s),
       {"algorithm, push", "force step, N", "torque step, N mm", "force mean, N", ""},
       {},
       {}};
@@ -99,7 +99,7 @@ Section breaking_through(const Effort& effort) {
     const double wall = std::max(5.0 - std::max(std::abs(p.x()), std::abs(p.y())), p.z() - 1.75);
     return std::max(std::min(plate, wall), std::max(std::abs(p.x()), std::abs(p.y())) - 6.3);
   });
-  for (const auto& [push_N, most_Nmm] : kMostTorqueSteps) {
+  for (const auto& [push_N, most_Nmm] : kMaxTorqueSteps) {
     std::vector<TrialVariant> variants;
     for (const std::string& id : algorithm_names()) {
       variants.push_back({.algorithm = id, .push_N = push_N, .seed = 11, .phase_s = effort.phase_s});
@@ -110,7 +110,7 @@ Section breaking_through(const Effort& effort) {
       section.add_of(variants[n].algorithm,
                      {fmt::format("{}, {} N", variants[n].algorithm, push_N), figure(m.force_N.step_max),
                       figure(m.torque_Nmm.step_max), figure(m.force_N.mean)},
-                     m.force_N.step_max <= kMostForceStep_N && m.torque_Nmm.step_max <= most_Nmm);
+                     m.force_N.step_max <= kMaxForceStep_N && m.torque_Nmm.step_max <= most_Nmm);
     }
   }
   return section;

@@ -48,7 +48,7 @@ OptionText option_text(CLI::Option& option) {
   }
   text.description = option.get_description();
   // Some descriptions state the default themselves, because it depends on the machine.
-  if (text.description.find("(default:") == std::string::npos) text.usual = option.get_default_str();
+  if (text.description.find("(default:") == std::string::npos) text.default_value = option.get_default_str();
   text.group = option.get_group();
   text.is_required = option.get_required();
   text.may_repeat = option.get_expected_max() > 1;

@@ -19,7 +19,7 @@ struct OptionText {
   std::string value;
   std::string description;
   /// The default value; empty if there is none or the description has it.
-  std::string usual;
+  std::string default_value;
   std::string group;
   bool is_required = false;
   bool may_repeat = false;

@@ -61,7 +61,7 @@ std::string option_entry(const OptionText& option) {
     names += fmt::format(" \\fI{}\\fR", roff(option.value));
   std::string text = ".TP\n" + names + "\n" + sentence(option.description);
   if (option.is_required) text += "Required.\n";
-  if (!option.usual.empty()) text += "Default: " + roff(option.usual) + "\n";
+  if (!option.default_value.empty()) text += "Default: " + roff(option.default_value) + "\n";
   return text;
 }
 

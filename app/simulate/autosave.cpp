@@ -118,7 +118,7 @@ void Autosave::take_result() {
     next_ = Clock::now() + std::max<Clock::duration>(kInterval, kWritingShare * took);
   } catch (const std::exception& error) {
     next_ = Clock::now() + 60s;
-    kept_version_ = 0;
+    autosaved_version_ = 0;
     error_ = std::string("Milling cannot be autosaved: ") + error.what();
   }
 }
@@ -134,7 +134,7 @@ void Autosave::update(LiveMilling& milling) {
     return;
   }
   const std::uint64_t version = milling.follower().version();
-  if (version == kept_version_ || Clock::now() < next_) return;
+  if (version == autosaved_version_ || Clock::now() < next_) return;
   if (!file_) file_ = AutosaveFile::make();
   if (!file_) {
     next_ = Clock::time_point::max();
@@ -142,7 +142,7 @@ void Autosave::update(LiveMilling& milling) {
         "Milling cannot be autosaved because its folder cannot be written: " + autosave_folder().string();
     return;
   }
-  kept_version_ = version;
+  autosaved_version_ = version;
   kept_ = true;
   SessionStart milled{.run = describe(scan_, milling), .removed_mm3 = milling.state().record.removed_mm3};
   work_ =

@@ -74,7 +74,7 @@ class Autosave {
   ScanOptions scan_;
   std::optional<AutosaveFile> file_;
   std::uint64_t saved_version_ = 0;
-  std::uint64_t kept_version_ = 0;
+  std::uint64_t autosaved_version_ = 0;
   bool kept_ = false;
   Clock::time_point next_;
   std::string error_;

@@ -21,12 +21,12 @@ void BoneScene::show(const SurfaceBricks& layout, const GridGeometry& geometry,
   renderer_ = std::make_unique<SceneRenderer>(layout, geometry, std::move(labels));
 }
 
-void BoneScene::take(ChangedBricks changed, double pictures_per_s) {
+void BoneScene::take(ChangedBricks changed, double frames_per_s) {
   changed.merge(waiting_);
   waiting_ = std::move(changed);
   // All bricks of a large bone do not fit into one frame. But if frames are slow anyway, e.g. without a
   // graphics card, a small budget would take minutes.
-  const std::chrono::duration<double> longest(std::max(0.02, 0.5 / std::max(pictures_per_s, 1.0)));
+  const std::chrono::duration<double> longest(std::max(0.02, 0.5 / std::max(frames_per_s, 1.0)));
   for (const auto start = Clock::now(); !waiting_.empty() && Clock::now() - start < longest;
        waiting_.erase(waiting_.begin())) {
     renderer_->set_brick(waiting_.begin()->first, waiting_.begin()->second);

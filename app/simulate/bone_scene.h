@@ -19,7 +19,7 @@ class BoneScene {
   void clear() { renderer_.reset(); }
 
   /// Adds changed bricks and uploads as many pending ones as the time budget allows.
-  void take(ChangedBricks changed, double pictures_per_s);
+  void take(ChangedBricks changed, double frames_per_s);
   /// Calls CutUpdates::update.
   void update_cuts(const ViewState& view, const BoneFollower& bone, const WindowLevel& grey_window,
                    const LabelMap* labels);

@@ -45,7 +45,7 @@ std::string tool_fault(const MillingTool& tool, const BoneBox& box) {
                      tool.burr_radius_mm == radius_mm ? "a burr" : "a shaft", radius_mm, widest_mm);
 }
 
-Camera showing_whole(Camera camera, const BoneBox& box, const PixelSize& size) {
+Camera fit_bone(Camera camera, const BoneBox& box, const PixelSize& size) {
   camera.focus_W = box.centre_W();
   const double up = std::tan(0.5 * camera.field_of_view_rad) * kFilled;
   // In a narrow window the panels would leave no space.
@@ -60,7 +60,7 @@ Camera showing_whole(Camera camera, const BoneBox& box, const PixelSize& size) {
   return camera;
 }
 
-Camera first_camera(const BoneBox& box, const PixelSize& size) {
+Camera initial_camera(const BoneBox& box, const PixelSize& size) {
   Vec3 extent_mm = Vec3::Zero();
   for (const Vec3& corner_W : box.corners_W) {
     extent_mm = extent_mm.cwiseMax(2 * (corner_W - box.centre_W()).cwiseAbs());
@@ -72,7 +72,7 @@ Camera first_camera(const BoneBox& box, const PixelSize& size) {
   const Vec3 level = from_left ? Vec3(std::cos(kAside_rad) * left + std::sin(kAside_rad) * front)
                                : Vec3(std::cos(kAside_rad) * front + std::sin(kAside_rad) * left);
   const Vec3 towards_viewer = std::cos(kAbove_rad) * level + std::sin(kAbove_rad) * Vec3::UnitZ();
-  return showing_whole(camera_on(box.bounds(), -towards_viewer, Vec3::UnitZ()), box, size);
+  return fit_bone(camera_on(box.bounds(), -towards_viewer, Vec3::UnitZ()), box, size);
 }
 
 Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, const PixelSize& size) {
@@ -83,7 +83,7 @@ Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, cons
   const Vec3 up_W = is_above ? Vec3::UnitY() : Vec3::UnitZ();
   const Vec3 aside_W = up_W.cross(outward_W).normalized();
   const Vec3 towards_W = Eigen::AngleAxisd(is_above ? kTilt_rad : -kTilt_rad, aside_W) * outward_W;
-  return showing_whole(camera_on(box.bounds(), -towards_W, up_W), box, size);
+  return fit_bone(camera_on(box.bounds(), -towards_W, up_W), box, size);
 }
 
 namespace {
@@ -144,8 +144,8 @@ std::optional<VoxelIndex> bone_voxel_seen_at(const Volume& bone, const Camera& c
   return nearest;
 }
 
-std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                                     const PixelSize& size, double x_px, double y_px) {
+std::optional<Pose> tool_pose_in_front_of(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                                          const PixelSize& size, double x_px, double y_px) {
   const auto point_W = bone_point_seen_at(bone, camera, size, {x_px, y_px}, {});
   if (!point_W) return std::nullopt;
   const Vec3 ray_W = ray_through(camera, size, x_px, y_px);
@@ -154,12 +154,12 @@ std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool
   return free_pose_before(bone, tool, *point_W, -ray_W, -ray_W.cross(right_W));
 }
 
-Pose tool_pose_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                             const PixelSize& size, double above_px) {
+Pose tool_pose_at_centre(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                         const PixelSize& size, double above_px) {
   const auto X_WT =
-      tool_pose_before(bone, tool, camera, size, 0.5 * size.width, 0.5 * size.height - above_px);
+      tool_pose_in_front_of(bone, tool, camera, size, 0.5 * size.width, 0.5 * size.height - above_px);
   if (X_WT) return *X_WT;
-  if (above_px != 0) return tool_pose_before_middle(bone, tool, camera, size);
+  if (above_px != 0) return tool_pose_at_centre(bone, tool, camera, size);
   return free_pose_before(bone, tool, camera.focus_W, camera.towards_viewer_W(), camera.up_W());
 }
 

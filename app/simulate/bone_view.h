@@ -27,11 +27,11 @@ BoneBox box_of_bone(const Volume& bone);
 std::string tool_fault(const MillingTool& tool, const BoneBox& box);
 
 /// Returns the camera moved, without turning it, so that the whole bone fits between the panels.
-Camera showing_whole(Camera camera, const BoneBox& box, const PixelSize& size);
+Camera fit_bone(Camera camera, const BoneBox& box, const PixelSize& size);
 
 /// Returns a view of the whole bone, upright by the patient's axes: from the front, or from the left if the
 /// bone is deeper than wide, slightly from above and from the side.
-Camera first_camera(const BoneBox& box, const PixelSize& size);
+Camera initial_camera(const BoneBox& box, const PixelSize& size);
 
 /// Returns a view of the whole bone, facing the target's surface.
 Camera camera_on_target(const PlacedExercise& exercise, const BoneBox& box, const PixelSize& size);
@@ -44,11 +44,11 @@ std::optional<VoxelIndex> bone_voxel_seen_at(const Volume& bone, const Camera& c
                                              const Eigen::Vector2d& pixel, std::span<const ClipPlane> cuts);
 
 /// Returns a tool pose free of bone in front of the bone point visible at a pixel; std::nullopt if none.
-std::optional<Pose> tool_pose_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                                     const PixelSize& size, double x_px, double y_px);
+std::optional<Pose> tool_pose_in_front_of(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                                          const PixelSize& size, double x_px, double y_px);
 /// Returns such a pose at the centre of the view, or `above_px` above it; without bone there, the pose as if
 /// there were.
-Pose tool_pose_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
-                             const PixelSize& size, double above_px = 0);
+Pose tool_pose_at_centre(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                         const PixelSize& size, double above_px = 0);
 
 }  // namespace osteomill::app

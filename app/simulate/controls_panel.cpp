@@ -31,8 +31,8 @@ std::string hint_of(const FieldDescription& field) {
 }
 
 // Draws a slider for a value that takes long to apply; returns true when it is released at another value.
-bool settle(const char* label, const std::string& hint, double& value, float min, float max,
-            const char* format) {
+bool slider_on_release(const char* label, const std::string& hint, double& value, float min, float max,
+                       const char* format) {
   float shown = static_cast<float>(value);
   if (ui::slider(label, hint + ". Drag, or Ctrl+click to type a number", &shown, min, max, format,
                  ImGuiSliderFlags_AlwaysClamp)) {
@@ -43,14 +43,14 @@ bool settle(const char* label, const std::string& hint, double& value, float min
 
 // Draws a slider for a field of the requested setup, from `min` to `max`, the range of usual tools; the
 // command line accepts the field's whole range.
-bool settle_field(std::string_view option, MillingSetup& requested_setup, float min, float max,
+bool field_slider(std::string_view option, MillingSetup& requested_setup, float min, float max,
                   int decimals) {
   const Field<MillingSetup>& field = *field_of_option(fields_of<MillingSetup>(), option);
   std::string label = field.option;
   std::ranges::replace(label, '-', ' ');
   double value = field.get(requested_setup);
-  const bool settled = settle(label.c_str(), hint_of(field), value, min, max,
-                              fmt::format("%.{}f {}", decimals, field.unit).c_str());
+  const bool settled = slider_on_release(label.c_str(), hint_of(field), value, min, max,
+                                         fmt::format("%.{}f {}", decimals, field.unit).c_str());
   field.set(requested_setup, value);
   return settled;
 }
@@ -129,8 +129,8 @@ void draw_algorithm(ViewState& view, bool& changed) {
   const auto before = stiffness_of(requested_setup);
   if (!before) return;
   double stiffness = *before;
-  const bool settled = settle("stiffness", "Force of the bone per millimetre that you press in", stiffness,
-                              0.5f, 30.0f, "%.1f N/mm");
+  const bool settled = slider_on_release("stiffness", "Force of the bone per millimetre that you press in",
+                                         stiffness, 0.5f, 30.0f, "%.1f N/mm");
   if (stiffness != *before) requested_setup.haptics.set_option(kStiffnessOption, stiffness);
   changed = changed || settled;
 }
@@ -193,11 +193,11 @@ void draw_tool(ViewState& view, ToolChoice& choice, bool& changed) {
     return;
   MillingSetup& setup = view.requested_setup;
   ImGui::BeginDisabled(!choice.is_free);
-  choice.changed = settle_field("burr-radius", setup, 0.5f, 4.0f, 1) || choice.changed;
-  choice.changed = settle_field("shaft-radius", setup, 0.3f, 3.0f, 1) || choice.changed;
+  choice.changed = field_slider("burr-radius", setup, 0.5f, 4.0f, 1) || choice.changed;
+  choice.changed = field_slider("shaft-radius", setup, 0.3f, 3.0f, 1) || choice.changed;
   ImGui::EndDisabled();
   const float max_rpm = is_dental(setup.handpiece) ? 400000.0f : 120000.0f;
-  choice.changed = settle_field("spindle-speed", setup, 5000, max_rpm, 0) || choice.changed;
+  choice.changed = field_slider("spindle-speed", setup, 5000, max_rpm, 0) || choice.changed;
   changed = switch_field("vibration", "vibration", setup) || changed;
   ImGui::SameLine();
   changed = switch_field("burr pulls", "cutting-reaction", setup) || changed;
@@ -216,7 +216,7 @@ void draw_drive(ViewState& view, ToolChoice& choice, bool& changed) {
   ImGui::Separator();
   ImGui::BeginDisabled(setup.law != CuttingLaw::chips);
   choice.changed = choose_field("burr", setup) || choice.changed;
-  changed = settle_field("wear", setup, 0, 100, 0) || changed;
+  changed = field_slider("wear", setup, 0, 100, 0) || changed;
   ImGui::EndDisabled();
 }
 
@@ -327,7 +327,7 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
   if (!ui::header("Cuts", "Planes that cut the bone open and show the scan's grey values", view.open.cuts))
     return;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
-    ViewState::Cut& cut = view.cuts[n];
+    ViewState::SectionPlane& cut = view.cuts[n];
     ImGui::PushID(static_cast<int>(n));
     const std::string hint =
         fmt::format("Cuts the bone open at the burr, along {}",
@@ -355,10 +355,10 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   for (const auto& [from, direction_W, up_W] : kPatientViews) {
     const std::string letter(1, static_cast<char>(std::toupper(from.front())));
     if (ui::button((letter + "##view").c_str(), fmt::format("Shows the whole bone from {}", from)))
-      view.camera = showing_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
+      view.camera = fit_bone(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
     ImGui::SameLine();
   }
-  if (ui::button("Whole", kWholeHint)) view.camera = showing_whole(view.camera, view.box, size);
+  if (ui::button("Whole", kWholeHint)) view.camera = fit_bone(view.camera, view.box, size);
   if (ui::button("Find tool", "Centres the view on the burr")) view.camera.focus_W = tool_W;
   ImGui::SameLine();
   ui::checkbox("ghost", kGhostHint, &view.ghost);
@@ -383,7 +383,7 @@ std::string isovalue_text(const Simulation& simulation) {
                      simulation.scan.isovalue_from);
 }
 
-void recall_tool(ViewState& view) {
+void request_remembered_tool(ViewState& view) {
   MillingSetup setup = view.requested_setup;
   if (!copy_tool(view.tool, setup) || !tool_fault(setup.tool, view.box).empty()) return;
   view.requested_setup = setup;
@@ -416,7 +416,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   draw_milling(view, simulation, choice);
   draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);
   files.draw(view, simulation);
-  draw_seeing(view, files);
+  draw_view_aid_controls(view, files);
   draw_cuts(view, simulation);
   draw_isovalue(view, simulation);
   draw_laboratory(view, choice, changed);

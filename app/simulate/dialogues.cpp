@@ -10,7 +10,7 @@ namespace osteomill::app {
 
 namespace {
 
-constexpr const char* kComplaint = "Error";
+constexpr const char* kErrorTitle = "Error";
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void DialogueQueue::add(Dialogue dialogue) {
 }
 
 void DialogueQueue::add_error(const std::string& what) {
-  add({kComplaint, what, {{"Close", "Closes this message", {}}}, {}, {}});
+  add({kErrorTitle, what, {{"Close", "Closes this message", {}}}, {}, {}});
 }
 
 bool DialogueQueue::run_reporting_errors(const std::function<void()>& work) {
@@ -48,7 +48,7 @@ void DialogueQueue::proceed() {
 std::vector<std::string> DialogueQueue::errors() const {
   std::vector<std::string> complaints;
   for (const Dialogue& dialogue : dialogues_) {
-    if (dialogue.title == kComplaint) complaints.push_back(dialogue.text);
+    if (dialogue.title == kErrorTitle) complaints.push_back(dialogue.text);
   }
   return complaints;
 }

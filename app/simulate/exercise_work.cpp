@@ -95,12 +95,12 @@ void ExerciseWork::measure(const std::filesystem::path& recording, const std::fi
   results_.clear();
   work_ = std::async(std::launch::async, [this, placed = placed_, scan = scan_, recording, folder] {
     const WorkProgress watched([this](double) {
-      if (is_given_up_) throw WorkStopped();
+      if (is_cancelled_) throw WorkStopped();
     });
     const Recording recorded = read_recording(recording);
     const Attempt attempt = make_attempt(*placed, *scan, recorded);
     const DebriefedAttempt own = debriefed(attempt, recorded);
-    write_debriefing(folder, attempt, recorded, own, peers_of(attempt, recorded));
+    write_debriefing(folder, attempt, recorded, own, load_peers(attempt, recorded));
     return own.rows;
   });
 }

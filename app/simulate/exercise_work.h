@@ -34,7 +34,7 @@ class ExerciseWork {
   /// `scan` is the bone before milling.
   ExerciseWork(PlacedExercise placed, const Volume& scan, RecordedExercise recorded);
   /// Cancels measuring and waits until it has stopped.
-  ~ExerciseWork() { is_given_up_ = true; }
+  ~ExerciseWork() { is_cancelled_ = true; }
   ExerciseWork(const ExerciseWork&) = delete;
   ExerciseWork& operator=(const ExerciseWork&) = delete;
 
@@ -94,7 +94,7 @@ class ExerciseWork {
   double next_view_s_ = 0;
   std::filesystem::path folder_;
   std::vector<MeasuredValue> results_;
-  std::atomic<bool> is_given_up_ = false;
+  std::atomic<bool> is_cancelled_ = false;
   std::future<std::vector<MeasuredValue>> work_;
 };
 

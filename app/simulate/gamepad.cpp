@@ -33,7 +33,7 @@ GamepadInput gamepad_input(const GamepadState& now, const GamepadState& before) 
                         (now.left_bumper ? 0.5 : 0.0) - (now.right_bumper ? 0.5 : 0.0)};
   input.is_mill_pressed = now.a && !before.a;
   input.is_mill_released = before.a && !now.a;
-  input.is_let_go = now.b && !before.b;
+  input.is_release_pressed = now.b && !before.b;
   input.is_undo = now.x && !before.x;
   return input;
 }

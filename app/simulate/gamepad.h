@@ -24,7 +24,7 @@ struct GamepadInput {
   SpaceMouseState motion;
   /// Press and release of the milling button.
   bool is_mill_pressed = false, is_mill_released = false;
-  bool is_let_go = false;
+  bool is_release_pressed = false;
   bool is_undo = false;
 };
 

@@ -41,12 +41,13 @@ TEST(GamepadInput, GivesAButtonOnceForEachPress) {
   GamepadState down;
   down.a = down.b = down.x = true;
   const GamepadInput pressed = gamepad_input(down, {});
-  EXPECT_TRUE(pressed.is_mill_pressed && pressed.is_let_go && pressed.is_undo && !pressed.is_mill_released);
+  EXPECT_TRUE(pressed.is_mill_pressed && pressed.is_release_pressed && pressed.is_undo &&
+              !pressed.is_mill_released);
   const GamepadInput held = gamepad_input(down, down);
-  EXPECT_FALSE(held.is_mill_pressed || held.is_let_go || held.is_undo || held.is_mill_released);
+  EXPECT_FALSE(held.is_mill_pressed || held.is_release_pressed || held.is_undo || held.is_mill_released);
   const GamepadInput released = gamepad_input({}, down);
   EXPECT_TRUE(released.is_mill_released);
-  EXPECT_FALSE(released.is_mill_pressed || released.is_let_go || released.is_undo);
+  EXPECT_FALSE(released.is_mill_pressed || released.is_release_pressed || released.is_undo);
 }
 
 }  // namespace

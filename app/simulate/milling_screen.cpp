@@ -27,11 +27,11 @@ void drop_requests(ViewState& view) {
 
 }  // namespace
 
-Pose first_tool_pose(const PreparedScan& opened, const Camera& camera, const PixelSize& size) {
+Pose initial_tool_pose(const PreparedScan& opened, const Camera& camera, const PixelSize& size) {
   if (const std::optional<Pose>& recorded = opened.milling.handover.X_WT) return *recorded;
   // In front of the bone's upper half, so that the shaft does not hide the bone.
   const MillingSession& session = *opened.milling.session;
-  return tool_pose_before_middle(session.volume(), session.setup().tool, camera, size, 0.15 * size.height);
+  return tool_pose_at_centre(session.volume(), session.setup().tool, camera, size, 0.15 * size.height);
 }
 
 MillingScreen::MillingScreen(PreparedScan opened, const Pose& X_WT, const ToolSource& tool_source,
@@ -95,7 +95,7 @@ void MillingScreen::update(Stage& stage) {
     simulation_.update();
     if (sender_) sender_->show_tool(simulation_.milling.state().record);
     if (prepared && !simulation_.milling.is_preparing()) {
-      free_tool(view, simulation_, stage.window.size());
+      move_tool_out_of_bone(view, simulation_, stage.window.size());
       measure_bone(view.chosen_piece, simulation_);
     }
   });
@@ -118,8 +118,8 @@ void MillingScreen::draw(Stage& stage) {
   start_requests(view);
   update(stage);
   take_input(view, simulation_, space_mouse_, gamepad_, size);
-  update_seeing(view, simulation_, size);
-  stage.bone.take(simulation_.milling.take_changed_bricks(), stage.pictures_per_s());
+  update_view_aids(view, simulation_, size);
+  stage.bone.take(simulation_.milling.take_changed_bricks(), stage.frames_per_s());
   // The recording begins with a picture of the bone.
   if (exercise_begins_ && stage.bone.is_up_to_date() && stage.bone.triangle_count() > 0) {
     exercise_begins_ = false;
@@ -127,11 +127,11 @@ void MillingScreen::draw(Stage& stage) {
   }
   stage.bone.update_cuts(view, simulation_.milling.follower(),
                          view.grey_window.value_or(simulation_.scan.grey_window),
-                         simulation_.shows_labels(view) ? simulation_.shown_labels().get() : nullptr);
+                         simulation_.has_visible_labels(view) ? simulation_.shown_labels().get() : nullptr);
   const ViewScene scene = scene_of(view, simulation_);
   stage.bone.draw(scene, size);
   if (std::exchange(view.picture_requested, false)) save_picture(stage);
-  draw_seen(view, scene, stage.bone, size);
+  draw_view_aids(view, scene, stage.bone, size);
   draw_panels(stage);
   set_sound(stage);
 }
@@ -143,7 +143,7 @@ void MillingScreen::draw_panels(Stage& stage) {
   draw_controls(view, simulation_, stage.files, size);
   draw_piece_menu(view, simulation_, size);
   const float bottom_px = stage.files.draw_message(view, simulation_, size);
-  float top_px = draw_readings(view, simulation_, stage.pictures_per_s(), size);
+  float top_px = draw_readings(view, simulation_, stage.frames_per_s(), size);
   top_px = draw_labels(view, simulation_, {top_px, bottom_px});
   draw_help(view, size, {top_px, bottom_px});
   if (const auto recording_s = stage.files.recording_s(simulation_)) draw_recording(*recording_s);

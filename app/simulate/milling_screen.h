@@ -16,7 +16,7 @@ namespace osteomill::app {
 
 /// Returns the initial tool pose for a scan: in front of the bone at the centre of the view, or the pose in
 /// the recording that is continued.
-Pose first_tool_pose(const PreparedScan& opened, const Camera& camera, const PixelSize& size);
+Pose initial_tool_pose(const PreparedScan& opened, const Camera& camera, const PixelSize& size);
 
 /// A scan being milled in the window, with its panels. Only one at a time on a stage.
 class MillingScreen {

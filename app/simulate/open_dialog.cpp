@@ -203,7 +203,7 @@ Dialogue series_question(const std::string& scan, const std::vector<SeriesSummar
   question.is_list = true;
   for (const SeriesSummary& one : series) {
     std::string label = fmt::format("{}: {} \"{}\", ", one.number, one.modality, one.description);
-    if (!one.told_by.empty()) label += one.told_by + ", ";
+    if (!one.distinguishing_marks.empty()) label += one.distinguishing_marks + ", ";
     label += fmt::format("{} slices of {} x {}", one.slices, one.columns, one.rows);
     label += one.thickness_mm ? fmt::format(", {:.4g} mm thick", *one.thickness_mm) : ", not a volume";
     question.choices.push_back(

@@ -73,8 +73,8 @@ PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& s
     const WorkProgress::Part reading(0.4);
     return load_exercise(exercise.file, scan);
   }();
-  take_allowed_burr(loaded.placed.exercise, setup);
-  RecordedExercise recorded = to_be_recorded(loaded.placed.exercise, exercise);
+  select_allowed_burr(loaded.placed.exercise, setup);
+  RecordedExercise recorded = make_recorded_exercise(loaded.placed.exercise, exercise);
   const ScanOptions source = scan_of(loaded.placed.exercise, scan);
   auto work =
       std::make_unique<ExerciseWork>(std::move(loaded.placed), loaded.bone.volume, std::move(recorded));
@@ -91,7 +91,7 @@ PreparedScan open_for_branch(const OpenRequest& request, const GuardSettings& gu
     const WorkProgress::Part replaying(0.7);
     return open_branch(request.from, request.scan, request.exercise);
   }();
-  RecordedWork& work = branch.work;
+  LoadedRecording& work = branch.work;
   std::unique_ptr<ExerciseWork> task;
   if (work.placed)
     task = std::make_unique<ExerciseWork>(*std::move(work.placed), work.bone.volume, *work.exercise);
@@ -108,9 +108,9 @@ PreparedScan open_for_playback(const OpenRequest& request) {
   const ScanOptions& scan = request.scan;
   ScanOptions recorded;
   recorded.read.max_memory_bytes = scan.read.max_memory_bytes;
-  RecordedWork work = [&] {
+  LoadedRecording work = [&] {
     const WorkProgress::Part reading(0.4);
-    return read_recorded_work(scan.scan, recorded, {});
+    return load_recording(scan.scan, recorded, {});
   }();
   if (request.from.at_s != 0) ticks_until(work.recording, request.from.at_s);
   const WorkProgress::Part milling(1);
@@ -145,7 +145,7 @@ void Opening::begin(OpenRequest request, const MillingSetup& setup) {
       const WorkProgress progress([&](double share) {
         work->share_done = share;
         if (work->stopped) throw WorkStopped();
-        check_memory_taken();
+        check_memory_limit();
       });
       return open_requested(*request, setup);
     } catch (const WorkStopped&) {

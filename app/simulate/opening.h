@@ -34,7 +34,7 @@ struct OpenRequest {
 /// Opens the requested object. For a folder with several series, unless one is named or milled, returns only
 /// their list (`PreparedScan::series`). An exercise selects the one of its burrs nearest to the setup's.
 /// Takes seconds; any thread, also while another scan is milled. Throws InputError as `load_bone`,
-/// `load_exercise`, `open_branch`, `read_recorded_work` and Playback do, and if `milled` belongs to another
+/// `load_exercise`, `open_branch`, `load_recording` and Playback do, and if `milled` belongs to another
 /// scan; std::invalid_argument for settings out of range.
 PreparedScan open_requested(const OpenRequest& request, MillingSetup setup);
 

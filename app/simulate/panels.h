@@ -28,7 +28,7 @@ inline constexpr const char* kArrowsHint =
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
 /// Requests the remembered tool if it can work with the bone.
-void recall_tool(ViewState& view);
+void request_remembered_tool(ViewState& view);
 
 /// Free part of the right column, pixels from the top.
 struct VerticalSpan {
@@ -38,7 +38,7 @@ struct VerticalSpan {
 
 /// Draws the right column: all readings, and the state of the device if one holds the tool. Returns the upper
 /// edge of the free space below.
-float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size);
+float draw_readings(ViewState& view, Simulation& simulation, double frames_per_s, const PixelSize& size);
 
 /// Draws the legend of the labels, if the bone has any, with the removed volume of each; scrolls if there is
 /// not enough room.
@@ -86,7 +86,7 @@ void draw_playback(ViewState& view, Playback& playback, const PixelSize& size);
 /// Moves the tool out of bone that was restored (a cut undone, another isovalue), or out of a hole if it was
 /// enlarged: to a pose in front of the bone at the same pixel. Does nothing to a tool that only presses on
 /// bone.
-void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size);
+void move_tool_out_of_bone(ViewState& view, Simulation& simulation, const PixelSize& size);
 
 /// Option set by the stiffness slider, and its current value; std::nullopt if the algorithm has no such
 /// setting.

@@ -46,7 +46,7 @@ std::string change_between(const RunDescription& before, const RunDescription& n
   return before.algorithm == now.algorithm ? "bone or settings changed" : now.algorithm.name;
 }
 
-RecordedWork with_ticks(RecordedWork work) {
+LoadedRecording with_ticks(LoadedRecording work) {
   ticks_until(work.recording, work.recording.records.empty() ? 0 : work.recording.records.front().time_s);
   return work;
 }
@@ -60,7 +60,7 @@ std::vector<SessionSettings> settings_of(const Recording& recording) {
 
 }  // namespace
 
-PlaybackMarks marks_of(const RecordedWork& work) {
+PlaybackMarks marks_of(const LoadedRecording& work) {
   const Recording& recording = work.recording;
   const std::vector<TickRecord>& records = recording.records;
   PlaybackMarks marks;
@@ -94,7 +94,7 @@ PlaybackMarks marks_of(const RecordedWork& work) {
   return marks;
 }
 
-Playback::Playback(RecordedWork work)
+Playback::Playback(LoadedRecording work)
     : work_(with_ticks(std::move(work))),
       marks_(marks_of(work_)),
       settings_(settings_of(work_.recording)),
@@ -174,7 +174,7 @@ void show_view(const ViewSample& sample, ViewState& view) {
   camera.distance_mm = std::max(1.0, (eye_W - view.box.centre_W()).dot(camera.towards_viewer_W()));
   camera.focus_W = eye_W - camera.distance_mm * camera.towards_viewer_W();
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
-    const ViewCut& cut = sample.cuts[n];
+    const ViewClipPlane& cut = sample.cuts[n];
     view.cuts[n] = {!cut.normal_W.isZero(), false, cut.normal_W, static_cast<float>(cut.offset_mm)};
   }
 }

@@ -34,17 +34,17 @@ struct PlaybackMarks {
   /// Starts of exercise steps, and of sessions with another burr, algorithm or bone.
   std::vector<std::pair<double, std::string>> steps;
 };
-PlaybackMarks marks_of(const RecordedWork& work);
+PlaybackMarks marks_of(const LoadedRecording& work);
 
 /// A recording being played: without a haptic thread; shows the recorded data and repeats the milling on the
 /// bone. Meanwhile another thread verifies the recording, as `replay --verify` does. For the window's thread.
 class Playback {
  public:
   /// Opens the recording at its first tick. Throws InputError as RecordedBone does. Takes long; any thread.
-  explicit Playback(RecordedWork work);
+  explicit Playback(LoadedRecording work);
   ~Playback();
 
-  const RecordedWork& work() const { return work_; }
+  const LoadedRecording& work() const { return work_; }
   const Recording& recording() const { return work_.recording; }
   const PlaybackMarks& marks() const { return marks_; }
   double begin_s() const { return recording().records.front().time_s; }
@@ -67,7 +67,7 @@ class Playback {
   void play(bool on);
   double speed() const { return speed_; }
   void set_speed(double speed) { speed_ = speed; }
-  bool follows_recorded_view() const { return follows_view_ && view() != nullptr; }
+  bool is_following_recorded_view() const { return follows_view_ && view() != nullptr; }
   void follow_recorded_view(bool on) { follows_view_ = on; }
 
   /// Returns whether the recording replays bit-identically, as far as it has been checked.
@@ -86,7 +86,7 @@ class Playback {
   bool has_guidance() const { return view() == nullptr || view()->has_guidance; }
 
  private:
-  RecordedWork work_;
+  LoadedRecording work_;
   PlaybackMarks marks_;
   std::vector<SessionSettings> settings_;
   BoneBox box_;

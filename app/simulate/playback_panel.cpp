@@ -152,7 +152,7 @@ void draw_buttons(Playback& playback) {
       playback.set_speed(speed);
   }
   ImGui::SameLine();
-  bool follows = playback.follows_recorded_view();
+  bool follows = playback.is_following_recorded_view();
   ImGui::BeginDisabled(playback.view() == nullptr);
   if (ui::checkbox("recorded camera", "Shows the trainee's view. To look around freely, drag the picture",
                    &follows))
@@ -168,7 +168,7 @@ void row(const char* name, const std::string& value) {
 
 void draw_facts(const Playback& playback) {
   const TickRecord& record = playback.record();
-  const RecordedWork& work = playback.work();
+  const LoadedRecording& work = playback.work();
   row("recording", work.recording.path.filename().string());
   row("scan", work.bone.name);
   if (work.exercise) row("exercise", work.exercise->title);
@@ -207,7 +207,7 @@ void draw_playback(ViewState& view, Playback& playback, const PixelSize& size) {
     view.branch_requested = BranchOptions{playback.recording().path.string(), playback.record().time_s};
   }
   ImGui::SameLine();
-  if (ui::button("Whole", kWholeHint)) view.camera = showing_whole(view.camera, view.box, size);
+  if (ui::button("Whole", kWholeHint)) view.camera = fit_bone(view.camera, view.box, size);
   ImGui::SameLine();
   if (ui::button("Start page", kStartPageHint)) view.start_page_requested = true;
   ui::checkbox("ghost", kGhostHint, &view.ghost);

@@ -14,7 +14,7 @@ PlaybackScreen::PlaybackScreen(std::unique_ptr<Playback> playback, double at_s, 
   view.message.clear();
   stage.voice.set({}, {});
   view.box = playback_->box();
-  view.camera = first_camera(view.box, stage.window.size());
+  view.camera = initial_camera(view.box, stage.window.size());
   reset_cuts(view);
   const Volume& bone = playback_->work().bone.volume;
   stage.bone.show(playback_->follower().layout(), bone.geometry(), playback_->labels());
@@ -29,11 +29,11 @@ void PlaybackScreen::draw(Stage& stage) {
   constexpr double kLongestPicture_s = 0.25;
   const std::chrono::duration<double> passed = now - std::exchange(played_, now);
   playback_->advance(std::min(passed.count(), kLongestPicture_s));
-  if (playback_->follows_recorded_view()) show_view(*playback_->view(), view);
+  if (playback_->is_following_recorded_view()) show_view(*playback_->view(), view);
   const Camera before = view.camera;
   take_view_input(view, size);
   if (view.camera != before) playback_->follow_recorded_view(false);
-  stage.bone.take(playback_->take_changed_bricks(), stage.pictures_per_s());
+  stage.bone.take(playback_->take_changed_bricks(), stage.frames_per_s());
   stage.bone.update_cuts(view, playback_->follower(), playback_->grey_window(), nullptr);
   stage.bone.draw(scene_of(view, *playback_), size);
   draw_playback(view, *playback_, size);

@@ -61,7 +61,7 @@ std::optional<std::size_t> cut_under(const ViewState& view, const PixelSize& siz
   double nearest_mm = std::numeric_limits<double>::infinity();
   std::optional<std::size_t> found;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
-    const ViewState::Cut& cut = view.cuts[n];
+    const ViewState::SectionPlane& cut = view.cuts[n];
     const double towards = ray.dot(cut.normal_W);
     if (!cut.on || std::abs(towards) < 1e-6) continue;
     const double along_mm = (static_cast<double>(cut.offset_mm) - cut.normal_W.dot(eye)) / towards;
@@ -85,7 +85,7 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   }
   if (!io.MouseDown[0]) view.dragged_cut = -1;
   if (view.dragged_cut < 0) return false;
-  ViewState::Cut& cut = view.cuts[static_cast<std::size_t>(view.dragged_cut)];
+  ViewState::SectionPlane& cut = view.cuts[static_cast<std::size_t>(view.dragged_cut)];
   // Projected normal, px/mm. A cut that faces the viewer hardly moves in the picture; dragging upwards then
   // moves it along its normal.
   const Vec3 anchor_W = view.box.centre_W();
@@ -175,14 +175,15 @@ void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
 }
 
 // Moves the tool in front of the bone visible at the pixel, or else at the centre of the view.
-void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
-                const std::optional<Eigen::Vector2d>& pixel) {
+void move_tool_to_bone(ViewState& view, Simulation& simulation, const PixelSize& size,
+                       const std::optional<Eigen::Vector2d>& pixel) {
   LiveMilling& milling = simulation.milling;
   const MillingTool& tool = milling.setup().tool;
   milling.set_spindle(false);
   milling.follower().read([&](const Volume& bone) {
-    if (pixel) view.X_W_destination = tool_pose_before(bone, tool, view.camera, size, pixel->x(), pixel->y());
-    if (!view.X_W_destination) view.X_W_destination = tool_pose_before_middle(bone, tool, view.camera, size);
+    if (pixel)
+      view.X_W_destination = tool_pose_in_front_of(bone, tool, view.camera, size, pixel->x(), pixel->y());
+    if (!view.X_W_destination) view.X_W_destination = tool_pose_at_centre(bone, tool, view.camera, size);
   });
   milling.place(*view.X_W_destination);
 }
@@ -205,14 +206,14 @@ bool is_pushed(const ToolInput& input) {
 // If the tool is no longer held or pushed, moves the hand's target to the tool's pose, so that it stops
 // pressing. Continues for a moment, because bone then pushes the resting tool out by its last bit of
 // penetration. Only the first step is done while the burr is turning, which would walk away with the hand.
-void relax_if_let_go(ViewState& view, Simulation& simulation, const ToolInput& input) {
+void release_hand_at_rest(ViewState& view, Simulation& simulation, const ToolInput& input) {
   const bool held = view.holding_tool || view.dragging_tool;
   // A turning burr would continue to mill.
   if (std::exchange(view.was_held, held) && !held) simulation.milling.set_spindle(false);
-  if (held || is_pushed(input)) view.relaxing_s = kRelaxing_s;
-  if (held || is_pushed(input) || view.relaxing_s <= 0 || view.X_W_destination) return;
-  const bool has_just_ended = view.relaxing_s == kRelaxing_s;
-  view.relaxing_s -= input.passed_s;
+  if (held || is_pushed(input)) view.yield_time_left_s = kRelaxing_s;
+  if (held || is_pushed(input) || view.yield_time_left_s <= 0 || view.X_W_destination) return;
+  const bool has_just_ended = view.yield_time_left_s == kRelaxing_s;
+  view.yield_time_left_s -= input.passed_s;
   const TickRecord& record = simulation.milling.state().record;
   if (!simulation.tool_source.is_pointer() || (!has_just_ended && record.spindle_rpm > 0)) return;
   view.X_W_target = record.X_WT;
@@ -233,8 +234,8 @@ SpaceMouseState take_gamepad(const GamepadInput& input, ViewState& view, LiveMil
 
 // Handles releases, whatever else handles the input of this frame.
 void take_releases(const GamepadInput& gamepad, ViewState& view, LiveMilling& milling) {
-  if (gamepad.is_let_go) view.holding_tool = false;
-  if (gamepad.is_let_go) milling.set_spindle(false);
+  if (gamepad.is_release_pressed) view.holding_tool = false;
+  if (gamepad.is_release_pressed) milling.set_spindle(false);
   if (gamepad.is_mill_released || ImGui::IsMouseReleased(0) || is_dialogue_open())
     release_buttons(view, milling);
 }
@@ -246,7 +247,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
   const GamepadInput by_gamepad = gamepad.read();
   take_releases(by_gamepad, view, simulation.milling);
   if (is_dialogue_open() || drag_cut(view, size) || drag_grey(view, simulation.scan.grey_window, size)) {
-    relax_if_let_go(view, simulation, {.passed_s = static_cast<double>(ImGui::GetIO().DeltaTime)});
+    release_hand_at_rest(view, simulation, {.passed_s = static_cast<double>(ImGui::GetIO().DeltaTime)});
     return;
   }
   const ImGuiIO& io = ImGui::GetIO();
@@ -276,7 +277,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     input.moved_px = view.holding_tool ? pointer_moved_px() : pointer_dragged_px();
   }
   if (on_picture && view.holding_tool) input.wheel = static_cast<double>(io.MouseWheel);
-  relax_if_let_go(view, simulation, input);
+  release_hand_at_rest(view, simulation, input);
   pull_tool(view, simulation, input, size);
   if (ConnectedDevice* hardware = simulation.tool_source.hardware) {
     hardware->set_view(view.camera.orientation);
@@ -290,7 +291,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     std::optional<Eigen::Vector2d> pointer;
     if (by_key && !io.WantCaptureMouse)
       pointer = {static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y)};
-    bring_tool(view, simulation, size, pointer);
+    move_tool_to_bone(view, simulation, size, pointer);
   }
 }
 
@@ -303,7 +304,7 @@ void take_view_input(ViewState& view, const PixelSize& size) {
   if (on_picture || view.dragging_view) move_camera(view, size, !view.dragging_view);
 }
 
-void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
+void move_tool_out_of_bone(ViewState& view, Simulation& simulation, const PixelSize& size) {
   const Pose X_WT = simulation.milling.state().record.X_WT;
   // A tool that only presses on bone keeps this core out of it.
   MillingTool core = simulation.milling.setup().tool;
@@ -311,9 +312,9 @@ void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
   core.shaft_radius_mm *= 0.5;
   bool free = true;
   simulation.milling.follower().read([&](const Volume& bone) { free = tool_is_free(bone, core, X_WT); });
-  if (!free) bring_tool(view, simulation, size, pixel_of(view.camera, size, X_WT.position_mm));
+  if (!free) move_tool_to_bone(view, simulation, size, pixel_of(view.camera, size, X_WT.position_mm));
   // An enlarged burr would press where it was released.
-  view.relaxing_s = kRelaxing_s;
+  view.yield_time_left_s = kRelaxing_s;
 }
 
 }  // namespace osteomill::app

@@ -150,7 +150,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
 }
 
 // Draws a device fault and reserves its space afterwards, so that the controls below do not move.
-void draw_complaint(const std::string& complaint) {
+void draw_device_fault(const std::string& complaint) {
   float& room_px = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("complaint"));
   const float from_px = ImGui::GetCursorPosY();
   if (!complaint.empty()) ui::warning("The device " + complaint);
@@ -166,7 +166,7 @@ void draw_device(ViewState& view, ConnectedDevice& device) {
   ImGui::TextWrapped("%s", device.capabilities().name.c_str());
   ImGui::TextDisabled("%.0f poses/s", report.inputs_per_s);
   draw_calibration(view, device, report.handle_B_mm);
-  draw_complaint(report.complaint());
+  draw_device_fault(report.complaint());
 }
 
 // Maximum number of rows shown; longer lists scroll.
@@ -209,13 +209,13 @@ void draw_row(const Simulation& simulation, std::size_t n) {
 }  // namespace
 
 // Draws how well the haptic thread keeps time.
-static void draw_timing(const Simulation& simulation, double pictures_per_s) {
+static void draw_timing(const Simulation& simulation, double frames_per_s) {
   const TimingSummary timing = simulation.milling.timing();
   row("haptic rate", fmt::format("{:.0f} ticks/s", timing.recent_ticks_per_s));
   row("step", fmt::format("{:.0f} us, p99 {:.0f} us", timing.step.p50_us, timing.step.p99_us));
   ui::tooltip("Time to compute the force of one tick: median and 99th percentile");
   row("late ticks", fmt::format("{} of {}", timing.late_ticks + timing.missed_ticks, timing.ticks));
-  row("pictures", fmt::format("{:.0f} / s", pictures_per_s));
+  row("pictures", fmt::format("{:.0f} / s", frames_per_s));
 }
 
 static void draw_plots(const Simulation& simulation, const PixelSize& size) {
@@ -230,11 +230,11 @@ static void draw_plots(const Simulation& simulation, const PixelSize& size) {
       ui::ink(ui::Ink::torque), height_px);
 }
 
-float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size) {
+float draw_readings(ViewState& view, Simulation& simulation, double frames_per_s, const PixelSize& size) {
   ui::begin_side_panel("Readings", ui::px(8), &view.open.readings);
   const TickRecord& record = simulation.milling.state().record;
   if (view.open.laboratory) {
-    draw_timing(simulation, pictures_per_s);
+    draw_timing(simulation, frames_per_s);
   } else {
     row("force", fmt::format("{:.2f} N", record.wrench.force_N.norm()));
     ui::tooltip("Magnitude of the force on your hand");

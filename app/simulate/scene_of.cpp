@@ -14,7 +14,7 @@ constexpr double kMinTurn_rad = 0.01;
 
 }  // namespace
 
-ClipPlane plane_of(const ViewState::Cut& cut) {
+ClipPlane plane_of(const ViewState::SectionPlane& cut) {
   const double side = cut.other_side ? -1 : 1;
   return {side * cut.normal_W, side * static_cast<double>(cut.offset_mm)};
 }
@@ -51,7 +51,7 @@ void reset_cuts(ViewState& view) {
   }
 }
 
-void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W) {
+void begin_cut_at(const ViewState& view, ViewState::SectionPlane& cut, const Vec3& tool_W) {
   constexpr double kLeast = 0.1;
   const auto [least_mm, most_mm] = extent_along(view.box.corners_W, cut.normal_W);
   const double place_mm = cut.normal_W.dot(tool_W);
@@ -62,7 +62,7 @@ void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W
 
 std::vector<ClipPlane> planes_of(const ViewState& view) {
   std::vector<ClipPlane> planes;
-  for (const ViewState::Cut& cut : view.cuts)
+  for (const ViewState::SectionPlane& cut : view.cuts)
     if (cut.on) planes.push_back(plane_of(cut));
   return planes;
 }
@@ -90,7 +90,7 @@ ViewScene scene_of(const ViewState& view, Simulation& simulation) {
   const LiveState& state = simulation.milling.state();
   ViewScene scene = scene_of(view, state.record, {milling.setup(), milling.densities()});
   if (view.arrows) scene.intersection_W = state.intersection_W;
-  scene.show_labels = simulation.shows_labels(view);
+  scene.show_labels = simulation.has_visible_labels(view);
   scene.isovalue = milling.isovalue();
   return scene;
 }

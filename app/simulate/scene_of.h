@@ -14,7 +14,7 @@
 namespace osteomill::app {
 
 /// Returns the plane of a cut, reversed if `other_side` is set.
-ClipPlane plane_of(const ViewState::Cut& cut);
+ClipPlane plane_of(const ViewState::SectionPlane& cut);
 /// Returns the planes of the active cuts.
 std::vector<ClipPlane> planes_of(const ViewState& view);
 
@@ -47,6 +47,6 @@ void reset_cuts(ViewState& view);
 
 /// Places a cut that is switched on at the burr's centre, or at the nearest end of the bone, and selects the
 /// side that leaves bone visible.
-void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W);
+void begin_cut_at(const ViewState& view, ViewState::SectionPlane& cut, const Vec3& tool_W);
 
 }  // namespace osteomill::app

@@ -98,7 +98,7 @@ std::string table_text(const std::vector<Landmark>& landmarks) {
 
 }  // namespace
 
-void update_seeing(ViewState& view, Simulation& simulation, const PixelSize& size) {
+void update_view_aids(ViewState& view, Simulation& simulation, const PixelSize& size) {
   const ImGuiIO& io = ImGui::GetIO();
   if (is_dialogue_open()) return;
   if (!io.WantTextInput && !io.KeyCtrl) {
@@ -117,7 +117,7 @@ void update_seeing(ViewState& view, Simulation& simulation, const PixelSize& siz
   if (away_mm.norm() > pixel_mm) view.camera.focus_W += share * away_mm;
 }
 
-void draw_seen(const ViewState& view, const ViewScene& scene, BoneScene& bone, const PixelSize& size) {
+void draw_view_aids(const ViewState& view, const ViewScene& scene, BoneScene& bone, const PixelSize& size) {
   draw_landmarks(view, size);
   if (!view.loupe || !scene.X_WT) return;
   const int side = static_cast<int>(kLoupeShare * size.height);
@@ -135,7 +135,7 @@ void draw_seen(const ViewState& view, const ViewScene& scene, BoneScene& bone, c
             fmt::format("{:.1f} x", static_cast<double>(view.loupe_power)));
 }
 
-void draw_seeing(ViewState& view, const FilesPanel& files) {
+void draw_view_aid_controls(ViewState& view, const FilesPanel& files) {
   if (!ui::header("Look closer", "See through bone, follow and magnify the burr, and measure in mm",
                   view.open.closer))
     return;

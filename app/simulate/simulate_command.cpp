@@ -47,7 +47,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
                     "Start without the help page (default: shown on the first start)");
   command->callback([=] {
     apply_config_file(*command);
-    settle_law(*command, options->milling.setup);
+    apply_implied_law(*command, options->milling.setup);
     if (options->from.given()) refuse_recorded_options(*command);
     if (at->count() > 0 && !options->from.given() && !is_hdf5(options->scan.scan))
       throw CLI::RequiredError("--at: --from, or a recording to be played,");

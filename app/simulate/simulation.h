@@ -90,7 +90,7 @@ struct Simulation {
     return exercise ? exercise->colours() : scan.labels;
   }
   /// Returns whether labels colour the bone now.
-  bool shows_labels(const ViewState& view) const {
+  bool has_visible_labels(const ViewState& view) const {
     return view.labels && (!exercise || exercise->has_guidance());
   }
 

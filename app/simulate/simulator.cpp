@@ -55,7 +55,7 @@ void Simulator::run() {
   if (leftover_) {
     ask_about_leftover();
   } else {
-    begin_first();
+    open_first();
   }
   while (!update_closing()) {
     begin_picture();
@@ -71,7 +71,7 @@ void Simulator::run() {
 
 bool Simulator::is_driven() const {
   return options_.driver != nullptr &&
-         (milling_ || leftover_ || start_page_ || playback_ || options_.driver->starts_before_scan());
+         (milling_ || leftover_ || start_page_ || playback_ || options_.driver->is_started_before_scan());
 }
 
 bool Simulator::is_settled() {
@@ -85,7 +85,7 @@ void Simulator::begin_picture() {
   if (stage_.window.take_focus_lost()) stage_.view.holding_tool = false;
   if (is_driven()) {
     const std::chrono::duration<double> passed = Clock::now() - last_picture_;
-    options_.driver->give_input(passed.count(), is_settled(), stage_.window);
+    options_.driver->inject_input(passed.count(), is_settled(), stage_.window);
   }
   last_picture_ = Clock::now();
   ImGui::NewFrame();
@@ -113,7 +113,7 @@ void Simulator::finish_picture() {
   window.end_frame();
   if (is_driven()) {
     options_.driver->read({window, view, simulation(), playback_ ? &playback_->playback() : nullptr,
-                           stage_.files, stage_.voice.state, stage_.pictures_per_s(),
+                           stage_.files, stage_.voice.state, stage_.frames_per_s(),
                            stage_.bone.triangle_count()});
   }
   window.show();
@@ -122,9 +122,9 @@ void Simulator::finish_picture() {
   if (const int steps = std::exchange(view.text_steps, 0); steps != 0) {
     constexpr double kStep = 0.25;
     view.text_scale = std::clamp(window.ui_scale() + kStep * steps, kMinScale, kMaxScale);
-    window.ask_ui_scale(view.text_scale);
+    window.request_ui_scale(view.text_scale);
   }
-  window.ask_theme(view.theme);
+  window.request_theme(view.theme);
   view.place = window.place();
   keeper_.keep(view);
   // A higher frame rate would only take time from other threads.
@@ -149,7 +149,7 @@ void Simulator::draw_start_page() {
 void Simulator::draw_waiting() {
   // If several paths were dropped, use the last one.
   if (const auto asked = stage_.window.take_dropped(); !asked.empty()) begin_scan(asked.back());
-  if (opening_.is_ready()) take_first();
+  if (opening_.is_ready()) install_first();
   draw_opening();
 }
 
@@ -187,7 +187,7 @@ void Simulator::draw_opening() {
 }
 
 // Opens what the command line names, or else shows the start page.
-void Simulator::begin_first() {
+void Simulator::open_first() {
   if (!options_.from.given() && !options_.exercise.given() && options_.scan.scan.empty() &&
       !options_.scan.isovalue) {
     start_page_.emplace();
@@ -219,7 +219,7 @@ void Simulator::begin_exercise(ExerciseOptions exercise) {
 void Simulator::ask_about_leftover() {
   const auto start = [this] {
     leftover_.reset();
-    begin_first();
+    open_first();
   };
   const auto remove = [this, start] {
     leftover_->file.clear();
@@ -244,10 +244,10 @@ void Simulator::open_leftover() {
 void Simulator::cancel_opening() {
   const std::string what = opening_.request().name();
   opening_.stop();
-  give_up(what);
+  note_opening_cancelled(what);
 }
 
-void Simulator::give_up(const std::string& what) {
+void Simulator::note_opening_cancelled(const std::string& what) {
   stage_.view.message = "Opening " + what + " was cancelled";
   // Without a scan or a page the window would stay empty.
   if (!milling_ && !start_page_ && !playback_) closing_ = true;
@@ -271,7 +271,8 @@ bool Simulator::ask_for_series() {
     request.scan.read.series = number;
     begin_opening(std::move(request));
   };
-  stage_.view.dialogues.add(series_question(scan.name, series, open, [this, scan] { give_up(scan.name); }));
+  stage_.view.dialogues.add(
+      series_question(scan.name, series, open, [this, scan] { note_opening_cancelled(scan.name); }));
   return true;
 }
 
@@ -294,11 +295,11 @@ void Simulator::open_another() {
   if (opened_ || !opening_.is_ready()) return;
   if (!view.dialogues.run_reporting_errors([this] { opened_ = opening_.take(); })) return;
   if (ask_for_series()) return;
-  const auto take = [this] { after_writing("Writing ...", [this] { take_opened(); }); };
+  const auto take = [this] { after_writing("Writing ...", [this] { install_opened(); }); };
   ask_before("Opening another scan", take, [this] { opened_.reset(); });
 }
 
-void Simulator::take_first() {
+void Simulator::install_first() {
   const bool is_leftover = opening_.request().milled.has_value();
   try {
     opened_ = opening_.take();
@@ -306,13 +307,13 @@ void Simulator::take_first() {
     if (!is_leftover && !start_page_ && !playback_) throw;
     stage_.view.dialogues.add_error(error.what());
     // Keep the milled bone for another start, when its scan may be available again.
-    if (is_leftover) begin_first();
+    if (is_leftover) open_first();
     return;
   }
-  if (!ask_for_series()) take_opened();
+  if (!ask_for_series()) install_opened();
 }
 
-void Simulator::take_opened() {
+void Simulator::install_opened() {
   if (!opened_) return;
   PreparedScan opened = *std::exchange(opened_, std::nullopt);
   ViewState& view = stage_.view;
@@ -328,7 +329,7 @@ void Simulator::take_opened() {
   stage_.window.set_title(std::filesystem::path(opened.scan.name).filename().string() + " - osteomill");
   if (!opened.playback) {
     begin_milling(std::move(opened));
-    if (!brings_tool) recall_tool(view);
+    if (!brings_tool) request_remembered_tool(view);
     return;
   }
   const double at_s = opened.play_at_s;
@@ -352,14 +353,14 @@ void Simulator::begin_milling(PreparedScan opened) {
   const PixelSize size = stage_.window.size();
   const ScanInfo& scan = opened.scan;
   // Continuing from a recording being played keeps its view.
-  const bool looks_on = opened.from && playback_;
+  const bool keeps_view = opened.from && playback_;
   playback_.reset();
   if (!is_builtin(scan.source.scan) && !opened.exercise) note_recent_scan(scan.source.scan);
   view.box = scan.box;
-  if (!looks_on)
+  if (!keeps_view)
     view.camera = opened.exercise ? camera_on_target(opened.exercise->placed(), view.box, size)
-                                  : first_camera(view.box, size);
-  const Pose X_WT = first_tool_pose(opened, view.camera, size);
+                                  : initial_camera(view.box, size);
+  const Pose X_WT = initial_tool_pose(opened, view.camera, size);
   const ToolSource tool_source{options_.device.device, hardware_.get()};
   milling_ = std::make_unique<MillingScreen>(std::move(opened), X_WT, tool_source, options_.command_line,
                                              options_.send, stage_);
@@ -419,14 +420,14 @@ void Simulator::write(const char* doing, const Dialogue::Action& begin, const Di
 }
 
 bool Simulator::update_closing() {
-  if (stage_.window.take_close_asked()) ask_before("Closing the window", [this] { close(); });
+  if (stage_.window.take_close_request()) ask_before("Closing the window", [this] { close(); });
   DialogueQueue& dialogues = stage_.view.dialogues;
   // Also while the window is too small to be drawn.
   if (milling_) stage_.files.take_result(stage_.view, *simulation());
   if (milling_ && simulation()->exercise)
     dialogues.run_reporting_errors([this] { simulation()->exercise->take_result(); });
   dialogues.proceed();
-  return closing_ || (options_.driver != nullptr && options_.driver->wants_to_close());
+  return closing_ || (options_.driver != nullptr && options_.driver->has_close_request());
 }
 
 void Simulator::close() {

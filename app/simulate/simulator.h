@@ -69,7 +69,7 @@ class Simulator {
   void begin_picture();
   void finish_picture();
 
-  void begin_first();
+  void open_first();
   void begin_opening(OpenRequest request);
   void begin_scan(const std::string& path);
   void begin_exercise(ExerciseOptions exercise);
@@ -78,11 +78,11 @@ class Simulator {
   void open_leftover();
   void open_another();
   void cancel_opening();
-  void give_up(const std::string& what);
+  void note_opening_cancelled(const std::string& what);
   bool ask_for_series();
   void draw_open_dialog();
-  void take_first();
-  void take_opened();
+  void install_first();
+  void install_opened();
   void leave_scan(const ScanInfo& next);
   void begin_milling(PreparedScan opened);
   void show_start_page();

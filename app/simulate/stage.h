@@ -13,7 +13,7 @@
 namespace osteomill::app {
 
 /// The spindle's sound and its present state.
-struct SpindleVoice {
+struct SpindleAudio {
   SoundPlayer player;
   SpindleState state;
 
@@ -26,10 +26,10 @@ struct Stage {
   ViewState view;
   FilesPanel files;
   BoneScene bone;
-  SpindleVoice voice;
+  SpindleAudio voice;
   RecentRate pictures;
 
-  double pictures_per_s() {
+  double frames_per_s() {
     return pictures.per_s(
         std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count());
   }

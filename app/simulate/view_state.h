@@ -38,7 +38,7 @@ struct ViewState : Preferences {
   /// The tool was held, in either way, in the previous frame.
   bool was_held = false;
   /// Time left until the hand stops yielding after the last push, s.
-  double relaxing_s = 0;
+  double yield_time_left_s = 0;
   bool dragging_view = false;
   /// The left button acts as the spindle's pedal while pressed.
   bool pedal_down = false;
@@ -85,13 +85,13 @@ struct ViewState : Preferences {
   std::filesystem::path report;
 
   /// A plane that cuts the bone open: its normal and its offset along that.
-  struct Cut {
+  struct SectionPlane {
     bool on = false;
     bool other_side = false;
     Vec3 normal_W = Vec3::UnitZ();
     float offset_mm = 0;
   };
-  std::array<Cut, kMaxClipPlanes> cuts;
+  std::array<SectionPlane, kMaxClipPlanes> cuts;
   /// Cut dragged by the pointer, or -1.
   int dragged_cut = -1;
   /// Densities drawn black and white on the cuts, if the user has set them, and whether a drag is changing

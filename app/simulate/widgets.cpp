@@ -30,7 +30,7 @@ std::map<std::string, WidgetState>& widget_states() {
 namespace {
 
 // Stores the state of the last widget and adds its tooltip. Returns `acted`.
-bool remember(const char* label, const std::string& hint, bool acted) {
+bool note_widget(const char* label, const std::string& hint, bool acted) {
   std::string text(label);
   text.erase(std::min(text.find("##"), text.size()));
   const ImVec2 min = ImGui::GetItemRectMin();
@@ -84,51 +84,51 @@ float end_side_panel() {
 
 bool button(const char* label, const std::string& hint, bool enabled) {
   if (!enabled) ImGui::BeginDisabled();
-  const bool acted = remember(label, hint, ImGui::Button(label) && enabled);
+  const bool acted = note_widget(label, hint, ImGui::Button(label) && enabled);
   if (!enabled) ImGui::EndDisabled();
   return acted;
 }
 
 bool checkbox(const char* label, const std::string& hint, bool* value) {
-  return remember(label, hint, ImGui::Checkbox(label, value));
+  return note_widget(label, hint, ImGui::Checkbox(label, value));
 }
 
 bool radio(const char* label, const std::string& hint, bool chosen) {
-  return remember(label, hint, ImGui::RadioButton(label, chosen) && !chosen);
+  return note_widget(label, hint, ImGui::RadioButton(label, chosen) && !chosen);
 }
 
 bool slider(const char* label, const std::string& hint, float* value, float min, float max,
             const char* format, ImGuiSliderFlags flags) {
-  return remember(label, hint, ImGui::SliderFloat(label, value, min, max, format, flags));
+  return note_widget(label, hint, ImGui::SliderFloat(label, value, min, max, format, flags));
 }
 
 bool entry(const char* label, const std::string& hint, bool chosen) {
-  return remember(label, hint, ImGui::Selectable(label, chosen, 0, {px(150), 0}) && !chosen);
+  return note_widget(label, hint, ImGui::Selectable(label, chosen, 0, {px(150), 0}) && !chosen);
 }
 
 bool text_field(const char* label, const std::string& hint, char* text, std::size_t size,
                 ImGuiInputTextFlags flags) {
-  return remember(label, hint,
-                  ImGui::InputText(label, text, size, flags | ImGuiInputTextFlags_EnterReturnsTrue));
+  return note_widget(label, hint,
+                     ImGui::InputText(label, text, size, flags | ImGuiInputTextFlags_EnterReturnsTrue));
 }
 
 bool row(const char* label, const std::string& hint, bool selected) {
   constexpr ImGuiSelectableFlags kFlags =
       ImGuiSelectableFlags_DontClosePopups | ImGuiSelectableFlags_AllowDoubleClick;
-  return remember(label, hint, ImGui::Selectable(label, selected, kFlags));
+  return note_widget(label, hint, ImGui::Selectable(label, selected, kFlags));
 }
 
 bool header(const char* label, const std::string& hint, bool& open) {
   ImGui::SetNextItemOpen(open);
   open = ImGui::CollapsingHeader(label);
-  remember(label, hint, ImGui::IsItemToggledOpen());
+  note_widget(label, hint, ImGui::IsItemToggledOpen());
   return open;
 }
 
 bool begin_menu(const char* label, const std::string& hint) {
   const bool is_open = ImGui::BeginMenu(label);
   // If the menu is open, the last item is the menu's own window.
-  if (!is_open) remember(label, hint, false);
+  if (!is_open) note_widget(label, hint, false);
   if (is_open && ImGui::IsWindowAppearing()) widget_states()[label].was_used = true;
   return is_open;
 }

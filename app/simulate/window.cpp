@@ -22,7 +22,7 @@ namespace osteomill::app {
 
 namespace {
 
-std::string last_complaint() {
+std::string last_glfw_error() {
   const char* text = nullptr;
   glfwGetError(&text);
   return text != nullptr ? text : "no reason given";
@@ -106,7 +106,7 @@ PixelSize fitting_size(const PixelSize& size, const std::optional<double>& ui_sc
 Window::Window(const std::string& title, const PixelSize& size, const std::optional<double>& ui_scale,
                const WindowPlace& place)
     : asked_scale_(ui_scale) {
-  if (glfwInit() == GLFW_FALSE) throw InputError("simulate", "cannot open a window: " + last_complaint());
+  if (glfwInit() == GLFW_FALSE) throw InputError("simulate", "cannot open a window: " + last_glfw_error());
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -118,7 +118,7 @@ Window::Window(const std::string& title, const PixelSize& size, const std::optio
   const PixelSize fitting = is_placed ? PixelSize{place.width, place.height} : fitting_size(size, ui_scale);
   window_ = glfwCreateWindow(fitting.width, fitting.height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
-    const std::string reason = last_complaint();
+    const std::string reason = last_glfw_error();
     glfwTerminate();
     throw InputError("simulate", "cannot open a window: " + reason);
   }
@@ -149,11 +149,11 @@ Window::~Window() {
   glfwTerminate();
 }
 
-void Window::ask_to_close() {
+void Window::request_close() {
   glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
-bool Window::take_close_asked() {
+bool Window::take_close_request() {
   const bool asked = glfwWindowShouldClose(window_) == GLFW_TRUE;
   glfwSetWindowShouldClose(window_, GLFW_FALSE);
   return asked;
@@ -192,7 +192,7 @@ void Window::toggle_full_screen() {
 
 // ImGui samples the keys once per frame. A key that goes down and up between two frames is down in this frame
 // and up in the next, with all later events, so that no key press is lost and the order is kept.
-void Window::hand_over_keys() {
+void Window::forward_keys() {
   std::vector<int> changed;
   const auto again = [&](const KeyEvent& event) {
     return std::find(changed.begin(), changed.end(), event.key) != changed.end();
@@ -204,7 +204,7 @@ void Window::hand_over_keys() {
   }
 }
 
-void Window::ask_theme(Theme theme) {
+void Window::request_theme(Theme theme) {
   if (theme != std::exchange(theme_, theme)) set_theme(theme, static_cast<float>(scale_));
 }
 
@@ -253,7 +253,7 @@ void Window::follow_pointer() {
 
 void Window::begin_frame() {
   glfwPollEvents();
-  hand_over_keys();
+  forward_keys();
   follow_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();

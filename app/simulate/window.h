@@ -28,9 +28,9 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   /// Requests closing, as the window's close button does.
-  void ask_to_close();
+  void request_close();
   /// Returns whether closing was requested since the last call.
-  bool take_close_asked();
+  bool take_close_request();
   void set_title(const std::string& title);
   /// Returns the size of the framebuffer.
   PixelSize size() const;
@@ -42,9 +42,9 @@ class Window {
   /// Returns the text scale of this frame, fixed by `begin_frame`: the requested one, limited by the size of
   /// the window.
   double ui_scale() const { return scale_; }
-  void ask_ui_scale(double scale) { asked_scale_ = scale; }
+  void request_ui_scale(double scale) { asked_scale_ = scale; }
   /// Sets the colours of the panels. Not between `begin_frame` and `end_frame`.
-  void ask_theme(Theme theme);
+  void request_theme(Theme theme);
 
   /// Returns the files and folders dropped onto the window since the last call.
   std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
@@ -72,7 +72,7 @@ class Window {
     int action;
     int mods;
   };
-  void hand_over_keys();
+  void forward_keys();
 
   void follow_scale();
   void follow_pointer();

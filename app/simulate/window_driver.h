@@ -23,7 +23,7 @@ struct WindowContents {
   const Playback* playback;
   const FilesPanel& files;
   const SpindleState& sound;
-  double pictures_per_s;
+  double frames_per_s;
   std::size_t triangles;
 };
 
@@ -37,14 +37,14 @@ class WindowDriver {
   virtual ~WindowDriver() = default;
 
   /// Returns whether to start while the first scan is still being opened.
-  virtual bool starts_before_scan() const = 0;
+  virtual bool is_started_before_scan() const = 0;
   /// Passes the input of the next frame to ImGui, `passed_s` after the last one. `is_settled` is true if
   /// nothing is being prepared, written or moved into place.
-  virtual void give_input(double passed_s, bool is_settled, Window& window) = 0;
+  virtual void inject_input(double passed_s, bool is_settled, Window& window) = 0;
   /// Inspects the window after ImGui has been drawn and before the frame is shown.
   virtual void read(const WindowContents& contents) = 0;
   /// Returns whether the window has to close without a question.
-  virtual bool wants_to_close() const = 0;
+  virtual bool has_close_request() const = 0;
   /// Called once, after the last frame.
   virtual void finish() = 0;
 };

@@ -162,14 +162,14 @@ class UdpRig final : public Rig {
                                    reinterpret_cast<sockaddr*>(&partner_), &length);
       if (size < static_cast<ssize_t>(sizeof(udp::Head))) return;
       if (datagram.head.kind == udp::Kind::wrench) felt_N_ = Vec3(datagram.force_N.data());
-      if (datagram.head.kind != udp::Kind::question) continue;
-      udp::Answer answer;
-      answer.head.kind = udp::Kind::answer;
-      std::strcpy(answer.name.data(), "rig");
-      answer.sensed = answer.driven = 6;
-      answer.max_force_N = 10;
-      answer.max_torque_Nmm = 200;
-      send(answer);
+      if (datagram.head.kind != udp::Kind::request) continue;
+      udp::Reply reply;
+      reply.head.kind = udp::Kind::reply;
+      std::strcpy(reply.name.data(), "rig");
+      reply.sensed = reply.driven = 6;
+      reply.max_force_N = 10;
+      reply.max_torque_Nmm = 200;
+      send(reply);
     }
   }
   template <typename Datagram>
@@ -209,7 +209,7 @@ class Gate : public ::testing::TestWithParam<Case> {
   }
   // Some devices have their own threads and may be slow.
   template <typename Condition>
-  bool comes_true(const Condition& condition) {
+  bool becomes_true_in_time(const Condition& condition) {
     for (int n = 0; n < 3000 && !condition(); ++n) tick();
     return condition();
   }
@@ -223,7 +223,7 @@ class Gate : public ::testing::TestWithParam<Case> {
   void press_until_it_is_felt() {
     const auto felt = [&] { return rig_->felt_N().norm() > 1; };
     for (int n = 0; n < 250 && !felt(); ++n) move_to(z_mm_ - 0.02, 0.02);
-    EXPECT_TRUE(comes_true(felt));
+    EXPECT_TRUE(becomes_true_in_time(felt));
   }
   // Expects no force in bone and on the way out, and contact forces after that.
   void expect_contact_only_from_outside() {
@@ -269,7 +269,7 @@ TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
   if (std::get<0>(GetParam()) == "dhd_watchdog") GTEST_SKIP() << "it opens by itself before the hand sinks";
   rig_->set_gate(false);
   device_.put_at({{0, 0, 3}, Quat::Identity()});
-  ASSERT_TRUE(comes_true([&] { return is_finite(record_.X_WD); }));
+  ASSERT_TRUE(becomes_true_in_time([&] { return is_finite(record_.X_WD); }));
   for (const double depth_mm : {0.5, -2.0}) {
     rig_->set_gate(false);
     move_to(depth_mm, 0.05);
@@ -277,7 +277,7 @@ TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
     max_N_ = 0;
     removed_mm3_ = record_.removed_mm3;
     rig_->set_gate(true);
-    ASSERT_TRUE(comes_true([&] { return record_.driven; }));
+    ASSERT_TRUE(becomes_true_in_time([&] { return record_.driven; }));
     expect_contact_only_from_outside();
     move_to(kFree_mm, 0.05);
     for (int n = 0; n < 50; ++n) tick();
@@ -287,17 +287,17 @@ TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
 // Happens when the force button is pressed twice, or the watchdog triggers.
 TEST_P(Gate, ClosesWhileItPressesAndTheHandSinks) {
   rig_->set_gate(true);
-  ASSERT_TRUE(comes_true([&] { return is_finite(record_.X_WD) && record_.driven; }));
+  ASSERT_TRUE(becomes_true_in_time([&] { return is_finite(record_.X_WD) && record_.driven; }));
   press_until_it_is_felt();
   rig_->set_gate(false);
-  ASSERT_TRUE(comes_true([&] { return !record_.driven; }));
+  ASSERT_TRUE(becomes_true_in_time([&] { return !record_.driven; }));
   // The wrench ramps down in five exchanges.
-  ASSERT_TRUE(comes_true([&] { return rig_->felt_N().isZero(0); }));
+  ASSERT_TRUE(becomes_true_in_time([&] { return rig_->felt_N().isZero(0); }));
   max_N_ = 0;
   removed_mm3_ = record_.removed_mm3;
   move_to(-1, 0.05);
   rig_->set_gate(true);
-  ASSERT_TRUE(comes_true([&] { return record_.driven; }));
+  ASSERT_TRUE(becomes_true_in_time([&] { return record_.driven; }));
   expect_contact_only_from_outside();
 }
 

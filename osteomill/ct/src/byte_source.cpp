@@ -49,11 +49,11 @@ std::uint64_t ByteSource::max_bytes() const {
   return is_packed() ? kMaxRatio * in_file_ : in_file_ - std::min(in_file_, used_);
 }
 
-std::uint64_t ByteSource::bytes_used() const {
+std::uint64_t ByteSource::compressed_bytes_read() const {
   return used_ - (is_packed() ? stream_->avail_in : 0);
 }
 
-std::uint64_t ByteSource::bytes_to_come() {
+std::uint64_t ByteSource::count_remaining_bytes() {
   if (!is_packed()) return max_bytes();
   const std::streamoff start = in_.tellg();
   std::vector<char> block(1 << 18);
@@ -121,7 +121,7 @@ std::ifstream open_regular_file(const std::string& subject, const fs::path& file
   if (!fs::is_regular_file(file, error)) throw InputError(subject, name + "is not a regular file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(subject, name + "cannot be read");
-  note_input(file);
+  register_input(file);
   return in;
 }
 

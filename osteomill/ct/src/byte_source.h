@@ -31,15 +31,15 @@ class ByteSource {
   /// Returns the number of bytes of the file from the source's start on, still compressed.
   std::uint64_t bytes_in_file() const { return in_file_; }
   /// Returns the number of bytes of the file read so far, still compressed.
-  std::uint64_t bytes_used() const;
+  std::uint64_t compressed_bytes_read() const;
   /// Returns an upper bound on the bytes still to be read; for a compressed file, by the maximum compression
   /// ratio.
   std::uint64_t max_bytes() const;
   /// Returns the exact number of bytes still to be read. Decompresses a compressed file once, of which
   /// nothing may have been read before.
-  std::uint64_t bytes_to_come();
+  std::uint64_t count_remaining_bytes();
   /// Returns whether the compressed data were read to their end and their checksums match.
-  bool ended_well() const { return ended_; }
+  bool has_ended_intact() const { return ended_; }
 
  private:
   struct EndInflate {

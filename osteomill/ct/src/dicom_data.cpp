@@ -49,11 +49,11 @@ constexpr Uint32 kMaxValueBytes = 1024;
 // Maximum size of a file without its pixels, bytes.
 constexpr std::uint64_t kMaxHeadBytes = 1 << 26;
 
-thread_local bool jpeg_complained = false;
+thread_local bool jpeg_error_found = false;
 
-class ComplaintAppender : public dcmtk::log4cplus::Appender {
+class JpegErrorAppender : public dcmtk::log4cplus::Appender {
  public:
-  ~ComplaintAppender() override { destructorImpl(); }
+  ~JpegErrorAppender() override { destructorImpl(); }
   void close() override { closed = true; }
 
  protected:
@@ -61,7 +61,7 @@ class ComplaintAppender : public dcmtk::log4cplus::Appender {
     const std::string text = event.getMessage().c_str();
     if (text.find("Corrupt JPEG data") != std::string::npos ||
         text.find("Premature end") != std::string::npos)
-      jpeg_complained = true;
+      jpeg_error_found = true;
   }
 };
 
@@ -72,7 +72,7 @@ void set_up_dcmtk() {
     OFLogger jpeg = OFLog::getLogger("dcmtk.dcmjpeg");
     jpeg.setLogLevel(OFLogger::WARN_LOG_LEVEL);
     jpeg.setAdditivity(false);
-    jpeg.addAppender(dcmtk::log4cplus::SharedAppenderPtr(new ComplaintAppender));
+    jpeg.addAppender(dcmtk::log4cplus::SharedAppenderPtr(new JpegErrorAppender));
     DJDecoderRegistration::registerCodecs();
     DJLSDecoderRegistration::registerCodecs();
     // Files may state one uncompressed syntax and use another.
@@ -284,7 +284,7 @@ void check_bounds(const fs::path& path, const MetaGroup& meta) {
   const std::uint64_t max_bytes = deflated ? kMaxInflation * source.bytes_in_file() : end_of_data(path);
   std::uint64_t bytes = 0;
   const std::uint64_t items = count_items(source, bytes, max_bytes);
-  if (deflated && (!source.ended_well() || bytes > max_bytes)) {
+  if (deflated && (!source.has_ended_intact() || bytes > max_bytes)) {
     throw InputError(subject, "is cut short or damaged: its deflated data do not inflate");
   }
   if (items > kMaxItems) throw InputError(subject, "is damaged: it has more sequence items than any scan");
@@ -292,8 +292,8 @@ void check_bounds(const fs::path& path, const MetaGroup& meta) {
 
 }  // namespace
 
-bool take_jpeg_complaint() {
-  return std::exchange(jpeg_complained, false);
+bool take_jpeg_error() {
+  return std::exchange(jpeg_error_found, false);
 }
 
 std::optional<DicomData> load_dicom(const fs::path& path, std::uint64_t max_bytes) {

@@ -32,6 +32,6 @@ void with_dicom_stack(const std::function<void()>& work);
 
 /// Returns whether a JPEG decoder has found damaged data in this thread since the last call. (Decoders
 /// continue with damaged data and report it only in DCMTK's log.)
-bool take_jpeg_complaint();
+bool take_jpeg_error();
 
 }  // namespace osteomill

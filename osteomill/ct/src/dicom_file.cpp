@@ -96,7 +96,7 @@ std::array<int, 3> decimals_of(std::string_view text) {
     const std::size_t point = digits.find('.');
     if (point != std::string_view::npos) of = static_cast<int>(trimmed(digits.substr(point + 1)).size());
     if (power != std::string_view::npos)
-      of -= parsed_number<int>(trimmed(number.substr(power + 1))).value_or(0);
+      of -= parse_number<int>(trimmed(number.substr(power + 1))).value_or(0);
     of = std::clamp(of, 0, 16);
   }
   return decimals;
@@ -194,7 +194,7 @@ std::optional<std::vector<double>> FileReader::frame_numbers(std::size_t frame, 
 
 std::string FileReader::frame_text(std::size_t frame, const DcmTagKey& group, const DcmTagKey& tag) const {
   for (DcmItem* place : groups_of(frame, group)) {
-    if (std::string text = shown_text(*place, tag); !text.empty()) return text;
+    if (std::string text = display_text(*place, tag); !text.empty()) return text;
   }
   return {};
 }
@@ -222,7 +222,7 @@ std::string FileReader::no_slice() const {
 // Returns the lowest `bits_allocated` bits of an element's number, so that it does not matter whether the
 // file declares it signed.
 std::optional<std::uint32_t> word_of(DcmItem& data, const DcmTagKey& tag, int bits_allocated) {
-  const auto value = parsed_number<long long>(text_of(data, tag));
+  const auto value = parse_number<long long>(text_of(data, tag));
   if (!value) return std::nullopt;
   return static_cast<std::uint32_t>(*value) & 0xFFFFFFFFU >> (32 - bits_allocated);
 }
@@ -243,7 +243,7 @@ std::optional<Padding> FileReader::padding_of(const StoredPixels& pixels) const 
   if (pixels.is_float) {
     const bool is_double = pixels.bits_allocated == 64;
     const auto number = [&](const DcmTagKey& of_float, const DcmTagKey& of_double) {
-      return parsed_number<double>(text_of(data_, is_double ? of_double : of_float));
+      return parse_number<double>(text_of(data_, is_double ? of_double : of_float));
     };
     const auto value = number(DCM_FloatPixelPaddingValue, DCM_DoubleFloatPixelPaddingValue);
     if (!value) return std::nullopt;
@@ -288,7 +288,7 @@ std::array<std::uint8_t, 3> colour_of(const std::array<double, 3>& lab) {
 std::vector<LabelName> segments_of(DcmItem& data) {
   std::vector<LabelName> segments;
   for (DcmItem* item : items_of(data, DCM_SegmentSequence)) {
-    LabelName segment{short_of(*item, DCM_SegmentNumber).value_or(0), shown_text(*item, DCM_SegmentLabel)};
+    LabelName segment{short_of(*item, DCM_SegmentNumber).value_or(0), display_text(*item, DCM_SegmentLabel)};
     std::array<double, 3> lab{};
     bool has_colour = true;
     for (unsigned long n = 0; n < 3; ++n) {
@@ -370,7 +370,7 @@ SlicePlane FileReader::plane_of(std::size_t frame) const {
   if (!offsets_mm_.empty())
     plane.position_mm += plane.i_direction.cross(plane.j_direction) * offsets_mm_[frame];
   plane.decimals = decimals_of(frame_text(frame, DCM_PlanePositionSequence, DCM_ImagePositionPatient));
-  if (header_.frames == 1) plane.number = parsed_number<int>(text_of(data_, DCM_InstanceNumber));
+  if (header_.frames == 1) plane.number = parse_number<int>(text_of(data_, DCM_InstanceNumber));
   return plane;
 }
 
@@ -501,10 +501,10 @@ std::vector<fs::path> listed_files(DcmDataset& data) {
 void describe(DcmDataset& data, DicomHeader& header) {
   header.is_compressed = DcmXfer(header.syntax.c_str()).isEncapsulated();
   header.pixel_bytes = bytes_of_pixels(data, header.is_compressed);
-  header.series_uid = shown_text(data, DCM_SeriesInstanceUID);
-  header.series_description = shown_text(data, DCM_SeriesDescription);
-  header.modality = shown_text(data, DCM_Modality);
-  header.photometric = shown_text(data, DCM_PhotometricInterpretation);
+  header.series_uid = display_text(data, DCM_SeriesInstanceUID);
+  header.series_description = display_text(data, DCM_SeriesDescription);
+  header.modality = display_text(data, DCM_Modality);
+  header.photometric = display_text(data, DCM_PhotometricInterpretation);
   header.columns = short_of(data, DCM_Columns).value_or(0);
   header.rows = short_of(data, DCM_Rows).value_or(0);
   header.listed_files = listed_files(data);

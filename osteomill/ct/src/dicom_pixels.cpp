@@ -69,7 +69,7 @@ class FrameReader {
   // header is not.
   StoredPixels form(std::size_t frame);
   // Returns whether that changed any value.
-  bool was_signed_after_all() const { return signed_after_all_; }
+  bool has_sign_mismatch() const { return has_sign_mismatch_; }
 
  private:
   InputError fault(const std::string& reason) const { return {header_.file.string(), reason}; }
@@ -95,7 +95,7 @@ class FrameReader {
   // Size is even, as DCMTK requires.
   std::vector<char> values_;
   bool stream_is_signed_ = false;
-  bool signed_after_all_ = false;
+  bool has_sign_mismatch_ = false;
 };
 
 FrameReader::FrameReader(const DicomHeader& header)
@@ -149,14 +149,14 @@ void FrameReader::read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCach
   const OFCondition read =
       pixels->getUncompressedFrame(&data, static_cast<Uint32>(frame), fragment, values_.data(),
                                    static_cast<Uint32>(values_.size()), colours, cache);
-  const bool is_damaged = take_jpeg_complaint();
+  const bool is_damaged = take_jpeg_error();
   if (read.bad() || is_damaged) throw damaged();
 }
 
 // Decodes in a separate data set that contains nothing else, so that a wrong offset table does no harm.
 void FrameReader::decode_jpeg(std::span<const unsigned char> stream) {
   const bool is_jpeg_ls = syntax_ == EXS_JPEGLSLossless || syntax_ == EXS_JPEGLSLossy;
-  if (!jpeg_fits(stream, is_jpeg_ls ? JpegKind::jpeg_ls : JpegKind::jpeg, size_))
+  if (!is_valid_jpeg(stream, is_jpeg_ls ? JpegKind::jpeg_ls : JpegKind::jpeg, size_))
     throw fault("is damaged: its compressed pixels do not match its header");
   DcmDataset alone;
   for (const DcmTagKey& tag : {DCM_SamplesPerPixel, DCM_PhotometricInterpretation, DCM_Rows, DCM_Columns,
@@ -250,7 +250,7 @@ StoredPixels FrameReader::form(std::size_t frame) {
   // The decoder has sign-extended the values.
   const auto value_bytes = static_cast<std::size_t>(size_.bytes_a_value);
   for (std::size_t n = value_bytes - 1; n < size_.bytes(); n += value_bytes)
-    signed_after_all_ = signed_after_all_ || values_[n] < 0;
+    has_sign_mismatch_ = has_sign_mismatch_ || values_[n] < 0;
   pixels.is_signed = true;
   pixels.bits_stored = pixels.bits_allocated;
   return pixels;
@@ -267,7 +267,7 @@ bool read_dicom_densities(const DicomHeader& header,
     const std::span<const char> values = reader.read(frame);
     rescale_frame(values, reader.form(frame), densities);
   }
-  return reader.was_signed_after_all();
+  return reader.has_sign_mismatch();
 }
 
 }  // namespace osteomill

@@ -79,7 +79,7 @@ struct DicomPart {
   // Number shown to users: 3, or 3.1 if the series has several parts.
   std::string number;
   // See SeriesPart.
-  std::string told_by;
+  std::string distinguishing_marks;
   std::vector<SliceOf> slices;
 
   // Returns the planes of the slices. Throws the first fault among the series' files.
@@ -213,7 +213,7 @@ std::string counted(std::size_t count, const std::string& noun) {
 }
 
 // Excludes pictures of a series that are not slices, unless it has no others.
-void set_aside_pictures(DicomSeries& series) {
+void exclude_pictures(DicomSeries& series) {
   const auto first = std::stable_partition(
       series.headers.begin(), series.headers.end(),
       [](const DicomHeader& header) { return header.no_slice.empty() || !header.fault; });
@@ -225,7 +225,7 @@ void set_aside_pictures(DicomSeries& series) {
 
 // Excludes single slices that fit no others, unless there are at least as many as the largest part has
 // slices.
-void set_aside_slices(DicomSeries& series, std::vector<DicomPart>& parts) {
+void exclude_slices(DicomSeries& series, std::vector<DicomPart>& parts) {
   const auto largest = std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
     return a.slices.size() < b.slices.size();
   });
@@ -237,25 +237,26 @@ void set_aside_slices(DicomSeries& series, std::vector<DicomPart>& parts) {
     if (!is_single(part)) continue;
     const SlicePlane& plane = series[part.slices.front()].plane;
     const char* const difference = difference_of(usual, plane);
-    series.left_out.push_back(difference != nullptr ? fmt::format("{}, of another {}", plane.name, difference)
-                                                    : fmt::format("{}, {}", plane.name, part.told_by));
+    series.left_out.push_back(difference != nullptr
+                                  ? fmt::format("{}, of another {}", plane.name, difference)
+                                  : fmt::format("{}, {}", plane.name, part.distinguishing_marks));
   }
   std::erase_if(parts, is_single);
 }
 
 // Returns the choices in a series: all of it or, if that is not one volume, its parts.
 std::vector<DicomPart> parts_of(DicomSeries& series, std::size_t number) {
-  set_aside_pictures(series);
+  exclude_pictures(series);
   const DicomPart whole{&series, fmt::format("{}", number), "", series.slices()};
   if (series.has_fault() || whole.slices.empty()) return {whole};
   std::vector<SliceMarks> marks;
   for (const SliceOf& slice : whole.slices) marks.push_back(series[slice].marks);
   std::vector<DicomPart> parts;
-  for (const SeriesPart& found : part_series(whole.planes(), marks, whole.same_pixels())) {
-    DicomPart& part = parts.emplace_back(DicomPart{&series, whole.number, found.told_by, {}});
+  for (const SeriesPart& found : split_series(whole.planes(), marks, whole.same_pixels())) {
+    DicomPart& part = parts.emplace_back(DicomPart{&series, whole.number, found.distinguishing_marks, {}});
     for (const std::size_t n : found.slices) part.slices.push_back(whole.slices[n]);
   }
-  set_aside_slices(series, parts);
+  exclude_slices(series, parts);
   if (std::any_of(parts.begin(), parts.end(), [](const DicomPart& part) { return part.slices.size() < 2; }))
     return {whole};
   for (std::size_t n = 0; n < parts.size() && parts.size() > 1; ++n)
@@ -268,7 +269,7 @@ SeriesSummary summary_of(const DicomPart& part) {
   SeriesSummary summary{part.number,
                         first.modality,
                         in_one_line(first.series_description),
-                        part.told_by,
+                        part.distinguishing_marks,
                         part.slices.size(),
                         first.columns,
                         first.rows,
@@ -286,8 +287,9 @@ SeriesSummary summary_of(const DicomPart& part) {
 std::string describe(const DicomPart& part) {
   const DicomHeader& first = part.series->headers[part.slices.empty() ? 0 : part.slices.front().header];
   return fmt::format("{}: {} \"{}\", {}{}{}, from {}, {}", part.number, first.modality,
-                     first.series_description, part.told_by, part.told_by.empty() ? "" : ", ",
-                     size_and_spacing(part), first.file.filename().string(), in_one_line(part.series->uid));
+                     first.series_description, part.distinguishing_marks,
+                     part.distinguishing_marks.empty() ? "" : ", ", size_and_spacing(part),
+                     first.file.filename().string(), in_one_line(part.series->uid));
 }
 
 // Returns the part with the most pixels; prefers CT to other modalities and, within a series, parts that form
@@ -370,15 +372,15 @@ std::vector<float> read_densities(const DicomPart& part, const SliceStack& stack
     places[slice.header][slice.frame] = &densities[k * slice_size];
   }
   std::size_t read = 0;
-  bool signed_after_all = false;
+  bool has_sign_mismatch = false;
   for (std::size_t n = 0; n < headers.size(); ++n) {
-    signed_after_all |= read_dicom_densities(headers[n], [&](std::size_t frame) {
+    has_sign_mismatch |= read_dicom_densities(headers[n], [&](std::size_t frame) {
       if (places[n][frame] != nullptr) WorkProgress::done(read++, stack.order.size());
       return places[n][frame];
     });
     headers[n].data.reset();
   }
-  if (signed_after_all) {
+  if (has_sign_mismatch) {
     warnings.push_back(
         "its compressed pixels are signed but its header says unsigned: they were read as signed");
   }
@@ -456,7 +458,7 @@ Scan build_scan(const std::string& subject, const DicomPart& part, std::vector<D
   check_densities(subject, densities);
   if (in_hounsfield_units) check_hounsfield_units(densities, warnings);
   check_numbers(part, stack, warnings);
-  even_out_slices(stack, densities);
+  resample_to_even_slices(stack, densities);
   correct_gantry_tilt(subject, stack, densities);
   warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
   return {DensityGrid(stack.geometry, std::move(densities)), subject, "DICOM", std::move(warnings),
@@ -473,13 +475,15 @@ void add_choice(const DicomPart& picked, const std::vector<DicomPart>& all, std:
   std::string others;
   for (const DicomPart& part : all) {
     if (part.series == picked.series && part.number != picked.number)
-      others += fmt::format("{}{} ({})", others.empty() ? "" : ", ", part.number,
-                            part.told_by.empty() ? size_and_spacing(part) : part.told_by);
+      others +=
+          fmt::format("{}{} ({})", others.empty() ? "" : ", ", part.number,
+                      part.distinguishing_marks.empty() ? size_and_spacing(part) : part.distinguishing_marks);
   }
   if (!others.empty() && wanted != picked.number) {
-    warnings.push_back(fmt::format(
-        "a series holds several volumes; {} was read{}{}{}, choose with --series: {}", picked.number,
-        picked.told_by.empty() ? "" : " (", picked.told_by, picked.told_by.empty() ? "" : ")", others));
+    warnings.push_back(
+        fmt::format("a series holds several volumes; {} was read{}{}{}, choose with --series: {}",
+                    picked.number, picked.distinguishing_marks.empty() ? "" : " (",
+                    picked.distinguishing_marks, picked.distinguishing_marks.empty() ? "" : ")", others));
   }
 }
 

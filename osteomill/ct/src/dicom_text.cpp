@@ -118,7 +118,7 @@ std::string decoded(const std::string& text, const std::string& sets) {
 
 }  // namespace
 
-std::string shown_text(DcmItem& data, const DcmTagKey& tag) {
+std::string display_text(DcmItem& data, const DcmTagKey& tag) {
   OFString text, sets;
   if (data.findAndGetOFStringArray(tag, text).bad()) return {};
   data.findAndGetOFStringArray(DCM_SpecificCharacterSet, sets);

@@ -153,7 +153,7 @@ bool is_signed_jpeg2000(Bytes bytes) {
   return bytes.end() - start > kPrecision && (start[kPrecision] & 0x80) != 0;
 }
 
-bool jpeg_fits(Bytes bytes, JpegKind kind, const FrameSize& size) {
+bool is_valid_jpeg(Bytes bytes, JpegKind kind, const FrameSize& size) {
   const auto number = [&](std::size_t n) { return bytes[n] << 8 | bytes[n + 1]; };
   if (bytes.size() < 2 || number(0) != 0xFFD8) return false;
   std::size_t here = 2;

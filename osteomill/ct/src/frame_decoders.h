@@ -28,6 +28,6 @@ enum class JpegKind { jpeg, jpeg_ls };
 /// Returns whether a stream is of this kind and has only well-formed segments before a grey image of this
 /// size, with no more bits than `size` allows. DCMTK does not check this: it hangs on data that are not a
 /// segment and on an image of the other kind.
-bool jpeg_fits(std::span<const unsigned char> stream, JpegKind kind, const FrameSize& size);
+bool is_valid_jpeg(std::span<const unsigned char> stream, JpegKind kind, const FrameSize& size);
 
 }  // namespace osteomill

@@ -120,30 +120,30 @@ TEST(FrameDecoders, AJpegHeaderOfAnotherSizeDoesNotFit) {
   // SOI, a comment, SOF3 (lossless): 16 bits, 5 rows, 7 columns, one component.
   const Bytes jpeg{0xFF, 0xD8, 0xFF, 0xFE, 0x00, 0x04, 0x20, 0x20, 0xFF, 0xC3, 0x00,
                    0x0B, 0x10, 0x00, 0x05, 0x00, 0x07, 0x01, 0x01, 0x11, 0x00};
-  EXPECT_TRUE(jpeg_fits(jpeg, JpegKind::jpeg, kSize));
-  EXPECT_FALSE(jpeg_fits(jpeg, JpegKind::jpeg, {.columns = 5, .rows = 7, .bytes_a_value = 2}));
-  EXPECT_FALSE(jpeg_fits(jpeg, JpegKind::jpeg, {.columns = 7, .rows = 5, .bytes_a_value = 1}));
+  EXPECT_TRUE(is_valid_jpeg(jpeg, JpegKind::jpeg, kSize));
+  EXPECT_FALSE(is_valid_jpeg(jpeg, JpegKind::jpeg, {.columns = 5, .rows = 7, .bytes_a_value = 2}));
+  EXPECT_FALSE(is_valid_jpeg(jpeg, JpegKind::jpeg, {.columns = 7, .rows = 5, .bytes_a_value = 1}));
   Bytes colour = jpeg;
   colour[17] = 3;
-  EXPECT_FALSE(jpeg_fits(colour, JpegKind::jpeg, kSize));
+  EXPECT_FALSE(is_valid_jpeg(colour, JpegKind::jpeg, kSize));
   for (std::size_t length = 2; length < 18; ++length) {
-    EXPECT_FALSE(jpeg_fits(std::span(jpeg).first(length), JpegKind::jpeg, kSize)) << length;
+    EXPECT_FALSE(is_valid_jpeg(std::span(jpeg).first(length), JpegKind::jpeg, kSize)) << length;
   }
-  EXPECT_FALSE(jpeg_fits(Bytes{1, 2, 3}, JpegKind::jpeg, kSize)) << "not JPEG";
+  EXPECT_FALSE(is_valid_jpeg(Bytes{1, 2, 3}, JpegKind::jpeg, kSize)) << "not JPEG";
   Bytes no_start = jpeg;
   no_start[1] = 0x01;
-  EXPECT_FALSE(jpeg_fits(no_start, JpegKind::jpeg, kSize));
+  EXPECT_FALSE(is_valid_jpeg(no_start, JpegKind::jpeg, kSize));
   for (const unsigned char lone : Bytes{0x01, 0x02, 0xD0, 0xD8, 0xD9}) {
     Bytes other = jpeg;
     other[3] = lone;
-    EXPECT_FALSE(jpeg_fits(other, JpegKind::jpeg, kSize)) << "a marker that begins no segment";
+    EXPECT_FALSE(is_valid_jpeg(other, JpegKind::jpeg, kSize)) << "a marker that begins no segment";
   }
   // DCMTK would search endlessly after an image of the other kind.
-  EXPECT_FALSE(jpeg_fits(jpeg, JpegKind::jpeg_ls, kSize));
+  EXPECT_FALSE(is_valid_jpeg(jpeg, JpegKind::jpeg_ls, kSize));
   Bytes jpeg_ls = jpeg;
   jpeg_ls[9] = 0xF7;
-  EXPECT_TRUE(jpeg_fits(jpeg_ls, JpegKind::jpeg_ls, kSize));
-  EXPECT_FALSE(jpeg_fits(jpeg_ls, JpegKind::jpeg, kSize));
+  EXPECT_TRUE(is_valid_jpeg(jpeg_ls, JpegKind::jpeg_ls, kSize));
+  EXPECT_FALSE(is_valid_jpeg(jpeg_ls, JpegKind::jpeg, kSize));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ inline std::optional<std::vector<double>> parse_numbers(std::string_view text,
     const std::size_t length = std::min(text.find_first_of(separators), text.size());
     std::string_view piece = text.substr(0, length);
     if (piece.front() == '+') piece.remove_prefix(1);
-    const auto number = parsed_number<double>(piece);
+    const auto number = parse_number<double>(piece);
     if (!number) return std::nullopt;
     numbers.push_back(*number);
     text.remove_prefix(length);

@@ -224,7 +224,7 @@ std::string fault_of(const Placement& placement, const Vec3& spacing) {
     return "holds values that are not finite";
   if (!((placement.steps.colwise().norm().array() > 0).all())) return "has an axis of zero length";
   if (!has_sizes_of(placement, spacing)) return "contradicts the voxel sizes in pixdim";
-  if (most_skew(placement.steps) > kNoShear) return "is sheared";
+  if (max_skew(placement.steps) > kNoShear) return "is sheared";
   return "";
 }
 

@@ -67,7 +67,7 @@ NameParts parts_of(const fs::path& path) {
       parts.texts.back() += *letter++;
       continue;
     }
-    parts.numbers.push_back(parsed_number<double>(std::string(letter, end)).value_or(0));
+    parts.numbers.push_back(parse_number<double>(std::string(letter, end)).value_or(0));
     parts.texts.emplace_back();
     letter = end;
   }

@@ -169,8 +169,8 @@ struct OwnLabels {
 };
 
 // Resamples labels to the grid of a scan. Errors and warnings name `subject`.
-LabelsRead put_on(const GridGeometry& scan, const std::string& subject, OwnLabels own,
-                  const LabelFiles& files) {
+LabelsRead resample_labels(const GridGeometry& scan, const std::string& subject, OwnLabels own,
+                           const LabelFiles& files) {
   if (!files.table.empty()) {
     LabelTable given = read_label_table(files.table);
     given.merge(own.table);
@@ -207,7 +207,7 @@ LabelsRead read_segmentation_labels(const LabelFiles& files, const GridGeometry&
         subject,
         "is not a label map: neither a DICOM segmentation nor a NRRD, MetaImage or NIfTI file by its name");
   const Scan& own = *found;
-  LabelsRead read = put_on(
+  LabelsRead read = resample_labels(
       scan, subject, {own.grid.geometry(), every_nth_density(own.grid, 1), table_of(own.labels)}, files);
   for (const std::string& warning : own.warnings) read.warnings.push_back(subject + ": " + warning);
   return read;
@@ -216,8 +216,9 @@ LabelsRead read_segmentation_labels(const LabelFiles& files, const GridGeometry&
 }  // namespace
 
 LabelsRead labels_in(const Scan& scan, const LabelFiles& files) {
-  return put_on(scan.grid.geometry(), scan.name,
-                {scan.grid.geometry(), every_nth_density(scan.grid, 1), table_of(scan.labels)}, files);
+  return resample_labels(scan.grid.geometry(), scan.name,
+                         {scan.grid.geometry(), every_nth_density(scan.grid, 1), table_of(scan.labels)},
+                         files);
 }
 
 bool is_label_file(const fs::path& path) {
@@ -233,8 +234,8 @@ LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan, std::u
     if (format == nullptr) return read_segmentation_labels(files, scan, max_memory_bytes);
     VolumeHeader header = format->read_header(files.map);
     std::vector<float> values = read_volume(subject, header, max_memory_bytes);
-    LabelsRead read =
-        put_on(scan, subject, {header.geometry, std::move(values), label_table_of(subject, header)}, files);
+    LabelsRead read = resample_labels(
+        scan, subject, {header.geometry, std::move(values), label_table_of(subject, header)}, files);
     for (const std::string& warning : header.warnings) read.warnings.push_back(subject + ": " + warning);
     return read;
   } catch (const std::bad_alloc&) {

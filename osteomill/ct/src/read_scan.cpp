@@ -115,7 +115,7 @@ bool is_zip(const fs::path& file) {
 // Unpacks a zip archive into `folder`, keeping names. Throws InputError, naming the archive, if it is damaged
 // or encrypted, if a name leads out of the folder, or if its actual unpacked size exceeds `max_bytes`.
 void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t max_bytes) {
-  note_input(archive);
+  register_input(archive);
   try {
     ZipReader(archive, max_bytes).unpack_into(folder);
   } catch (const fs::filesystem_error& error) {

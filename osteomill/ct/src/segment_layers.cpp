@@ -32,7 +32,7 @@ std::vector<Segment> segments_of(const std::map<std::string, std::string>& key_v
   for (const int n : segment_numbers(key_values)) {
     const auto number = [&](const char* what) -> std::optional<int> {
       const auto found = key_values.find(fmt::format("Segment{}_{}", n, what));
-      return found == key_values.end() ? std::nullopt : parsed_number<int>(found->second);
+      return found == key_values.end() ? std::nullopt : parse_number<int>(found->second);
     };
     const auto value = number("LabelValue");
     if (!value) continue;
@@ -89,7 +89,7 @@ std::set<int> segment_numbers(const std::map<std::string, std::string>& key_valu
   for (auto pair = key_values.lower_bound(std::string(kHead));
        pair != key_values.end() && pair->first.starts_with(kHead); ++pair) {
     const std::string_view key = std::string_view(pair->first).substr(kHead.size());
-    const auto number = parsed_number<int>(key.substr(0, key.find('_')));
+    const auto number = parse_number<int>(key.substr(0, key.find('_')));
     if (number && *number >= 0) numbers.insert(*number);
   }
   return numbers;

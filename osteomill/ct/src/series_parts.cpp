@@ -33,8 +33,8 @@ void add(Group& to, const Group& other) {
   std::inplace_merge(to.heights_mm.begin(), to.heights_mm.begin() + middle, to.heights_mm.end());
 }
 
-bool share_a_place(const Group& a, const Group& b) {
-  if (a.heights_mm.size() < b.heights_mm.size()) return share_a_place(b, a);
+bool have_common_position(const Group& a, const Group& b) {
+  if (a.heights_mm.size() < b.heights_mm.size()) return have_common_position(b, a);
   return std::any_of(b.heights_mm.begin(), b.heights_mm.end(), [&](double height_mm) {
     const auto near = std::upper_bound(a.heights_mm.begin(), a.heights_mm.end(), height_mm - kSamePlace_mm);
     return near != a.heights_mm.end() && *near < height_mm + kSamePlace_mm;
@@ -51,16 +51,16 @@ bool overlap(const Group& a, const Group& b, std::size_t least_slices) {
 bool is_less(const std::string& a, const std::string& b) {
   const auto place = [](const std::string& text) {
     return std::pair(text.starts_with("DERIVED"),
-                     parsed_number<double>(text).value_or(-std::numeric_limits<double>::infinity()));
+                     parse_number<double>(text).value_or(-std::numeric_limits<double>::infinity()));
   };
   return std::pair(place(a), a) < std::pair(place(b), b);
 }
 
 // Splits one series into parts.
-class Parting {
+class SeriesSplitter {
  public:
-  Parting(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
-          const SamePixels& same_pixels)
+  SeriesSplitter(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
+                 const SamePixels& same_pixels)
       : slices_(slices), marks_(marks), same_pixels_(same_pixels) {}
 
   std::vector<SeriesPart> parts() const;
@@ -92,7 +92,7 @@ class Parting {
   const SamePixels& same_pixels_;
 };
 
-std::vector<Numbers> Parting::by_shape() const {
+std::vector<Numbers> SeriesSplitter::by_shape() const {
   std::vector<Numbers> shapes;
   for (std::size_t n = 0; n < slices_.size(); ++n) {
     const auto shape = std::find_if(shapes.begin(), shapes.end(), [&](const Numbers& of) {
@@ -103,7 +103,7 @@ std::vector<Numbers> Parting::by_shape() const {
   return shapes;
 }
 
-std::optional<SliceStack> Parting::stacked(const Numbers& slices, bool by_number) const {
+std::optional<SliceStack> SeriesSplitter::stacked(const Numbers& slices, bool by_number) const {
   std::vector<SlicePlane> planes;
   for (const std::size_t n : slices) {
     planes.push_back(slices_[n]);
@@ -117,7 +117,7 @@ std::optional<SliceStack> Parting::stacked(const Numbers& slices, bool by_number
   }
 }
 
-std::size_t Parting::least_group(const Numbers& slices, std::span<const Group> values) const {
+std::size_t SeriesSplitter::least_group(const Numbers& slices, std::span<const Group> values) const {
   const auto is_single = [](const Group& group) { return group.slices.size() == 1; };
   if (std::none_of(values.begin(), values.end(), is_single) ||
       std::all_of(values.begin(), values.end(), is_single))
@@ -126,7 +126,7 @@ std::size_t Parting::least_group(const Numbers& slices, std::span<const Group> v
   return stack && !stack->heights_mm.empty() ? 1 : 2;
 }
 
-std::vector<Group> Parting::by_value(const Numbers& slices, std::size_t mark) const {
+std::vector<Group> SeriesSplitter::by_value(const Numbers& slices, std::size_t mark) const {
   Numbers sorted = slices;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](std::size_t a, std::size_t b) { return is_less(marks_[a][mark], marks_[b][mark]); });
@@ -170,15 +170,15 @@ bool any_collide(std::vector<Group> groups, const auto& collide) {
   return false;
 }
 
-std::vector<Group> Parting::by_mark(const Numbers& slices, std::size_t mark) const {
+std::vector<Group> SeriesSplitter::by_mark(const Numbers& slices, std::size_t mark) const {
   const MarkKind& kind = kMarkKinds[mark];
   const std::vector<Group> values = by_value(slices, mark);
   if (values.size() < 2) return {};
-  const bool at_one_place = any_collide(values, share_a_place);
+  const bool at_one_place = any_collide(values, have_common_position);
   const std::size_t least = kind.is_of_slices ? 2 : least_group(slices, values);
   const auto intrude = [&](const Group& a, const Group& b) { return overlap(a, b, least); };
   const auto collide = [&](const Group& a, const Group& b) {
-    return share_a_place(a, b) || (!kind.is_of_slices && intrude(a, b));
+    return have_common_position(a, b) || (!kind.is_of_slices && intrude(a, b));
   };
   if (!at_one_place && (kind.is_of_slices || !any_collide(values, intrude))) return {};
   // Coincident slices that still form a volume are copies or have rounded positions.
@@ -196,7 +196,7 @@ std::vector<Group> Parting::by_mark(const Numbers& slices, std::size_t mark) con
   return groups;
 }
 
-void Parting::split(SeriesPart part, std::vector<SeriesPart>& parts) const {
+void SeriesSplitter::split(SeriesPart part, std::vector<SeriesPart>& parts) const {
   for (std::size_t mark = 0; mark < kMarkKinds.size(); ++mark) {
     for (Group& group : by_mark(part.slices, mark)) {
       std::string value = group.first_value == group.last_value
@@ -204,8 +204,9 @@ void Parting::split(SeriesPart part, std::vector<SeriesPart>& parts) const {
                               : group.first_value + " to " + group.last_value;
       if (value.empty()) value = "not given";
       std::sort(group.slices.begin(), group.slices.end());
-      split({std::move(group.slices), fmt::format("{}{}{} {}", part.told_by, part.told_by.empty() ? "" : ", ",
-                                                  kMarkKinds[mark].name, value)},
+      split({std::move(group.slices),
+             fmt::format("{}{}{} {}", part.distinguishing_marks,
+                         part.distinguishing_marks.empty() ? "" : ", ", kMarkKinds[mark].name, value)},
             parts);
       part.slices.clear();
     }
@@ -214,7 +215,7 @@ void Parting::split(SeriesPart part, std::vector<SeriesPart>& parts) const {
   parts.push_back(std::move(part));
 }
 
-std::vector<SeriesPart> Parting::parts() const {
+std::vector<SeriesPart> SeriesSplitter::parts() const {
   std::vector<SeriesPart> parts;
   for (Numbers& shape : by_shape()) split({std::move(shape), ""}, parts);
   return parts;
@@ -222,9 +223,9 @@ std::vector<SeriesPart> Parting::parts() const {
 
 }  // namespace
 
-std::vector<SeriesPart> part_series(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
-                                    const SamePixels& same_pixels) {
-  return Parting(slices, marks, same_pixels).parts();
+std::vector<SeriesPart> split_series(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
+                                     const SamePixels& same_pixels) {
+  return SeriesSplitter(slices, marks, same_pixels).parts();
 }
 
 }  // namespace osteomill

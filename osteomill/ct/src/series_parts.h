@@ -57,7 +57,7 @@ struct SeriesPart {
   /// Slice indices, ascending.
   std::vector<std::size_t> slices;
   /// Marks that distinguish it from the other parts, such as "acquisition 2"; empty if only its shape does.
-  std::string told_by;
+  std::string distinguishing_marks;
 };
 
 /// Splits the slices of one series into parts: first by size, pixel spacing and orientation; then, if slices
@@ -65,7 +65,7 @@ struct SeriesPart {
 /// if they do not collide, as in series that count every rotation or slice as an acquisition. A part may be a
 /// single slice that fits no other, including one that would make even slices uneven. `marks` belong to
 /// `slices`; `same_pixels` is as for `stack_slices`.
-std::vector<SeriesPart> part_series(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
-                                    const SamePixels& same_pixels);
+std::vector<SeriesPart> split_series(std::span<const SlicePlane> slices, std::span<const SliceMarks> marks,
+                                     const SamePixels& same_pixels);
 
 }  // namespace osteomill

@@ -38,8 +38,8 @@ struct Series {
   }
 
   std::vector<SeriesPart> parts() const {
-    return part_series(slices, marks,
-                       [&](std::size_t a, std::size_t b) { return pictures[a] == pictures[b]; });
+    return split_series(slices, marks,
+                        [&](std::size_t a, std::size_t b) { return pictures[a] == pictures[b]; });
   }
   // Returns the number of slices of each part.
   std::vector<std::size_t> sizes() const {
@@ -60,8 +60,8 @@ TEST(SeriesParts, AcquisitionsWhoseRangesOverlapOrCoincideAreTwo) {
     }
     const std::vector<SeriesPart> parts = series.parts();
     ASSERT_EQ(parts.size(), 2U) << off_mm;
-    EXPECT_EQ(parts[0].told_by, "acquisition 1");
-    EXPECT_EQ(parts[1].told_by, "acquisition 2");
+    EXPECT_EQ(parts[0].distinguishing_marks, "acquisition 1");
+    EXPECT_EQ(parts[1].distinguishing_marks, "acquisition 2");
     for (std::size_t n = 0; n < 12; ++n) {
       EXPECT_EQ(parts[0].slices[n], 2 * n);
       EXPECT_EQ(parts[1].slices[n], 2 * n + 1);
@@ -89,7 +89,8 @@ TEST(SeriesParts, RepeatedRotationsMakeAVolumeEachTime) {
     Series series;
     for (int n = 0; n < 72; ++n) series.add(0.5 * (n % 24), "acquisition", std::to_string(n / rotation));
     EXPECT_EQ(series.sizes(), (Sizes{24, 24, 24})) << rotation;
-    EXPECT_EQ(series.parts()[1].told_by, rotation == 1 ? "acquisition 24 to 47" : "acquisition 6 to 11");
+    EXPECT_EQ(series.parts()[1].distinguishing_marks,
+              rotation == 1 ? "acquisition 24 to 47" : "acquisition 6 to 11");
   }
 }
 
@@ -114,7 +115,7 @@ TEST(SeriesParts, TwoMarksTogetherGiveEveryPart) {
     series.marks.back()[mark_named("kernel")] = n % 4 < 2 ? "soft" : "bone";
   }
   EXPECT_EQ(series.sizes(), (Sizes{12, 12, 12, 12}));
-  EXPECT_EQ(series.parts()[0].told_by, "acquisition 0, kernel bone");
+  EXPECT_EQ(series.parts()[0].distinguishing_marks, "acquisition 0, kernel bone");
 }
 
 TEST(SeriesParts, OriginalsComeBeforeDerivedImagesAndMarksInTheOrderOfTheirNumbers) {

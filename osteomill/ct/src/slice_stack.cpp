@@ -134,7 +134,7 @@ std::vector<std::size_t> order_by_number(std::span<const SlicePlane> slices, con
 }
 
 // Returns whether some straight line over k is within `within` of all values.
-bool lie_on_a_line(std::span<const double> values, double within) {
+bool fit_on_a_line(std::span<const double> values, double within) {
   const auto spread = [&](double slope) {
     double least = values.front(), most = least;
     for (std::size_t k = 0; k < values.size(); ++k) {
@@ -177,7 +177,7 @@ double last_decimal_mm(std::span<const SlicePlane> slices, const SliceStack& sta
 }
 
 // Returns whether every height has the same number of slices, as with several time points.
-bool lie_together_alike(const std::vector<double>& heights_mm) {
+bool have_equal_counts(const std::vector<double>& heights_mm) {
   std::vector<std::size_t> counts;
   for (std::size_t k = 0; k < heights_mm.size(); ++k) {
     if (k == 0 || heights_mm[k] - heights_mm[k - 1] > kSamePlace_mm) counts.push_back(0);
@@ -197,8 +197,8 @@ bool are_rounded(const std::string& subject, std::span<const SlicePlane> slices,
   numbered.order = order_by_number(slices, normal, stack.order);
   if (numbered.order.size() < 3) return false;
   const std::vector<double> heights_mm = heights_of(slices, normal, numbered);
-  if (heights_mm.back() < kLeastHeight * step_mm || !lie_on_a_line(heights_mm, 0.5 * step_mm)) return false;
-  if (at_one_place && lie_together_alike(heights_mm)) {
+  if (heights_mm.back() < kLeastHeight * step_mm || !fit_on_a_line(heights_mm, 0.5 * step_mm)) return false;
+  if (at_one_place && have_equal_counts(heights_mm)) {
     throw InputError(subject,
                      fmt::format("{} and {} are at one position: positions are rounded to {:.4g} mm, or "
                                  "there are several images of each position",
@@ -213,8 +213,8 @@ bool are_rounded(const std::string& subject, std::span<const SlicePlane> slices,
 
 // Drops copies. Returns whether the slices, in order of their numbers, fit an even grid with rounded
 // positions.
-bool settle_places(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
-                   const SamePixels& same_pixels, SliceStack& stack) {
+bool resolve_positions(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
+                       const SamePixels& same_pixels, SliceStack& stack) {
   const auto is_same_instance = [&](std::size_t a, std::size_t b) {
     return !slices[a].instance.empty() && slices[a].instance == slices[b].instance;
   };
@@ -350,7 +350,7 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
   std::stable_sort(stack.order.begin(), stack.order.end(), [&](std::size_t a, std::size_t b) {
     return normal.dot(slices[a].position_mm) < normal.dot(slices[b].position_mm);
   });
-  const bool is_rounded = settle_places(subject, slices, normal, same_pixels, stack);
+  const bool is_rounded = resolve_positions(subject, slices, normal, same_pixels, stack);
   if (stack.order.size() < 2) {
     throw InputError(subject, "only one slice: a volume needs at least two, to know their distance");
   }
@@ -364,7 +364,7 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
   return stack;
 }
 
-void even_out_slices(SliceStack& stack, std::vector<float>& densities) {
+void resample_to_even_slices(SliceStack& stack, std::vector<float>& densities) {
   if (stack.heights_mm.empty()) return;
   const std::vector<double> heights_mm = std::exchange(stack.heights_mm, {});
   const std::size_t slice_size = densities.size() / heights_mm.size();

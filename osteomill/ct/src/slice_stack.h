@@ -51,7 +51,7 @@ struct SliceStack {
   /// Slice index for each k, without copies.
   std::vector<std::size_t> order;
   /// Height of each slice above the lowest if the slices are not even. The grid may then have more or fewer
-  /// slices, to be interpolated by `even_out_slices`. Empty if the slices are even.
+  /// slices, to be interpolated by `resample_to_even_slices`. Empty if the slices are even.
   std::vector<double> heights_mm;
   /// Offset of each slice of the grid along i and j from the one below (gantry tilt), to be corrected by
   /// `correct_gantry_tilt`. Zero if the stack is straight.
@@ -74,7 +74,7 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
 /// Resamples uneven slices (`SliceStack::heights_mm`) linearly to the stack's even grid, pixel by pixel, and
 /// so along the table's axis if the gantry is tilted. Replaces `densities`, which hold the slices one after
 /// the other as read. Does nothing if the stack is even.
-void even_out_slices(SliceStack& stack, std::vector<float>& densities);
+void resample_to_even_slices(SliceStack& stack, std::vector<float>& densities);
 
 /// Corrects gantry tilt: shifts every slice to its position in a straight grid by linear interpolation within
 /// the slice. Enlarges the grid so that no pixel is lost, fills the rest with the lowest density, and adds a

@@ -188,7 +188,7 @@ TEST(SliceStack, UnevenDistancesAreEvenedOutAndNamed) {
             "mm apart");
   EXPECT_EQ(stack.geometry.dims[2], 13);
   std::vector<float> densities = pixels_of(slices, stack, density);
-  even_out_slices(stack, densities);
+  resample_to_even_slices(stack, densities);
   ASSERT_EQ(densities.size(), stack.geometry.voxel_count());
   std::size_t n = 0;
   for (int k = 0; k < 13; ++k) {
@@ -217,7 +217,7 @@ TEST(SliceStack, WhatHasNoDensitySpreadsNoFurtherThanItIsUsed) {
   SliceStack stack = stack_slices("folder", slices);
   std::vector<float> densities(5 * 48, 5.0F);
   densities[48 * 2 + 7] = std::numeric_limits<float>::quiet_NaN();
-  even_out_slices(stack, densities);
+  resample_to_even_slices(stack, densities);
   EXPECT_EQ(stack.geometry.dims[2], 5);
   // The second and third slice are interpolated from the one with NaN.
   EXPECT_EQ(

@@ -61,7 +61,7 @@ bool fits(double number, VoxelType type) {
   });
 }
 
-InputError cut_short(const std::string& subject, std::uint64_t needed, std::uint64_t found) {
+InputError truncation_error(const std::string& subject, std::uint64_t needed, std::uint64_t found) {
   return {subject, fmt::format("is cut short: its voxels need {} bytes, it has {}", needed, found)};
 }
 
@@ -87,11 +87,11 @@ void check_rest(const std::string& subject, StoredVoxels& stored, std::uint64_t 
   std::size_t count = block.size();
   while (count == block.size() && rest < needed + kMaxRest) rest += count = source.read(block);
   if (source.is_packed()) {
-    if (!source.ended_well()) throw InputError(subject, "its compressed data are cut short or damaged");
+    if (!source.has_ended_intact()) throw InputError(subject, "its compressed data are cut short or damaged");
     const std::uint64_t said = stored.compressed_bytes;
-    if (said != 0 && (said < source.bytes_used() || said > source.bytes_in_file())) {
-      throw InputError(
-          subject, fmt::format("states {} bytes of compressed data but has {}", said, source.bytes_used()));
+    if (said != 0 && (said < source.compressed_bytes_read() || said > source.bytes_in_file())) {
+      throw InputError(subject, fmt::format("states {} bytes of compressed data but has {}", said,
+                                            source.compressed_bytes_read()));
     }
   }
   if (rest > 0) warnings.push_back(kHoldsMore);
@@ -104,7 +104,7 @@ void read_binary(const std::string& subject, StoredVoxels& stored, std::uint64_t
   const std::uint64_t size = bytes_of(stored.type), needed = count * size;
   const std::uint64_t possible = source.max_bytes();
   if (possible < stored.skip + needed) {
-    throw cut_short(subject, needed, possible - std::min(possible, stored.skip));
+    throw truncation_error(subject, needed, possible - std::min(possible, stored.skip));
   }
   check_memory(subject, all, max_bytes);
   if (!source.skip(stored.skip)) throw InputError(subject, "its compressed data cannot be decompressed");
@@ -115,7 +115,7 @@ void read_binary(const std::string& subject, StoredVoxels& stored, std::uint64_t
     const std::size_t here = source.read(wanted);
     found += here;
     if (found == 0) throw InputError(subject, "its compressed data cannot be decompressed");
-    if (here < wanted.size()) throw cut_short(subject, needed, found);
+    if (here < wanted.size()) throw truncation_error(subject, needed, found);
     append(wanted, stored, densities);
     WorkProgress::done(densities.size() * size, all * size);
   }
@@ -128,7 +128,7 @@ void read_text(const std::string& subject, StoredVoxels& stored, std::uint64_t c
   // At least one digit and one separator each.
   const std::uint64_t needed = 2 * count - 1;
   const std::uint64_t possible = stored.source.max_bytes();
-  if (possible < needed) throw cut_short(subject, needed, possible);
+  if (possible < needed) throw truncation_error(subject, needed, possible);
   check_memory(subject, all, max_bytes);
   std::string text;
   std::vector<char> block(kBlock);
@@ -166,7 +166,7 @@ ByteSource source_behind(std::ifstream in, const BeforeVoxels& before, Packing p
 void set_skip(StoredVoxels& stored, std::uint64_t count) {
   stored.skip = stored.before.bytes;
   if (!stored.before.are_last) return;
-  const std::uint64_t there = stored.source.bytes_to_come();
+  const std::uint64_t there = stored.source.count_remaining_bytes();
   stored.skip = there - std::min(there, count * bytes_of(stored.type));
 }
 

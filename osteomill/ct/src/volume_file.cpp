@@ -72,7 +72,7 @@ namespace {
 constexpr std::size_t kMostFiles = 1 << 20;
 
 // Replaces a conversion such as "%03d" or "%d" by a number; nullopt if the pattern has none or several.
-std::optional<std::string> filled_in(const std::string& pattern, long number) {
+std::optional<std::string> format_file_name(const std::string& pattern, long number) {
   const std::size_t percent = pattern.find('%');
   std::size_t at = percent + 1;
   if (percent == std::string::npos || pattern.find('%', at) != std::string::npos) return std::nullopt;
@@ -96,14 +96,15 @@ std::optional<std::vector<std::string>> names_of_pattern(const std::string& subj
   std::istringstream in(said);
   std::string pattern;
   long first = 0, last = 0, step = 0;
-  if (!(in >> pattern >> first >> last >> step) || !filled_in(pattern, first)) return std::nullopt;
+  if (!(in >> pattern >> first >> last >> step) || !format_file_name(pattern, first)) return std::nullopt;
   if (step == 0 || (last - first) / step < 0 ||
       static_cast<std::size_t>((last - first) / step) >= kMostFiles) {
     throw InputError(subject,
                      fmt::format("names its data files by an invalid range of numbers: {:.80}", said));
   }
   std::vector<std::string> names;
-  for (long n = 0; n <= (last - first) / step; ++n) names.push_back(*filled_in(pattern, first + n * step));
+  for (long n = 0; n <= (last - first) / step; ++n)
+    names.push_back(*format_file_name(pattern, first + n * step));
   return names;
 }
 
@@ -136,7 +137,7 @@ std::vector<fs::path> data_files(const std::string& subject, const fs::path& pat
   return files;
 }
 
-double most_skew(const Mat3& axes) {
+double max_skew(const Mat3& axes) {
   const Mat3 ones = axes.colwise().normalized();
   return std::max({std::abs(ones.col(0).dot(ones.col(1))), std::abs(ones.col(1).dot(ones.col(2))),
                    std::abs(ones.col(2).dot(ones.col(0)))});
@@ -152,7 +153,7 @@ GridGeometry checked_geometry(const std::string& subject, const std::vector<doub
   if (spacing.size() != 3) throw InputError(subject, fmt::format("has {} spacings, not 3", spacing.size()));
   if (!axes.allFinite()) throw InputError(subject, "has an axis that is not finite");
   if (!((axes.colwise().norm().array() > 0).all())) throw InputError(subject, "has an axis of zero length");
-  const double skew = most_skew(axes);
+  const double skew = max_skew(axes);
   if (!(skew <= kMostShear)) {
     throw InputError(
         subject, "has axes that are not at right angles (a sheared or flat grid), which is not supported");

@@ -145,7 +145,7 @@ std::vector<std::filesystem::path> data_files(const std::string& subject, const 
 
 /// Returns the largest absolute cosine between two columns; 0 for orthogonal axes. Up to kNoShear it is
 /// accepted without a warning, as rounding of numbers with few digits.
-double most_skew(const Mat3& axes);
+double max_skew(const Mat3& axes);
 inline constexpr double kNoShear = 1e-3;
 
 /// Makes a grid from header values and checks them. Sizes must be three whole numbers above zero with a

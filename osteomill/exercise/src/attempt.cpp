@@ -142,9 +142,9 @@ class RemovalTimes {
 };
 
 // Sets for each cutting tick whether its contact was hidden. Evaluates each view once.
-class SeenContacts {
+class ContactVisibility {
  public:
-  explicit SeenContacts(const std::vector<ViewSample>& views) : views_(views) {}
+  explicit ContactVisibility(const std::vector<ViewSample>& views) : views_(views) {}
 
   void add(const Volume& bone, const TickRecord& record, AttemptTick& tick) {
     constexpr double kMaxAge_s = 0.2;
@@ -214,7 +214,7 @@ Attempt make_attempt(const PlacedExercise& exercise, const Volume& scan, const R
   Volume after = scan;
   std::vector<AttemptTick> ticks = attempt_ticks(recording);
   RemovalTimes times(scan);
-  SeenContacts seen(recording.views);
+  ContactVisibility seen(recording.views);
   repeat_milling(after, recording, [&](std::size_t n, const Volume& bone, const VolumeChange& change) {
     WorkProgress::done(n, ticks.size());
     times.add(bone, change.voxels, ticks[n].time_s);
@@ -261,7 +261,7 @@ std::vector<AttemptProgress> progress_of(const Attempt& attempt) {
   return way;
 }
 
-double step_done_s(const Attempt& attempt, std::size_t step) {
+double step_completion_s(const Attempt& attempt, std::size_t step) {
   const VoxelSet& bone = attempt.exercise->steps[step];
   std::vector<double> times_s;
   bone.for_each([&](const VoxelIndex& v) {
@@ -287,7 +287,7 @@ bool is_hidden(const ViewSample& view, const Volume& bone, const Vec3& contact_W
   Vec3 from_W = eye_W;
   const Vec3 to_W = contact_W - 1.5 * voxel_mm * sight_W;
   // The cuts leave a convex part: the line of sight enters it at the last cut.
-  for (const ViewCut& cut : view.cuts) {
+  for (const ViewClipPlane& cut : view.cuts) {
     if (cut.normal_W.isZero()) continue;
     const double before_mm = cut.offset_mm - cut.normal_W.dot(from_W);
     const double along = cut.normal_W.dot(sight_W);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kReach_mm = 6;
 
 // Measures the crown along the normal at a point of its original surface.
-void look_in(const Attempt& attempt, const Vec3& axis_W, const Vec3& place_W, Crown& crown) {
+void measure_at(const Attempt& attempt, const Vec3& axis_W, const Vec3& place_W, Crown& crown) {
   constexpr double kReduced_mm = 0.3, kAxial_deg = 30;
   const auto outward_W = outward_normal(*attempt.scan, place_W);
   if (!outward_W) return;
@@ -51,7 +51,7 @@ Crown crown_of(const Attempt& attempt) {
                                        VoxelIndex{v.i, v.j, v.k + step}})
         is_outer = is_outer || !attempt.scan->is_bone_in_grid(beside);
     }
-    if (is_outer) look_in(attempt, axis_W, place_W, crown);
+    if (is_outer) measure_at(attempt, axis_W, place_W, crown);
     if (attempt.removed.contains(v) && is_under_bone(attempt, axis_W, place_W)) ++undercut;
   });
   crown.undercut_mm3 = exercise.volume_mm3(undercut);

@@ -57,8 +57,8 @@ bool is_item(const MeasuredValue& row) {
 
 Cell mark_cell(const MeasuredValue& row) {
   if (row.limit.empty()) return {};
-  if (!row.is_met) return {"– not measured", Look::faint};
-  return *row.is_met ? Cell("✓ met", Look::agrees) : Cell("✗ not met", Look::differs);
+  if (!row.is_met) return {"– not measured", CellStyle::faint};
+  return *row.is_met ? Cell("✓ met", CellStyle::agrees) : Cell("✗ not met", CellStyle::differs);
 }
 
 std::string value_text(const MeasuredValue& row) {
@@ -67,7 +67,7 @@ std::string value_text(const MeasuredValue& row) {
 
 // Returns a value with its mark below.
 Cell marked_cell(const MeasuredValue& row) {
-  Cell cell{{{value_text(row), Look::strong}}};
+  Cell cell{{{value_text(row), CellStyle::strong}}};
   if (is_item(row)) cell.pieces.push_back({"\n"});
   for (Cell::Piece& piece : mark_cell(row).pieces) cell.pieces.push_back(std::move(piece));
   return cell;
@@ -109,7 +109,7 @@ Section items_section(const DebriefedAttempt& own, const DebriefPeers& peers) {
       cells.push_back(marked_cell(row_of(peers.first->measured, own, row)));
     } else {
       cells.push_back(mark_cell(row));
-      cells.emplace_back(value_text(row), Look::strong);
+      cells.emplace_back(value_text(row), CellStyle::strong);
     }
     cells.emplace_back(row.limit);
     cells.emplace_back(row.source);
@@ -138,10 +138,11 @@ std::vector<Section> spread_sections(const DebriefedAttempt& own, const DebriefP
       continue;
     const Spread spread = spread_of(before);
     std::vector<Cell> cells{row.measure, value_text(row), shown(spread.mean), "–",
-                            Cell("too few attempts", Look::faint)};
+                            Cell("too few attempts", CellStyle::faint)};
     if (!std::isnan(spread.width)) {
       cells[3] = "± " + shown(spread.width);
-      cells[4] = std::abs(*row.value - spread.mean) > spread.width ? Cell("yes", Look::strong) : Cell("no");
+      cells[4] =
+          std::abs(*row.value - spread.mean) > spread.width ? Cell("yes", CellStyle::strong) : Cell("no");
     }
     table.rows.push_back(std::move(cells));
   }
@@ -208,9 +209,9 @@ Section about_section(const Exercise& exercise, const DebriefedAttempt& own, con
     section.notices.push_back("The recording is unfinished: the program ended before it closed it.");
   if (!exercise.task.empty()) section.paragraphs.push_back(exercise.task);
   section.paragraphs.push_back(who_and_when(own));
-  if (!peers.no_first.empty())
+  if (!peers.original_missing_reason.empty())
     section.notices.push_back("The recording from which this one branches off is not shown: " +
-                              peers.no_first);
+                              peers.original_missing_reason);
   if (peers.first)
     section.paragraphs.push_back(fmt::format(
         "It branches off from {} at {:.3f} s. The original is that recording to its end, this attempt what "
@@ -252,7 +253,7 @@ Page attempt_page(const Attempt& attempt, const Recording& recording, const Debr
   put_view(data, target_ball(exercise), exercise.outward_W);
   put_course(data, attempt, recording, name_of(own));
   if (peers.first) {
-    put_first_way(data, *peers.first, name_of(peers.first->measured));
+    put_original_attempt(data, *peers.first, name_of(peers.first->measured));
     add_bodies(data, peers.first->attempt, *colours, kPageVertices / 2, kFirstWay);
     add_bodies(data, attempt, *colours, kPageVertices / 2, kThisWay);
   } else {
@@ -335,7 +336,7 @@ std::vector<DebriefedAttempt> expert_attempts(const PlacedExercise& placed, cons
 }
 
 // Returns null if the recording does not branch off from another one.
-std::shared_ptr<FirstWay> first_way_of(const Attempt& attempt, const Recording& recording) {
+std::shared_ptr<OriginalAttempt> original_attempt_of(const Attempt& attempt, const Recording& recording) {
   const auto from = branch_point(recording.description);
   if (!from) return nullptr;
   const fs::path folder = recording.path.parent_path();
@@ -347,17 +348,17 @@ std::shared_ptr<FirstWay> first_way_of(const Attempt& attempt, const Recording& 
     throw InputError(path.string(), "does not match the beginning of " + recording.path.string());
   Attempt whole = make_attempt(*attempt.exercise, *attempt.scan, first);
   DebriefedAttempt measured = debriefed(whole, first);
-  return std::make_shared<FirstWay>(FirstWay{std::move(whole), std::move(measured), *from});
+  return std::make_shared<OriginalAttempt>(OriginalAttempt{std::move(whole), std::move(measured), *from});
 }
 
 }  // namespace
 
-DebriefPeers peers_of(const Attempt& attempt, const Recording& recording) {
+DebriefPeers load_peers(const Attempt& attempt, const Recording& recording) {
   DebriefPeers peers;
   try {
-    peers.first = first_way_of(attempt, recording);
+    peers.first = original_attempt_of(attempt, recording);
   } catch (const InputError& error) {
-    peers.no_first = error.what();
+    peers.original_missing_reason = error.what();
   }
   peers.experts = expert_attempts(*attempt.exercise, *attempt.scan);
   return peers;

@@ -241,8 +241,9 @@ double removal_rate_mm3_s(const Attempt& attempt, const Zone* zone) {
 double step_s(const Attempt& attempt, std::size_t step) {
   if (attempt.ticks.empty()) return kNone;
   double from_s = attempt.ticks.front().time_s;
-  for (std::size_t n = 0; n < step; ++n) from_s = std::fmax(from_s, step_done_s(attempt, n));
-  return std::fmax(step_done_s(attempt, step) - from_s, std::isnan(step_done_s(attempt, step)) ? kNone : 0);
+  for (std::size_t n = 0; n < step; ++n) from_s = std::fmax(from_s, step_completion_s(attempt, n));
+  return std::fmax(step_completion_s(attempt, step) - from_s,
+                   std::isnan(step_completion_s(attempt, step)) ? kNone : 0);
 }
 
 double steps_s(const Attempt& attempt) {

@@ -33,7 +33,7 @@ TEST(ToolMove, AMoveIsCutShortByOneFactor) {
 
 // A point of the tool on a frictionless surface, at a lever arm, with the device pressing further: the two
 // springs let the tool follow a known part of the device's move, which needs no release.
-TEST(ToolMove, WhereASurfaceLeadsAPressedToolLiesWithinTheBound) {
+TEST(ToolMove, TheBoundContainsTheMotionOfAToolGuidedByASurface) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vector = [&] { return Vec3(unit(random), unit(random), unit(random)); };

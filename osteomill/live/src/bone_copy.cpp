@@ -10,7 +10,7 @@ namespace osteomill {
 namespace {
 
 // One sum per label, indexed by label place.
-std::vector<double> no_drops(const Volume& bone) {
+std::vector<double> zero_sums(const Volume& bone) {
   return std::vector<double>(bone.labels() ? bone.labels()->labels().size() + 1 : 0);
 }
 
@@ -41,11 +41,11 @@ void BoneCopy::load_milled(const std::vector<DensityBlock>& milled, const std::v
     if (put(block)) history_.save(block);
   }
   // Sums of another label map do not apply here.
-  if (piece_drops.size() == no_drops(*copy_).size()) history_.set_piece_drops(piece_drops);
+  if (piece_drops.size() == zero_sums(*copy_).size()) history_.set_piece_drops(piece_drops);
 }
 
 std::vector<double> BoneCopy::drops_by_label() const {
-  std::vector<double> drops = no_drops(*copy_);
+  std::vector<double> drops = zero_sums(*copy_);
   for (const auto& [place, before] : history_.original_bricks()) add_drops(before, *copy_, drops);
   const std::vector<double> pieces = history_.piece_drops();
   for (std::size_t n = 0; n < std::min(drops.size(), pieces.size()); ++n) drops[n] -= pieces[n];
@@ -116,7 +116,7 @@ BoneCopy::NextBone BoneCopy::without_pieces(std::vector<DensityBlock> without, d
 BoneCopy::NextBone BoneCopy::with_emptied(double surroundings, double removed_mm3,
                                           const BoneDensities& densities) {
   emptied_ = std::max(emptied_, static_cast<float>(surroundings));
-  differing_ = history_.lower_emptied_bricks(copy_->grid(), emptied_, copy_->isovalue(),
+  differing_ = history_.clear_emptied_voxels(copy_->grid(), emptied_, copy_->isovalue(),
                                              static_cast<float>(densities.surroundings));
   put_differing();
   return {copy_, removed_mm3, densities};
@@ -127,15 +127,15 @@ void BoneCopy::note_step() {
     case Step::none:
       return;
     case Step::undo:
-      return history_.take_back_last(differing_, removed_mm3_);
+      return history_.record_undo(differing_, removed_mm3_);
     case Step::redo:
-      return history_.make_again(differing_, removed_mm3_);
+      return history_.record_redo(differing_, removed_mm3_);
     case Step::reset:
-      return history_.drop_all();
+      return history_.clear_history();
     case Step::pieces:
       break;
   }
-  std::vector<double> drops = no_drops(*copy_);
+  std::vector<double> drops = zero_sums(*copy_);
   for (const DensityBlock& before : differing_) add_drops(before, *copy_, drops);
   history_.add_pieces(differing_, removed_mm3_, std::move(drops));
 }

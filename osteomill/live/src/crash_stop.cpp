@@ -147,7 +147,7 @@ void pass_to(const struct sigaction& before, int signal, siginfo_t* info, void* 
   }
 }
 
-void end_devices() {
+void stop_devices() {
   if (!ending.exchange(true)) {
     DrivenDevices().end();
     has_ended.store(true);
@@ -159,7 +159,7 @@ void end_devices() {
 }
 
 void end_process(int signal) {
-  end_devices();
+  stop_devices();
   ::signal(signal, SIG_DFL);
   // A fault recurs by itself when its handler returns; a sent signal does not.
   raise(signal);
@@ -229,7 +229,7 @@ CrashStop::CrashStop() {
   const std::lock_guard lock(mutex);
   if (object_count++ != 0) return;
   std::ranges::for_each(kSignals, install_handler);
-  set_before_signal_cleanup(&end_devices);
+  set_before_signal_cleanup(&stop_devices);
 }
 
 CrashStop::~CrashStop() {

@@ -42,12 +42,12 @@ struct SharedWrench {
 // Force on the hand before the crash, N.
 constexpr double kPressed_N = 0.2;
 
-class SharedDevice : public testing_support::ComingDown {
+class SharedDevice : public testing_support::DescendingDevice {
  public:
-  SharedDevice(SharedWrench* sent, void (*crash)()) : ComingDown(1.2), sent_(sent), crash_(crash) {}
+  SharedDevice(SharedWrench* sent, void (*crash)()) : DescendingDevice(1.2), sent_(sent), crash_(crash) {}
   Pose read_pose() override {
     if (crash_ != nullptr && sent_->max_N >= kPressed_N) crash_();
-    return ComingDown::read_pose();
+    return DescendingDevice::read_pose();
   }
   void write_wrench(const Wrench& wrench) override {
     sent_->force_N = is_let_go_ ? 0 : wrench.force_N.norm();

@@ -89,7 +89,7 @@ void CutHistory::exchange(Cut& cut, const std::vector<DensityBlock>& were, doubl
   cut.removed_mm3 = removed_mm3;
 }
 
-void CutHistory::take_back_last(const std::vector<DensityBlock>& were, double removed_mm3) {
+void CutHistory::record_undo(const std::vector<DensityBlock>& were, double removed_mm3) {
   if (cuts() == 0) return;
   if (cuts_.back().bricks.empty()) cuts_.pop_back();
   const double removed_before_mm3 = cuts_.back().removed_mm3;
@@ -97,7 +97,7 @@ void CutHistory::take_back_last(const std::vector<DensityBlock>& were, double re
   exchange(undone_.back(), were, removed_mm3);
 }
 
-void CutHistory::make_again(const std::vector<DensityBlock>& were, double removed_mm3) {
+void CutHistory::record_redo(const std::vector<DensityBlock>& were, double removed_mm3) {
   if (undone_.empty()) return;
   const double removed_after_mm3 = undone_.back().removed_mm3;
   // `cuts_.back()` is empty: any new cut would have dropped the undone ones.
@@ -107,11 +107,11 @@ void CutHistory::make_again(const std::vector<DensityBlock>& were, double remove
   begin_cut(removed_after_mm3);
 }
 
-void CutHistory::drop_all() {
+void CutHistory::clear_history() {
   *this = CutHistory(max_bricks_ * sizeof(DensityBlock));
 }
 
-std::vector<DensityBlock> CutHistory::lower_emptied_bricks(const DensityGrid& grid, float emptied,
+std::vector<DensityBlock> CutHistory::clear_emptied_voxels(const DensityGrid& grid, float emptied,
                                                            double isovalue, float floor) {
   const auto adapt = [&](Cut& cut) {
     for (auto& [place, brick] : cut.bricks) {

@@ -58,15 +58,15 @@ class CutHistory {
   SavedState state_after_undone_cut() const;
   /// Record that the last cut was undone, or the last undone cut redone. `were` holds that state's bricks as
   /// they were before the step, `removed_mm3` the volume removed then.
-  void take_back_last(const std::vector<DensityBlock>& were, double removed_mm3);
-  void make_again(const std::vector<DensityBlock>& were, double removed_mm3);
+  void record_undo(const std::vector<DensityBlock>& were, double removed_mm3);
+  void record_redo(const std::vector<DensityBlock>& were, double removed_mm3);
   /// Drops the whole history after a reset.
-  void drop_all();
+  void clear_history();
 
   /// Adapts to another isovalue, at which voxels that milling had cut down to `emptied` or below would count
   /// as bone: lowers them to `floor`, both in the history and in the returned bricks, which are those of
   /// `grid` that change. Partially cut voxels stay as they are, and with them the surface of the cut.
-  std::vector<DensityBlock> lower_emptied_bricks(const DensityGrid& grid, float emptied, double isovalue,
+  std::vector<DensityBlock> clear_emptied_voxels(const DensityGrid& grid, float emptied, double isovalue,
                                                  float floor);
 
  private:

@@ -23,17 +23,17 @@ class CutHistoryTest : public ::testing::Test {
   }
   double undo() {
     const double removed_mm3 = history_.state_before_last_cut().removed_mm3;
-    history_.take_back_last(put(history_.state_before_last_cut()), removed_mm3_);
+    history_.record_undo(put(history_.state_before_last_cut()), removed_mm3_);
     return removed_mm3_ = removed_mm3;
   }
   double redo() {
     const double removed_mm3 = history_.state_after_undone_cut().removed_mm3;
-    history_.make_again(put(history_.state_after_undone_cut()), removed_mm3_);
+    history_.record_redo(put(history_.state_after_undone_cut()), removed_mm3_);
     return removed_mm3_ = removed_mm3;
   }
   void reset() {
     put(history_.state_before_all_cuts());
-    history_.drop_all();
+    history_.clear_history();
     removed_mm3_ = 0;
   }
   // Returns the bricks as they were before.
@@ -103,7 +103,7 @@ TEST_F(CutHistoryTest, WhatBeginsBeforeACutIsDroppedIsAnotherCut) {
   const std::vector<DensityBlock> were = put(history_.state_before_last_cut());
   history_.begin_cut(4);
   EXPECT_EQ(history_.state_before_last_cut().removed_mm3, 2.5);
-  history_.take_back_last(were, 4);
+  history_.record_undo(were, 4);
   EXPECT_EQ(history_.cuts(), 1u);
   mill({18, 2, 9});
   EXPECT_EQ(history_.cuts(), 2u);
@@ -148,9 +148,9 @@ TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPa
   mill_to({3, 4, 4}, 700);
   mill_to({3, 4, 5}, 400);
   DensityGrid milled = bone_.grid();
-  EXPECT_TRUE(history_.lower_emptied_bricks(bone_.grid(), 300, 990, 300).empty());
-  EXPECT_TRUE(history_.lower_emptied_bricks(bone_.grid(), 300, 350, 300).empty());
-  std::vector<DensityBlock> differing = history_.lower_emptied_bricks(bone_.grid(), 300, 50, -30);
+  EXPECT_TRUE(history_.clear_emptied_voxels(bone_.grid(), 300, 990, 300).empty());
+  EXPECT_TRUE(history_.clear_emptied_voxels(bone_.grid(), 300, 350, 300).empty());
+  std::vector<DensityBlock> differing = history_.clear_emptied_voxels(bone_.grid(), 300, 50, -30);
   ASSERT_EQ(differing.size(), 1u);
   EditableVolume(bone_).swap(differing.front());
   milled.set({3, 4, 2}, -30);
@@ -247,7 +247,7 @@ TEST_F(CutHistoryTest, WhatIsMadeAgainAtALowerIsovalueStaysEmpty) {
   while (bone_.grid()[{3, 4, 3}] > 0) mill({3, 4, 3});
   DensityGrid milled = bone_.grid();
   undo();
-  EXPECT_TRUE(history_.lower_emptied_bricks(bone_.grid(), 300, -50, -80).empty());
+  EXPECT_TRUE(history_.clear_emptied_voxels(bone_.grid(), 300, -50, -80).empty());
   redo();
   milled.set({3, 4, 3}, -80);
   EXPECT_EQ(now(), milled.densities());

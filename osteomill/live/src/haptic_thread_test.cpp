@@ -22,13 +22,13 @@ namespace osteomill {
 namespace {
 
 using namespace std::chrono_literals;
-using testing_support::comes_true;
+using testing_support::becomes_true_in_time;
 
 // Moves the burr to 0.3 mm depth in the bone below z = 0 and stores what was sent. Its members belong to the
 // haptic thread while the session runs.
-class PressedDevice : public testing_support::ComingDown {
+class PressedDevice : public testing_support::DescendingDevice {
  public:
-  PressedDevice() : ComingDown(1.2) {}
+  PressedDevice() : DescendingDevice(1.2) {}
 
   Wrench sent;
   double max_force_N = 0;
@@ -40,7 +40,7 @@ class PressedDevice : public testing_support::ComingDown {
   Pose read_pose() override {
     if (ticks++ == throw_at_tick) throw std::runtime_error("the cable came off");
     if (!gives_pose) return {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Quat::Identity()};
-    return ComingDown::read_pose();
+    return DescendingDevice::read_pose();
   }
   void write_wrench(const Wrench& wrench) override {
     sent = wrench;
@@ -62,7 +62,7 @@ std::unique_ptr<MillingSession> session_on(std::shared_ptr<Volume> bone, std::st
 class HapticThreadTest : public ::testing::Test {
  protected:
   bool pushes() {
-    return comes_true([&] { return live_.state().record.wrench.force_N.z() > 0; });
+    return becomes_true_in_time([&] { return live_.state().record.wrench.force_N.z() > 0; });
   }
 
   std::shared_ptr<Volume> bone_ = std::make_shared<Volume>(half_space());
@@ -73,8 +73,8 @@ class HapticThreadTest : public ::testing::Test {
 TEST_F(HapticThreadTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   live_.start();
   EXPECT_TRUE(pushes());
-  EXPECT_TRUE(comes_true([&] { return live_.state().record.contacts > 0; }));
-  EXPECT_TRUE(comes_true([&] { return live_.timing().ticks > 200; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.state().record.contacts > 0; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.timing().ticks > 200; }));
   EXPECT_TRUE(live_.is_running());
   live_.stop();
   EXPECT_FALSE(live_.is_running());
@@ -109,7 +109,7 @@ TEST(HapticThreadOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
   device.throw_at_tick = 30;
   HapticThread live(session_on(std::make_shared<Volume>(half_space()), "line-proxy"), device, clock);
   live.start();
-  ASSERT_TRUE(comes_true([&] { return !live.is_running(); }));
+  ASSERT_TRUE(becomes_true_in_time([&] { return !live.is_running(); }));
   live.stop();
   EXPECT_EQ(live.timing().ticks, 30u);
   EXPECT_EQ(live.timing().missed_ticks, 2u);
@@ -149,22 +149,22 @@ TEST_F(HapticThreadTest, WhatIsToBePlacedIsPlacedByTheSessionThatTicksThen) {
   EXPECT_TRUE(pushes());
   device_.gives_pose = false;
   live_.place({{0, 0, 9}, Quat::Identity()});
-  EXPECT_TRUE(comes_true([&] { return live_.state().record.wrench.force_N.isZero(0); }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.state().record.wrench.force_N.isZero(0); }));
   std::this_thread::sleep_for(20ms);
   EXPECT_TRUE(live_.is_placing());
   live_.replace(session_on(bone_, "point-shell"));
   std::this_thread::sleep_for(20ms);
   EXPECT_TRUE(live_.is_placing());
   device_.gives_pose = true;
-  EXPECT_TRUE(comes_true([&] { return !live_.is_placing(); }));
-  EXPECT_TRUE(comes_true([&] { return live_.state().record.X_WT.position_mm.z() == 9; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return !live_.is_placing(); }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.state().record.X_WT.position_mm.z() == 9; }));
   live_.stop();
 }
 
 TEST_F(HapticThreadTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   live_.start();
   live_.set_spindle(true);
-  EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > 0; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.state().record.removed_mm3 > 0; }));
   live_.freeze_bone(true);
   const double removed_mm3 = live_.state().record.removed_mm3;
   const CopyOnWriteFloats frozen = bone_->grid().densities();
@@ -173,7 +173,7 @@ TEST_F(HapticThreadTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   EXPECT_EQ(bone_->grid().densities(), frozen);
   EXPECT_TRUE(live_.state().spindle_on);
   live_.freeze_bone(false);
-  EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > removed_mm3; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.state().record.removed_mm3 > removed_mm3; }));
   live_.stop();
   EXPECT_NE(bone_->grid().densities(), frozen);
 }
@@ -183,7 +183,7 @@ TEST_F(HapticThreadTest, APauseSendsZeroAndKeepsTheTool) {
   EXPECT_TRUE(pushes());
   live_.set_spindle(true);
   live_.set_paused(true);
-  EXPECT_TRUE(comes_true([&] { return is_zero(live_.state().record.wrench); }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return is_zero(live_.state().record.wrench); }));
   const LiveState state = live_.state();
   EXPECT_TRUE(state.record.paused);
   EXPECT_FALSE(state.spindle_on);
@@ -201,7 +201,7 @@ TEST_F(HapticThreadTest, StartedAgainInBoneItIsHeldBack) {
   live_.set_spindle(true);
   const double removed_mm3 = live_.state().record.removed_mm3;
   live_.start();
-  EXPECT_TRUE(comes_true([&] { return live_.timing().ticks > ticks + 100; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.timing().ticks > ticks + 100; }));
   live_.stop();
   EXPECT_EQ(live_.state().record.fault, WrenchFault::held_back);
   EXPECT_EQ(live_.state().record.removed_mm3, removed_mm3);
@@ -221,7 +221,7 @@ TEST_F(HapticThreadTest, AnAlgorithmPreparedElsewhereTakesOver) {
   next->count_removed_from(removed_mm3);
   live_.replace(std::move(next));
   live_.freeze_bone(false);
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(becomes_true_in_time([&] {
     const TickRecord& record = live_.state().record;
     return record.session == 1 && record.wrench.force_N.z() > 0;
   }));
@@ -243,7 +243,7 @@ TEST_F(HapticThreadTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
     heard.changed.include(change.voxels.last);
   });
   live_.start();
-  EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > 0; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.state().record.removed_mm3 > 0; }));
   live_.set_spindle(false);
   live_.set_listener({});
   const int ticks = heard.ticks;
@@ -267,7 +267,7 @@ TEST_F(HapticThreadTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
 TEST_F(HapticThreadTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
   device_.throw_at_tick = 500;
   live_.start();
-  EXPECT_TRUE(comes_true([&] { return !live_.is_running(); }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return !live_.is_running(); }));
   live_.set_spindle(true);
   EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
   EXPECT_GT(device_.max_force_N, 0);
@@ -284,7 +284,7 @@ TEST_F(HapticThreadTest, AStartThatFailsLeavesASessionThatCanBeStarted) {
   EXPECT_FALSE(live_.is_running());
   live_.set_spindle(true);
   live_.start();
-  EXPECT_TRUE(comes_true([&] { return live_.timing().ticks > 10; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return live_.timing().ticks > 10; }));
 }
 #endif
 

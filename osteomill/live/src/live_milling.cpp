@@ -79,15 +79,15 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const ResumedRecor
 LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
     : sample_points_(prepared.session->algorithm().sample_point_count()),
       scan_hash_(prepared.scan_hash),
-      begun_from_(prepared.handover),
+      initial_handover_(prepared.handover),
       follower_(std::move(prepared.follower)),
       live_(std::move(prepared.session), device, {}, prepared.time_s) {
   set_listener();
-  if (begun_from_.X_WT) live_.place(*begun_from_.X_WT);
+  if (initial_handover_.X_WT) live_.place(*initial_handover_.X_WT);
 }
 
 void LiveMilling::set_listener() {
-  live_.set_listener([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
+  live_.set_listener([follower = follower_.get(), recorder = recorder_.get(), from = first_recorded_session_](
                          const TickRecord& record, const Volume& bone, const VolumeChange& change) {
     follower->bone_changed(bone, change);
     if (recorder != nullptr && record.session >= from) recorder->push(record);
@@ -200,7 +200,7 @@ void LiveMilling::install_prepared() {
 
 // Drops a recording whose first session could not be prepared, because it would be empty.
 void LiveMilling::drop_recorder_without_session() {
-  if (!recorder_ || live_.session_number() >= recorded_from_) return;
+  if (!recorder_ || live_.session_number() >= first_recorded_session_) return;
   const std::unique_ptr<Recorder> unused = std::move(recorder_);
   take_picture_ = {};
   set_listener();
@@ -232,8 +232,8 @@ std::string LiveMilling::start_recording(const std::filesystem::path& path, RunD
   take_picture_ = std::move(picture);
   recorded_ = std::move(description);
   const bool untouched = !live_.is_running() && live_.timing().ticks == 0;
-  recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
-  if (untouched) record_session_start(begun_from_);
+  first_recorded_session_ = untouched ? live_.session_number() : live_.session_number() + 1;
+  if (untouched) record_session_start(initial_handover_);
   set_listener();
   std::string kept = recorder_->leftover_note();
   try {
@@ -263,7 +263,7 @@ void LiveMilling::record_session_start(const SessionHandover& handover) {
 
 std::filesystem::path LiveMilling::stop_recording() {
   // Start a recording that was stopped before its first session was installed.
-  if (live_.session_number() < recorded_from_) finish_preparing();
+  if (live_.session_number() < first_recorded_session_) finish_preparing();
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
   set_listener();
   for (const auto name : {kPictureAfter, kPictureAlong}) add_picture(*recorder, name, take_picture_);

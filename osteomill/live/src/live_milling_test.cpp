@@ -32,7 +32,7 @@ namespace osteomill {
 namespace {
 
 using namespace std::chrono_literals;
-using testing_support::comes_true;
+using testing_support::becomes_true_in_time;
 using testing_support::mesh_of;
 using testing_support::mesh_surface;
 
@@ -76,7 +76,7 @@ class LiveMillingTest : public ::testing::Test {
     const Pose X_W_out = pose_above(entry_, setup_.tool, 2.0);
     milling_.start();
     hand_.pull_to(X_W_out);
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(becomes_true_in_time([&] {
       const TickRecord& record = milling_.state().record;
       return is_zero(record.wrench) && (record.X_WD.position_mm - X_W_out.position_mm).norm() < 0.5;
     }));
@@ -451,7 +451,7 @@ TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
   milling_.start_recording(folder / "a.h5", milling_.describe("ball", ""));
   mill(0.3);
   hand_.pull_to(pose_above(entry_, setup_.tool, -3.0));
-  EXPECT_TRUE(comes_true([&] { return milling_.state().record.wrench.force_N.norm() > 0.5; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return milling_.state().record.wrench.force_N.norm() > 0.5; }));
   milling_.stop();
   milling_.stop_recording();
   const Recording recording = read_recording(folder / "a.h5");
@@ -465,7 +465,7 @@ TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
   EXPECT_EQ(again.setup().tool, setup_.tool);
   again.start_recording(folder / "b.h5", again.describe("ball", ""));
   again.start();
-  EXPECT_TRUE(comes_true([&] { return again.timing().ticks > 400; }));
+  EXPECT_TRUE(becomes_true_in_time([&] { return again.timing().ticks > 400; }));
   again.stop();
   again.stop_recording();
   const Recording branch = read_recording(folder / "b.h5");
@@ -514,7 +514,7 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
       // Switched on earlier, the burr could mill until `place` is called.
       milling_.place(X_W_free);
       milling_.set_spindle(true);
-      ASSERT_TRUE(comes_true([&] { return !milling_.is_placing(); })) << "the tool was not placed";
+      ASSERT_TRUE(becomes_true_in_time([&] { return !milling_.is_placing(); })) << "the tool was not placed";
       milling_.set_spindle(false);
       EXPECT_LT((milling_.state().record.X_WD.position_mm - X_W_free.position_mm).norm(), 0.1);
       std::this_thread::sleep_for(20ms);
@@ -560,7 +560,7 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   std::this_thread::sleep_for(20ms);
   milling_.set_paused(false);
   milling_.place(pose_above(entry_, setup_.tool, 5.0));
-  ASSERT_TRUE(comes_true([&] { return !milling_.is_placing(); })) << "the tool was not placed";
+  ASSERT_TRUE(becomes_true_in_time([&] { return !milling_.is_placing(); })) << "the tool was not placed";
   EXPECT_TRUE(milling_.change_isovalue(300));
   milling_.finish_preparing();
   hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));

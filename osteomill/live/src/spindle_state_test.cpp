@@ -17,7 +17,7 @@
 namespace osteomill {
 namespace {
 
-using testing_support::TwoKinds;
+using testing_support::TwoClasses;
 
 constexpr int kRuns = 10;
 
@@ -85,17 +85,17 @@ double bright(const std::vector<float>& sound, const Hand& hand) {
 // Returns the fraction of sounds classified correctly by a threshold learnt from other runs; `brightness`
 // gives the brightness of both kinds in one run.
 template <typename Brightness>
-double told_apart(const Brightness& brightness) {
-  TwoKinds learnt, tried;
+double classification_accuracy(const Brightness& brightness) {
+  TwoClasses learnt, tried;
   for (int run = 0; run < kRuns; ++run) {
     const auto both = brightness(Hand{run});
     for (const std::size_t kind : {0u, 1u}) (run % 2 == 0 ? learnt : tried)[kind].push_back(both[kind]);
   }
-  return testing_support::told_apart(learnt, tried);
+  return testing_support::classification_accuracy(learnt, tried);
 }
 
 TEST(SpindleState, ASessionsSoundTellsEnamelFromDentine) {
-  EXPECT_GE(told_apart([](const Hand& hand) {
+  EXPECT_GE(classification_accuracy([](const Hand& hand) {
               const auto of = [&](double density) {
                 return bright(heard(tooth_plate(density, 2), hand, 0.6).cutting, hand);
               };
@@ -105,7 +105,7 @@ TEST(SpindleState, ASessionsSoundTellsEnamelFromDentine) {
 }
 
 TEST(SpindleState, ASessionsSoundTellsThroughFromNotYet) {
-  EXPECT_GE(told_apart([](const Hand& hand) {
+  EXPECT_GE(classification_accuracy([](const Hand& hand) {
               const Sounds sounds = heard(tooth_plate(kDentine, 0.25), hand, 60);
               return std::array{bright(sounds.cutting, hand), bright(sounds.through, hand)};
             }),

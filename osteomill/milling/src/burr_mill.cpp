@@ -25,7 +25,7 @@ double removal_rate_mm3_per_Ns(const CuttingSettings& cutting, double burr_radiu
 
 namespace {
 
-constexpr double kForgetAfter_s = 0.05;
+constexpr double kBudgetTimeout_s = 0.05;
 constexpr double kMaxAhead_mm_s = 20;
 // Target and hard limit for the row pieces per tick. The limit applies if skipping lines would leave height
 // differences above kMaxUneven_voxels.
@@ -33,10 +33,10 @@ constexpr std::size_t kPiecesOfTick = 1024;
 constexpr std::size_t kMaxPiecesOfTick = 4096;
 constexpr double kMaxUneven_voxels = 0.6;
 // Capacity: also bounds the first ticks, in which the number of pieces is not known yet.
-constexpr std::size_t kRoomForPieces = 2 * kMaxPiecesOfTick;
+constexpr std::size_t kPieceCapacity = 2 * kMaxPiecesOfTick;
 constexpr unsigned kMaxShares = 64;
 // Time worth of budget that is carried over: a burr may bounce on the bone and lose contact for some ticks.
-constexpr double kBudgetKept_s = 0.01;
+constexpr double kMaxCarry_s = 0.01;
 // Time constant of the estimate of the cut bone. If shorter, the rate follows single voxels.
 constexpr double kMeasured_s = 0.005;
 // Directions in which density is sampled; half of them point ahead.
@@ -87,7 +87,7 @@ BurrReach make_reach(const Volume& volume, double burr_radius_mm, const BoneDens
               densities.reference > densities.surroundings,
           "BurrMill: the reference density must be above that of the surroundings");
   return BurrReach(volume, reach_mm(geometry, burr_radius_mm, max_ahead(geometry)),
-                   float_not_below(densities.surroundings), kRoomForPieces);
+                   float_not_below(densities.surroundings), kPieceCapacity);
 }
 
 }  // namespace
@@ -119,15 +119,15 @@ MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N
                            double speed_share) noexcept {
   const double force_N = burr_force_W_N.norm();
   if (settings_.chips && force_N > 0 && std::isfinite(force_N) && burr_centre_W.allFinite())
-    look_ahead(burr_centre_W, burr_force_W_N / force_N, dt_s);
+    sample_ahead(burr_centre_W, burr_force_W_N / force_N, dt_s);
   const double paid_mm3_s = rate_mm3_s(force_N, speed_share);
   const double pressed_mm3 = paid_mm3_s * dt_s;
   if (!(pressed_mm3 > 0) || !std::isfinite(pressed_mm3) || !burr_centre_W.allFinite()) {
-    lift(dt_s);
+    step_without_force(dt_s);
     return {};
   }
   force_free_s_ = 0;
-  const double budget_mm3 = carry_mm3_ + pressed_mm3;
+  const double budget_mm3 = unspent_mm3_ + pressed_mm3;
   const CuttingBall ball = ball_in_grid(burr_centre_W, burr_force_W_N);
   const double max_ahead_mm = std::min(std::max(ahead_mm_, 0.0) + kMaxAhead_mm_s * dt_s, max_ahead_mm_);
   const double lines = share_.count;
@@ -139,12 +139,12 @@ MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N
   done.rate_mm3_s = paid_mm3_s;
   if (settings_.chips) measure_contact(lines * advance.slope_per_mm, dt_s);
   // May be slightly negative by float rounding; the next step pays for it.
-  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kBudgetKept_s * paid_mm3_s);
+  unspent_mm3_ = std::min(budget_mm3 - done.removed_mm3, kMaxCarry_s * paid_mm3_s);
   return done;
 }
 
 // Samples the bone just beyond the reach of the profile, which still has its scanned densities.
-void BurrMill::look_ahead(const Vec3& centre_W, const Vec3& ahead_W, double dt_s) {
+void BurrMill::sample_ahead(const Vec3& centre_W, const Vec3& ahead_W, double dt_s) {
   const double reach_mm = radius_mm_ + CutProfile::kReach_voxels * geometry().spacing_mm.maxCoeff();
   const Vec3 from_W = centre_W + std::max(ahead_mm_, 0.0) * ahead_W;
   const double range = densities_.reference - densities_.surroundings;
@@ -174,10 +174,10 @@ void BurrMill::measure_contact(double slope_per_mm, double dt_s) {
   cut_bone_.area_mm2 += share * (area_mm2 - cut_bone_.area_mm2);
 }
 
-void BurrMill::lift(double dt_s) {
+void BurrMill::step_without_force(double dt_s) {
   if (dt_s > 0) force_free_s_ += dt_s;
-  if (force_free_s_ < kForgetAfter_s) return;
-  carry_mm3_ = 0;
+  if (force_free_s_ < kBudgetTimeout_s) return;
+  unspent_mm3_ = 0;
   ahead_mm_ = 0;
   cut_bone_ = {};
 }
@@ -191,7 +191,7 @@ void BurrMill::find(const CuttingBall& ball, double max_ahead_mm, double pressed
   reach_.find(ball.centre_mm + 0.5 * max_ahead_mm * ball.ahead,
               reach_mm(geometry(), radius_mm_, max_ahead_mm), share_);
   const double contact_mm2 = std::numbers::pi * radius_mm_ * radius_mm_;
-  share_after(reach_.pieces().size(), pressed_mm3 / contact_mm2 / geometry().spacing_mm.minCoeff());
+  update_line_share(reach_.pieces().size(), pressed_mm3 / contact_mm2 / geometry().spacing_mm.minCoeff());
   const CutProfile profile = CutProfile::between(static_cast<double>(reach_.floor_density()),
                                                  volume_->isovalue(), densities_.reference);
   voxels_.gather(reach_, ball, profile, max_ahead_mm);
@@ -200,8 +200,8 @@ void BurrMill::find(const CuttingBall& ball, double max_ahead_mm, double pressed
 // A burr deep in its hole overlaps tens of thousands of voxels and removes a thousandth of each per tick.
 // Every second line then takes twice as much every second tick, and so on. Whole lines are skipped because
 // they sample the burr evenly.
-void BurrMill::share_after(std::size_t found, double advance_voxels) {
-  found_of_round_ += found;
+void BurrMill::update_line_share(std::size_t found, double advance_voxels) {
+  pieces_this_round_ += found;
   ++share_.turn;
   const auto may_double = [&](std::size_t all) {
     const bool even = 2 * share_.count * advance_voxels <= kMaxUneven_voxels;
@@ -209,10 +209,10 @@ void BurrMill::share_after(std::size_t found, double advance_voxels) {
   };
   const bool too_many = found > 2 * kPiecesOfTick && may_double(found * share_.count);
   if (!too_many && share_.turn < share_.count) return;
-  const std::size_t all = too_many ? found * share_.count : found_of_round_;
+  const std::size_t all = too_many ? found * share_.count : pieces_this_round_;
   share_ = {};
   while (may_double(all)) share_.count *= 2;
-  found_of_round_ = 0;
+  pieces_this_round_ = 0;
 }
 
 void BurrMill::count_labels(const LabelMap& labels, const CutVoxels::Row& row) {

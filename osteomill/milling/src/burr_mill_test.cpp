@@ -207,8 +207,8 @@ TEST(BurrMill, StopsWhereItsReachEndsAndCarriesTheRestWithinBounds) {
         }
         EXPECT_TRUE(now >= 391.7 || now == was);
       }
-  EXPECT_LE(mill.carry_mm3(), kMilling.removal_rate_mm3_per_Ns * kForce_N * 0.01 * (1 + 1e-12));
-  EXPECT_GT(mill.carry_mm3(), 0);
+  EXPECT_LE(mill.unspent_mm3(), kMilling.removal_rate_mm3_per_Ns * kForce_N * 0.01 * (1 + 1e-12));
+  EXPECT_GT(mill.unspent_mm3(), 0);
 }
 
 TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
@@ -218,10 +218,10 @@ TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
   const Vec3 air(0, 0, 3);
   mill.step(air, down(10), 0.001);
   for (int n = 0; n < 40; ++n) mill.step(air, down(0), 0.001);
-  EXPECT_NEAR(mill.carry_mm3(), 0.02, 1e-12) << "40 ms without force are no lift";
+  EXPECT_NEAR(mill.unspent_mm3(), 0.02, 1e-12) << "40 ms without force are no lift";
   mill.step(air, down(1e-9), 0.001);
   for (int n = 0; n < 51; ++n) mill.step(air, down(0), 0.001);
-  EXPECT_EQ(mill.carry_mm3(), 0);
+  EXPECT_EQ(mill.unspent_mm3(), 0);
 }
 
 TEST(BurrMill, CutsWhereItPresses) {

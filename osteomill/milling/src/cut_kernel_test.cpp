@@ -14,8 +14,8 @@
 namespace osteomill {
 namespace {
 
+using testing_support::available_instruction_sets;
 using testing_support::ForcedInstructionSet;
-using testing_support::instruction_sets_here;
 
 constexpr double kRadius_mm = 1.3;
 const CutProfile kProfile = CutProfile::between(-100, 450, 1000);
@@ -85,7 +85,7 @@ TEST(CutKernel, CostsWhatAPlainSumOfDropsDoes) {
 
 TEST(CutKernel, EverySetOfInstructionsGivesTheSameBits) {
   const Volume bone = random_bone(Vec3(0.12, 0.15, 0.2));
-  const std::vector<std::int64_t> targets = instruction_sets_here(cut_kernel_targets());
+  const std::vector<std::int64_t> targets = available_instruction_sets(cut_kernel_targets());
   ASSERT_GE(targets.size(), 2u);
   std::vector<double> first;
   for (const std::int64_t target : targets) {

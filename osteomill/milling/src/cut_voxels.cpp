@@ -28,7 +28,7 @@ CutKernelBall kernel_ball(const CuttingBall& ball, const Vec3& spacing_mm) {
 }
 
 // Writes a padding entry, which costs nothing.
-void put_nothing(CutLists& lists, std::size_t n, float surroundings) {
+void write_padding(CutLists& lists, std::size_t n, float surroundings) {
   lists.distance2_mm2[n] = 1;
   lists.ahead_mm[n] = 0;
   lists.voxels_per_mm[n] = 1;
@@ -38,12 +38,12 @@ void put_nothing(CutLists& lists, std::size_t n, float surroundings) {
 // Newton's method started from the last tick takes two or three passes; bisection alone takes 25.
 constexpr int kMaxPasses = 25;
 constexpr double kTolerance = 0.01;
-constexpr double kNoDistance_mm = 1e-7;
+constexpr double kMinInterval_mm = 1e-7;
 // Maximum fraction of the budget for the trailing half.
 constexpr double kMaxTrailing = 0.5;
 
 // Returns `of` / `all`, clamped to [0, 1]; 1 if `all` is 0. `of` may be slightly negative by float rounding.
-double part(double of, double all) {
+double clamped_ratio(double of, double all) {
   const double spent = std::max(of, 0.0);
   return all > spent ? spent / all : 1.0;
 }
@@ -110,7 +110,7 @@ void CutVoxels::gather(BurrReach& reach, const CuttingBall& ball, const CutProfi
     if (lists_.size > begin) rows_.push_back({j, k, begin, lists_.size});
     if (denser != piece.bits) reach.forget_voxels(piece, piece.bits & ~denser);
   }
-  for (std::size_t n = 0; n < kLanes; ++n) put_nothing(lists_, lists_.size + n, profile.surroundings);
+  for (std::size_t n = 0; n < kLanes; ++n) write_padding(lists_, lists_.size + n, profile.surroundings);
 }
 
 CutVoxels::Cost CutVoxels::cost(double ahead_mm) const noexcept {
@@ -141,7 +141,7 @@ BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_
                            double max_ahead_mm) noexcept {
   BurrAdvance advance{std::clamp(start_ahead_mm, min_ahead_mm, max_ahead_mm), {}, 0};
   CutVoxels::Cost cost = voxels.cost(advance.ahead_mm);
-  const double trailing = cost.trailing * part(kMaxTrailing * budget, cost.trailing);
+  const double trailing = cost.trailing * clamped_ratio(kMaxTrailing * budget, cost.trailing);
   const double leading = budget - trailing;
   double low = min_ahead_mm, high = max_ahead_mm;
   bool low_tried = false, high_tried = false;
@@ -150,14 +150,14 @@ BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_
     if (std::abs(over) <= kTolerance * leading) break;
     (over > 0 ? high : low) = advance.ahead_mm;
     (over > 0 ? high_tried : low_tried) = true;
-    if (high - low < kNoDistance_mm) break;
+    if (high - low < kMinInterval_mm) break;
     advance.ahead_mm =
         next_ahead(advance.ahead_mm, over, cost.slope_per_mm, low, high, low_tried, high_tried);
     cost = voxels.cost(advance.ahead_mm);
   }
   advance.slope_per_mm = cost.slope_per_mm;
-  advance.shares.leading = part(leading, cost.leading);
-  advance.shares.trailing = part(budget - advance.shares.leading * cost.leading, cost.trailing);
+  advance.shares.leading = clamped_ratio(leading, cost.leading);
+  advance.shares.trailing = clamped_ratio(budget - advance.shares.leading * cost.leading, cost.trailing);
   return advance;
 }
 

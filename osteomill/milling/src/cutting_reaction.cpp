@@ -27,7 +27,7 @@ Wrench reaction(const Vec3& ahead_W, const Vec3& shaft_W, double burr_radius_mm,
 
 }  // namespace
 
-double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) noexcept {
+double rim_power_fraction(const Vec3& ahead_W, const Vec3& shaft_W) noexcept {
   const double along = shaft_W.dot(ahead_W);
   return 1 - kAround - kAlong * along * along;
 }
@@ -37,7 +37,7 @@ Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const V
   if (!spindle_on) return Vec3::Zero();
   const double force_N = burr_force_W_N.norm();
   if (!(settings.reaction_share > 0 || settings.chips) || !(force_N > 0)) return burr_force_W_N;
-  return rim_share(burr_force_W_N / force_N, shaft_direction(X_WT)) * burr_force_W_N;
+  return rim_power_fraction(burr_force_W_N / force_N, shaft_direction(X_WT)) * burr_force_W_N;
 }
 
 ShaftDrag shaft_drag(const MillingTool& tool, const Pose& X_WT, const Wrench& contact) noexcept {
@@ -61,13 +61,13 @@ void CuttingReaction::follow(const Pose& X_WT, const Vec3& burr_force_W_N, doubl
   if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
   const double force_N = burr_force_W_N.norm();
   const bool cuts = removed_mm3 > 0 && force_N > 0 && std::isfinite(force_N);
-  const double share = cuts ? rim_share(burr_force_W_N / force_N, shaft_direction(X_WT)) : 1;
-  follow_paid(X_WT, burr_force_W_N,
-              cuts ? removed_mm3 / (settings_.removal_rate_mm3_per_Ns * share * dt_s) : 0, dt_s);
+  const double share = cuts ? rim_power_fraction(burr_force_W_N / force_N, shaft_direction(X_WT)) : 1;
+  update_from_force(X_WT, burr_force_W_N,
+                    cuts ? removed_mm3 / (settings_.removal_rate_mm3_per_Ns * share * dt_s) : 0, dt_s);
 }
 
-void CuttingReaction::follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s,
-                                  const Wrench& shaft_drag) noexcept {
+void CuttingReaction::update_from_force(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N,
+                                        double dt_s, const Wrench& shaft_drag) noexcept {
   if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
   Wrench now = shaft_drag;
   const double force_N = burr_force_W_N.norm();

@@ -19,12 +19,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kBetweenBones = 500ms;
-constexpr auto kSendWithin = 2s;
+constexpr auto kMinImageInterval = 500ms;
+constexpr auto kSendTimeout = 2s;
 constexpr const char* kName = "OsteomillBone";
 
 // x and y of the protocol (RAS) are opposite to those of W.
-igtl::Matrix4x4& set_place(const Mat3& axes_W, const Vec3& origin_W, igtl::Matrix4x4& matrix) {
+igtl::Matrix4x4& fill_matrix(const Mat3& axes_W, const Vec3& origin_W, igtl::Matrix4x4& matrix) {
   const Vec3 to_ras(-1, -1, 1);
   igtl::IdentityMatrix(matrix);
   for (int row = 0; row < 3; ++row) {
@@ -54,7 +54,7 @@ igtl::ImageMessage::Pointer message_of(const BoneFollower& bone, const VoxelBox&
     const auto [wide, high, deep] = box.dims();
     message->SetSubVolume(wide, high, deep, box.first.i, box.first.j, box.first.k);
     igtl::Matrix4x4 matrix;
-    message->SetMatrix(set_place(grid.direction, middle_W(grid), matrix));
+    message->SetMatrix(fill_matrix(grid.direction, middle_W(grid), matrix));
     message->AllocateScalars();
     auto* density = static_cast<float*>(message->GetScalarPointer());
     for_each(box, [&](const VoxelIndex& v) { *density++ = now.grid()[v]; });
@@ -66,14 +66,14 @@ void send(Socket& stream, igtl::MessageBase* message) {
   message->Pack();
   stream.send_all({static_cast<const unsigned char*>(message->GetPackPointer()),
                    static_cast<std::size_t>(message->GetPackSize())},
-                  kSendWithin);
+                  kSendTimeout);
 }
 
 void send_tool(Socket& stream, const TickRecord& now) {
   const auto place = igtl::TransformMessage::New();
   igtl::Matrix4x4 matrix;
   place->SetDeviceName("OsteomillTool");
-  place->SetMatrix(set_place(now.X_WT.orientation.toRotationMatrix(), now.X_WT.position_mm, matrix));
+  place->SetMatrix(fill_matrix(now.X_WT.orientation.toRotationMatrix(), now.X_WT.position_mm, matrix));
   send(stream, place.GetPointer());
   const auto readings = igtl::StringMessage::New();
   readings->SetDeviceName("OsteomillReadings");
@@ -102,7 +102,7 @@ BoneSender::BoneSender(const BoneFollower& bone, const std::string& address, dou
   bone.read([&](const Volume& now) { voxels = now.geometry().voxel_count(); });
   if (voxels > std::numeric_limits<int>::max() / sizeof(float))
     throw InputError(name, "the scan is larger than an OpenIGTLink image may be, 2 GiB");
-  auto stream = std::make_unique<Socket>(name, host_and_port("--send-bone", address), Socket::Kind::stream);
+  auto stream = std::make_unique<Socket>(name, resolve_address("--send-bone", address), Socket::Kind::stream);
   thread_ =
       std::jthread([this, stream = std::move(stream)](const std::stop_token& stop) { run(stop, *stream); });
 }
@@ -117,7 +117,7 @@ void BoneSender::run(const std::stop_token& stop, Socket& stream) {
   bone_.read([&](const Volume& now) { all = now.geometry().all_voxels(); });
   std::uint64_t sent_version = bone_.version();
   send(stream, message_of(bone_, all).GetPointer());
-  auto next_bone = std::chrono::steady_clock::now() + kBetweenBones;
+  auto next_bone = std::chrono::steady_clock::now() + kMinImageInterval;
   std::vector<unsigned char> unread(1 << 16);
   for (bool is_last = false; stream.is_open() && !is_last;) {
     std::optional<TickRecord> tool;
@@ -132,7 +132,7 @@ void BoneSender::run(const std::stop_token& stop, Socket& stream) {
     if (tool) send_tool(stream, *tool);
     const auto now = std::chrono::steady_clock::now();
     if (now < next_bone && !is_last) continue;
-    next_bone = now + kBetweenBones;
+    next_bone = now + kMinImageInterval;
     const std::uint64_t version = bone_.version();
     if (version == std::exchange(sent_version, version)) continue;
     if (const VoxelBox box = milled_box(bone_, all); !box.empty())

@@ -95,7 +95,7 @@ std::vector<Label> read_labels(const fs::path& path, hid_t file) {
     if (!name.ends_with(".name")) continue;
     const std::string value = name.substr(0, name.find('.'));
     Label label;
-    const auto number = parsed_number<decltype(label.value)>(value);
+    const auto number = parse_number<decltype(label.value)>(value);
     label.value = number.value_or(0);
     const std::string colour = read.get<std::string>(value + ".colour");
     unsigned rgb = 0;

@@ -8,7 +8,7 @@ namespace osteomill {
 
 namespace {
 
-void require_whole(bool whole) {
+void require_intact_pipe(bool whole) {
   if (!whole) throw std::runtime_error("the pipe to the child is broken");
 }
 
@@ -19,7 +19,7 @@ PipeEnd::PipeEnd(int descriptor, Direction direction, std::uintmax_t max_bytes)
       direction_(direction),
       max_bytes_(max_bytes) {
   if (file_ == nullptr) ::close(descriptor);
-  require_whole(file_ != nullptr);
+  require_intact_pipe(file_ != nullptr);
 }
 
 PipeEnd::~PipeEnd() {
@@ -29,18 +29,18 @@ PipeEnd::~PipeEnd() {
 void PipeEnd::pass_bytes(void* data, std::size_t count) {
   // An empty container may have no memory.
   if (count == 0) return;
-  require_whole((is_reading() ? std::fread(data, 1, count, file_) : std::fwrite(data, 1, count, file_)) ==
-                count);
+  require_intact_pipe(
+      (is_reading() ? std::fread(data, 1, count, file_) : std::fwrite(data, 1, count, file_)) == count);
 }
 
 std::size_t PipeEnd::pass_count(std::size_t count, std::size_t size) {
   pass_bytes(&count, sizeof(count));
-  require_whole(count <= max_bytes_ / size);
+  require_intact_pipe(count <= max_bytes_ / size);
   return count;
 }
 
 void PipeEnd::flush() {
-  require_whole(std::fflush(file_) == 0);
+  require_intact_pipe(std::fflush(file_) == 0);
 }
 
 }  // namespace osteomill

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool holds_its_own_values(hid_t dataset) {
+bool has_internal_data(hid_t dataset) {
   const Hdf5Handle layout(H5Dget_create_plist(dataset), H5Pclose);
   bool own = H5Pget_external_count(layout.get()) == 0 && H5Pget_layout(layout.get()) != H5D_VIRTUAL;
   for (int n = 0; own && n < H5Pget_nfilters(layout.get()); ++n) {
@@ -36,18 +36,18 @@ bool holds_its_own_values(hid_t dataset) {
 }
 
 // Errors that mean the file cannot be locked.
-bool is_of_a_lock(int error) {
+bool is_lock_error(int error) {
   return error == ENOLCK || error == EAGAIN || error == ENOSYS || error == EOPNOTSUPP;
 }
 
-void require_nothing_elsewhere(const Hdf5File& file) {
+void require_self_contained(const Hdf5File& file) {
   std::string refused;
   const auto check_link = [](hid_t group, const char* name, const H5L_info_t* link, void* found) -> herr_t {
     bool within = link->type == H5L_TYPE_HARD;
     if (within) {
       const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
       const H5I_type_t type = H5Iget_type(object.get());
-      within = type == H5I_GROUP || (type == H5I_DATASET && holds_its_own_values(object.get()));
+      within = type == H5I_GROUP || (type == H5I_DATASET && has_internal_data(object.get()));
     }
     if (!within) *static_cast<std::string*>(found) = name;
     return within ? 0 : 1;
@@ -131,10 +131,10 @@ Hdf5File open_hdf5(const fs::path& path) {
   const Hdf5Handle access = access_without_locks();
   errno = 0;
   file.handle = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
-  if (!file.handle.valid() && is_of_a_lock(errno))
+  if (!file.handle.valid() && is_lock_error(errno))
     file.refuse(with_reason("cannot be locked; unset HDF5_USE_FILE_LOCKING"));
   if (!file.handle.valid()) file.refuse("cannot be opened: it is truncated or damaged");
-  require_nothing_elsewhere(file);
+  require_self_contained(file);
   return file;
 }
 

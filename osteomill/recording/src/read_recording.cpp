@@ -304,7 +304,7 @@ Recording read_checked(const fs::path& path) {
 
 Recording read_recording(const fs::path& path) {
   Recording recording = read_checked(path);
-  note_input(path);
+  register_input(path);
   return recording;
 }
 
@@ -391,7 +391,7 @@ bool is_hdf5(const fs::path& path) {
 
 namespace {
 
-bool is_run_alike(const RunDescription& a, const RunDescription& b) {
+bool has_same_setup(const RunDescription& a, const RunDescription& b) {
   const auto settings = [](const RunDescription& run) {
     std::vector<RunSetting> those = run.settings;
     // Ignores entries that are not settings: the command line and the resulting number of sample points.
@@ -411,7 +411,7 @@ std::vector<Recording> split_by_setup(Recording recording) {
   const std::vector<RecordedSession>& sessions = recording.sessions;
   for (std::size_t n = 1; n < sessions.size(); ++n) {
     if (sessions[n].first > sessions[first.back()].first &&
-        !is_run_alike(sessions[n - 1].start.run, sessions[n].start.run))
+        !has_same_setup(sessions[n - 1].start.run, sessions[n].start.run))
       first.push_back(n);
   }
   std::vector<Recording> stretches;

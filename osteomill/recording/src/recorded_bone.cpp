@@ -27,7 +27,7 @@ VoxelIndex voxel_at(const GridGeometry& geometry, std::size_t number) {
 RecordedBone::RecordedBone(const Volume& scan, const Recording& recording, std::size_t max_bytes)
     : scan_(scan), bone_(scan), recording_(recording), max_bytes_(max_bytes), every_ticks_(kEveryTicks) {
   require_made_with(recording, scan);
-  require_whole(recording);
+  require_complete(recording);
   std::set<std::size_t> changed;
   const auto note = [&](const VoxelBox& voxels) {
     for_each(voxels.bricks(DensityBlock::kVoxels), [&](const VoxelIndex& brick) {

@@ -37,7 +37,7 @@ constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
 
 // Resolves the output path. Refuses pipes and devices, because HDF5 needs random access and the file is
 // renamed at the end.
-fs::path file_behind(const fs::path& path) {
+fs::path resolve_output_file(const fs::path& path) {
   fs::path file = output_path(path);
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -54,8 +54,8 @@ struct Recorder::Impl {
   Impl(const fs::path& path_, const RunDescription& description, FirstSession first_session,
        UnfinishedFile unfinished_)
       : unfinished(unfinished_),
-        path(file_behind(path_)),
-        part(file_behind(unfinished_recording_path(path))),
+        path(resolve_output_file(path_)),
+        part(resolve_output_file(unfinished_recording_path(path))),
         kept(set_aside(part)),
         held(FileLock::create_locked(part)),
         file(part, description) {

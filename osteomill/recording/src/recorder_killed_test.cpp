@@ -54,7 +54,7 @@ TEST(KilledRecorder, LeavesARecordingThatReadsUpToShortlyBeforeItsEnd) {
     SharedCount pushed;
     const pid_t child = ::fork();
     if (child == 0) record_forever(folder / "run.h5", *pushed);
-    const bool records = comes_true([&] { return (*pushed).load() >= 200; });
+    const bool records = becomes_true_in_time([&] { return (*pushed).load() >= 200; });
     const int well_before = (*pushed).load();
     // At most the last second is lost; the rounds kill at different times between two flushes.
     std::this_thread::sleep_for(1000ms + round * 37ms);

@@ -29,8 +29,8 @@ namespace {
 constexpr hsize_t kSmallChunkRows = 64;
 // Higher levels take longer and save next to nothing, because the low bits of poses and forces are noise.
 constexpr unsigned kDeflateLevel = 1;
-// Flushes between two calls of forget_flushed_metadata(): some five seconds.
-constexpr std::uint64_t kFlushesRemembered = 10;
+// Flushes between two calls of evict_flushed_metadata(): some five seconds.
+constexpr std::uint64_t kFlushesPerEviction = 10;
 // Space for HDF5's metadata until the next flush, bytes: chunk addresses and the names in a session.
 constexpr std::uint64_t kRoomForMetadata = 256 * 1024;
 
@@ -58,7 +58,7 @@ hid_t file_type(const NumberRange& range) {
 
 // Disables HDF5's metadata cache eviction. Otherwise HDF5 also writes part of the metadata between flushes,
 // whenever the cache is full, and a program killed then leaves a file that cannot be opened.
-// `forget_flushed_metadata` frees the cache instead.
+// `evict_flushed_metadata` frees the cache instead.
 bool keep_metadata_until_flush(hid_t file) {
   H5AC_cache_config_t config;
   config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
@@ -368,12 +368,12 @@ void RecordingFile::flush(std::uint64_t dropped) {
   const Hdf5Lock lock;
   Attributes(path_, file_.get()).replace("dropped_records", dropped);
   require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written");
-  if (++flushes_ % kFlushesRemembered == 0) forget_flushed_metadata();
+  if (++flushes_ % kFlushesPerEviction == 0) evict_flushed_metadata();
 }
 
 // Frees HDF5's index of chunk addresses, which grows by 100 MB per hour, by reopening each dataset
 // (H5Pset_evict_on_close).
-void RecordingFile::forget_flushed_metadata() {
+void RecordingFile::evict_flushed_metadata() {
   for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_, &view_columns_}) {
     for (Column& column : *columns) {
       const Hdf5Handle access(H5Dget_access_plist(column.dataset.get()), H5Pclose);

@@ -63,7 +63,7 @@ class RecordingFile {
   std::uint64_t end() const;
   /// Reserves disk space for `bytes` beyond the current end of the file.
   void reserve(std::uint64_t bytes);
-  void forget_flushed_metadata();
+  void evict_flushed_metadata();
   Hdf5Handle create_group(hid_t in, const std::string& name) const;
   Column create_column(hid_t group, const char* name, hid_t type, const char* unit, hsize_t width,
                        hsize_t chunk_rows) const;

@@ -25,7 +25,7 @@ void refuse(const Recording& recording, const std::string& reason) {
   throw InputError(recording.path.string(), reason);
 }
 
-void require_whole(const Recording& recording) {
+void require_complete(const Recording& recording) {
   if (recording.sessions.empty()) refuse(recording, "holds no ticks");
   if (recording.dropped > 0)
     refuse(recording, fmt::format("lost {} ticks, so it cannot be replayed", recording.dropped));
@@ -33,7 +33,7 @@ void require_whole(const Recording& recording) {
     refuse(recording, "continues " + before + ", without which it cannot be replayed");
 }
 
-std::size_t end_of(const Recording& recording, std::size_t session) {
+std::size_t session_end(const Recording& recording, std::size_t session) {
   return session + 1 < recording.sessions.size() ? recording.sessions[session + 1].first
                                                  : recording.records.size();
 }

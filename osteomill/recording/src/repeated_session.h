@@ -17,9 +17,9 @@ namespace osteomill {
 /// Throws an InputError that names the recording.
 [[noreturn]] void refuse(const Recording& recording, const std::string& reason);
 /// Throws InputError, naming the recording, if it is empty, lost ticks or continues another recording.
-void require_whole(const Recording& recording);
+void require_complete(const Recording& recording);
 /// Returns the index of the tick after a session's last one.
-std::size_t end_of(const Recording& recording, std::size_t session);
+std::size_t session_end(const Recording& recording, std::size_t session);
 
 /// Calls `make`, and turns its std::invalid_argument for settings out of range into an InputError.
 template <typename Make>

@@ -29,7 +29,7 @@ std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
 void require_guards(const Volume& scan, const Recording& recording) {
   const auto* recorded = find_setting<double>(recording.description, kGuardsKey);
   const double had = recorded != nullptr ? *recorded : 0;
-  const int guards = scan.no_go() ? guard_count(*scan.no_go()) : 0;
+  const int guards = scan.no_go() ? count_guards(*scan.no_go()) : 0;
   if (had != guards)
     refuse(recording,
            fmt::format("was recorded with {:g} guarded structures, not {}; open it with the same exercise",
@@ -93,7 +93,7 @@ void repeat_session(Volume& volume, const Recording& recording, std::size_t numb
   const std::size_t first = recording.sessions[number].first;
   begin_at(recording.sessions[number].start, volume);
   RepeatedSession session(volume, recording, number, first);
-  for (std::size_t tick = first; tick < end_of(recording, number); ++tick) {
+  for (std::size_t tick = first; tick < session_end(recording, number); ++tick) {
     VolumeChange change = session.mill_next();
     if (tick == first) change.voxels = volume.geometry().all_voxels();
     if (on_tick) on_tick(tick, volume, change);
@@ -113,7 +113,7 @@ std::unique_ptr<MillingSession> run_from(std::size_t row, std::unique_ptr<Millin
       session = session_at(scan, start, recording, hooks);
       if (hooks.on_session) hooks.on_session(start, *session);
     }
-    for (std::size_t tick = std::max(first, row); tick < end_of(recording, n); ++tick) {
+    for (std::size_t tick = std::max(first, row); tick < session_end(recording, n); ++tick) {
       const TickRecord& recorded = recording.records[tick];
       TickRecord now = replay_tick(*session, recorded);
       now.session = recorded.session;
@@ -161,7 +161,7 @@ class Comparison {
 };
 
 void require_replayable(const Volume& scan, const Recording& recording) {
-  require_whole(recording);
+  require_complete(recording);
   if (recording.records.empty()) refuse(recording, "holds no ticks");
   require_made_with(recording, scan);
   require_guards(scan, recording);
@@ -237,7 +237,7 @@ void replay_rest(ResumedRecording resumed, const Volume& scan, const Recording& 
 
 void repeat_milling(Volume& volume, const Recording& recording, const OnRepeatedTick& on_tick) {
   require_made_with(recording, volume);
-  require_whole(recording);
+  require_complete(recording);
   const Volume scan = volume;
   for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
     if (n > 0) volume = scan;

@@ -100,8 +100,8 @@ void put_setting(RunDescription& run, const FieldDescription& field, double valu
   }
 }
 
-std::optional<double> taken_setting(const RunDescription& run, const FieldDescription& field,
-                                    const std::filesystem::path& path) {
+std::optional<double> read_setting(const RunDescription& run, const FieldDescription& field,
+                                   const std::filesystem::path& path) {
   if (const double* number = find_setting<double>(run, field.name)) return *number;
   if (field.has(kMayBeAbsent)) return std::nullopt;
   throw InputError(path.string(), "has no setting '" + field.name + "', so its milling cannot be replayed");
@@ -160,7 +160,7 @@ RunDescription describe_run(const Volume& bone, const ScanIdentity& scan, const 
     run.label_map_hash = labels->fingerprint();
   }
   run.settings.push_back({std::string(kCommandLineKey), command_line, ""});
-  if (const int guards = bone.no_go() ? guard_count(*bone.no_go()) : 0; guards > 0)
+  if (const int guards = bone.no_go() ? count_guards(*bone.no_go()) : 0; guards > 0)
     run.settings.push_back({std::string(kGuardsKey), static_cast<double>(guards), ""});
   set_session_settings(run, session, sample_points);
   return run;

@@ -29,10 +29,10 @@ const Pose kNoPose{kNotANumber, Quat::Identity()};
 
 // Returns `bone` after checking that the guard's settings are valid, the tool can work in the bone, and the
 // algorithm supports the guards of its structures.
-std::shared_ptr<Volume> workable(const MillingSetup& setup, std::shared_ptr<Volume> bone) {
+std::shared_ptr<Volume> checked_bone(const MillingSetup& setup, std::shared_ptr<Volume> bone) {
   require_workable(setup.guard);
   require_workable(setup.tool, bone->geometry());
-  if (bone->no_go() && guard_count(*bone->no_go()) > 0 && !setup.algorithm.has_guards) {
+  if (bone->no_go() && count_guards(*bone->no_go()) > 0 && !setup.algorithm.has_guards) {
     throw std::invalid_argument(setup.algorithm.id.name +
                                 " cannot hold the burr off structures, as their guard_mm asks");
   }
@@ -86,7 +86,7 @@ Vec3 Vibration::force_N(const Pose& X_WT, double cutting_N, double spindle_rpm, 
 
 MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities,
                                const MillingSetup& setup)
-    : volume_(workable(setup, std::move(bone))),
+    : volume_(checked_bone(setup, std::move(bone))),
       setup_(setup),
       densities_(densities),
       algorithm_(make_algorithm(setup.algorithm, setup.haptics)),
@@ -247,8 +247,8 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
         vibration_.force_N(step.X_WT, vibrating_N(step.burr_force_W_N), spindle_.speed_rpm(), dt_s);
   if (milling_.reaction_share > 0) step.wrench = step.wrench + reaction_.wrench();
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
-  const bool may_be_let = is_driven && (!guard_.is_held_back() || is_free(X_WD));
-  SafeWrench safe = guard_.filter(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, may_be_let);
+  const bool can_release = is_driven && (!guard_.is_held_back() || is_free(X_WD));
+  SafeWrench safe = guard_.filter(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, can_release);
   // Report it even if the algorithm, deep in bone, asked for zero anyway.
   if (safe.fault == WrenchFault::none && is_driven && guard_.is_held_back())
     safe.fault = WrenchFault::held_back;
@@ -285,8 +285,8 @@ void MillingSession::mill(const HapticStep& step, const ShaftDrag& shaft_drag, T
   cutting_share_ += dt_s / (kCutting_s + dt_s) * (std::min(paid_share, 1.0) - cutting_share_);
   double holding_share = paid_share;
   if (record.spindle_on && force_N > 0 && std::isfinite(force_N)) {
-    const double rim_N =
-        milling_.tangential_share * force_N * rim_share(force_W_N / force_N, shaft_direction(step.X_WT));
+    const double rim_N = milling_.tangential_share * force_N *
+                         rim_power_fraction(force_W_N / force_N, shaft_direction(step.X_WT));
     const double rim_mm_s = 2 * std::numbers::pi * radius_mm * record.spindle_rpm / 60;
     load_Nmm_ = rim_N * radius_mm;
     // The whole pressing force drags, whether it cuts or not, limited by the drive's stall torque.
@@ -296,7 +296,7 @@ void MillingSession::mill(const HapticStep& step, const ShaftDrag& shaft_drag, T
   }
   load_Nmm_ += shaft_drag.torque_Nmm;
   if (milling_.chips || setup_.drag) {
-    reaction_.follow_paid(step.X_WT, force_W_N, holding_share * force_N, dt_s, shaft_drag.wrench);
+    reaction_.update_from_force(step.X_WT, force_W_N, holding_share * force_N, dt_s, shaft_drag.wrench);
   } else {
     reaction_.follow(step.X_WT, force_W_N, cut.removed_mm3, dt_s);
   }

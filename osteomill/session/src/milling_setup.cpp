@@ -13,7 +13,7 @@ namespace {
 // Fields without names; a recording stores them in its own attributes.
 std::vector<Field<MillingTool>> tool_fields() {
   using T = MillingTool;
-  constexpr unsigned kOwn = kOfTheTool | kOfTheRecording;
+  constexpr unsigned kOwn = kToolField | kRecordedField;
   constexpr NumberRange kRadius{0.01, 100}, kLength{0.01, 1000};
   return {
       field<T>({"", "mm", kRadius, "Radius of the burr's sphere", kOwn, "burr-radius"}, &T::burr_radius_mm),
@@ -94,7 +94,7 @@ constexpr NumberRange kSpeed{1, 1e6}, kEnergy{0.001, 1e6}, kRate{1e-12, 1e12}, k
 
 std::vector<Field<CuttingSettings>> cutting_fields() {
   using C = CuttingSettings;
-  constexpr unsigned kOwn = kOfTheCutting | kOfTheRecording;
+  constexpr unsigned kOwn = kCuttingField | kRecordedField;
   return {
       field<C>(
           {"vibration.spindle_speed", "rpm", kSpeed, "Rotational speed of the burr", kOwn, "spindle-speed"},
@@ -113,7 +113,7 @@ FieldDescription choice(const char* name, const char* doc, const char* option,
           "",
           NumberRange::count(0, last),
           doc,
-          kOfTheCutting | kOfTheRecording | kMayBeAbsent,
+          kCuttingField | kRecordedField | kMayBeAbsent,
           option,
           std::move(choices)};
 }
@@ -154,7 +154,7 @@ Field<S> burr_name_field() {
   return {{"", "", NumberRange::count(0, last),
            "Named burr, which sets burr size, shaft and kind of burr: surgical, such as cutting-2 or "
            "diamond-2.5 (mm), or dental, such as dental-014 (ISO size); docs/exercises.md lists all",
-           kOfTheTool | kOfTheRecording, "burr-name", std::move(names)},
+           kToolField | kRecordedField, "burr-name", std::move(names)},
           [](const S& s) {
             const NamedBurr* burr = find_burr(s.tool, s.burr);
             return burr == nullptr ? 0.0 : static_cast<double>(burr - named_burrs().data() + 1);
@@ -169,7 +169,7 @@ Field<S> burr_name_field() {
 
 Field<S> chip_field(const char* name, const char* unit, const NumberRange& range, const char* doc,
                     const char* option, double S::*member) {
-  return field<S>({name, unit, range, doc, kOfTheCutting | kOfTheRecording | kMayBeAbsent, option}, member);
+  return field<S>({name, unit, range, doc, kCuttingField | kRecordedField | kMayBeAbsent, option}, member);
 }
 
 std::vector<Field<S>> law_fields() {
@@ -205,15 +205,15 @@ std::vector<Field<S>> removal_fields() {
       {{"milling.removal_rate", "mm^3/(N s)", kRate,
         "Volume of bone removed per time and force (default: computed from burr, spindle speed and cutting "
         "energy)",
-        kOfTheCutting | kOfTheRecording | kFollows, "removal-rate"},
+        kCuttingField | kRecordedField | kDerivedField, "removal-rate"},
        [](const S& s) { return milling_settings(s).removal_rate_mm3_per_Ns; },
        [](S& s, double value) { s.removal_rate_mm3_per_Ns = value; }},
       field<S>({"", "", kSwitch, "Render the tangential cutting force of the burr; its pole then cuts less",
-                kOfTheCutting, "cutting-reaction"},
+                kCuttingField, "cutting-reaction"},
                &S::cutting_reaction),
       field<S>({"milling.drag", "", kSwitch,
                 "Render the friction of the spinning burr and shaft on bone that they do not cut",
-                kOfTheCutting | kMayBeAbsent, "drag"},
+                kCuttingField | kMayBeAbsent, "drag"},
                &S::drag),
       {{"milling.reaction_share", "", kNotNegative,
         "Rendered tangential force as a share of the burr's force; 0 if none is rendered"},
@@ -229,15 +229,15 @@ std::vector<Field<GuardSettings>> guard_fields() {
   using G = GuardSettings;
   return {
       field<G>(
-          {"limit.force", "N", kForce, "Limit of the force sent to the device", kOfTheLimits, "force-limit"},
+          {"limit.force", "N", kForce, "Limit of the force sent to the device", kLimitField, "force-limit"},
           [](auto& g) -> auto& { return g.limits.force_N; }),
       field<G>(
-          {"limit.torque", "N mm", kTorque, "Limit of the torque sent to the device", kOfTheLimits,
+          {"limit.torque", "N mm", kTorque, "Limit of the torque sent to the device", kLimitField,
            "torque-limit"},
           [](auto& g) -> auto& { return g.limits.torque_Nmm; }),
       field<G>({"passivity_controller", "", kSwitch,
                 "Passivity controller: damp a contact that has given the hand more energy than it took",
-                kOfTheLimits, "passivity-controller"},
+                kLimitField, "passivity-controller"},
                &G::passivity_controller),
       field<G>(
           {"guard.max_force_rate", "N/s", kLimit, "Limit of the rate of change of the force sent"},
@@ -262,7 +262,7 @@ std::vector<Field<VibrationSettings>> vibration_fields() {
   using V = VibrationSettings;
   return {
       field<V>(
-          {"vibration", "", kSwitch, "Render the vibration of the cutting burr", kOfTheCutting, "vibration"},
+          {"vibration", "", kSwitch, "Render the vibration of the cutting burr", kCuttingField, "vibration"},
           &V::on),
       field<V>({"vibration.force_share", "", kNotNegative,
                 "Amplitude of the vibration as a share of the burr's force"},
@@ -279,7 +279,7 @@ std::vector<Field<ContactTransientSettings>> transient_fields() {
   using C = ContactTransientSettings;
   return {
       field<C>({"contact_transient", "", kSwitch, "Render a knock when a fast tool meets bone",
-                kOfTheCutting | kMayBeAbsent, "contact-transient"},
+                kCuttingField | kMayBeAbsent, "contact-transient"},
                &C::on),
       field<C>({"contact_transient.damping", "N s/mm", kNotNegative,
                 "Amplitude of the knock per speed of the impact", kMayBeAbsent},

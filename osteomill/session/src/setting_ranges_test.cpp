@@ -151,7 +151,7 @@ TEST(SettingRanges, EitherEndOfToolCuttingAndLimitsHoldsOrIsToldOf) {
 // Bone is removed under the burr, so this checks only the sent wrench.
 TEST(SettingRanges, EitherEndOfTheCuttingsSettingsCutsByFiniteNumbers) {
   for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
-    if (!field.has(kOfTheCutting) || field.option.empty()) continue;
+    if (!field.has(kCuttingField) || field.option.empty()) continue;
     for (const double value : {field.range.min, field.range.max}) {
       SCOPED_TRACE(field.option + " = " + std::to_string(value));
       MillingSetup setup = setup_of(default_algorithm());

@@ -32,7 +32,7 @@ class TrajectoryReader {
   explicit TrajectoryReader(const std::filesystem::path& path) : name_(path.string()), file_(path) {
     if (!std::filesystem::exists(path)) throw InputError(name_, "no such file");
     if (!file_ || std::filesystem::is_directory(path)) throw InputError(name_, "cannot be read");
-    note_input(path);
+    register_input(path);
   }
 
   std::vector<TrajectoryPoint> read() {
@@ -84,7 +84,7 @@ class TrajectoryReader {
     Row row;
     for (std::size_t n = 0; n < kColumns.size(); ++n) {
       const std::string_view text = fields[field_of_column_[n]];
-      const auto value = parsed_finite(text);
+      const auto value = parse_finite(text);
       if (!value) fail(fmt::format("{} is not a number: '{}'", kColumns[n], text));
       row[n] = *value;
     }

@@ -92,9 +92,9 @@ void WrenchGuard::fade_out() noexcept {
 
 SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) noexcept {
   sent_ = osteomill::approach(sent_, target, settings_.rates, usual_tick_s(dt_s));
-  const bool short_of_it = sent_.force_N != target.force_N || sent_.torque_Nmm != target.torque_Nmm;
+  const bool is_rate_limited = sent_.force_N != target.force_N || sent_.torque_Nmm != target.torque_Nmm;
   observer_.send(sent_);
-  return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::rate_limited : fault};
+  return {sent_, is_rate_limited && fault == WrenchFault::none ? WrenchFault::rate_limited : fault};
 }
 
 SafeWrench WrenchGuard::filter_zero(const Pose& X_WD, double dt_s) noexcept {

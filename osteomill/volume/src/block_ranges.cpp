@@ -32,14 +32,14 @@ BlockRanges::BlockRanges(const DensityGrid& grid)
                          [&](const VoxelIndex& brick) { range(brick) = range_of(grid, brick); });
 }
 
-VoxelBox BlockRanges::counted_voxels(const VoxelIndex& brick, const GridGeometry& geometry) {
+VoxelBox BlockRanges::covered_voxels(const VoxelIndex& brick, const GridGeometry& geometry) {
   const auto& [i, j, k] = VoxelBox::of_brick(brick, kBrickVoxels).last;
   return VoxelBox{VoxelBox::of_brick(brick, kBrickVoxels).first, {i + 1, j + 1, k + 1}}.intersected(
       geometry.all_voxels());
 }
 
 BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, const VoxelIndex& brick) {
-  const VoxelBox box = counted_voxels(brick, grid.geometry());
+  const VoxelBox box = covered_voxels(brick, grid.geometry());
   Range range{grid[box.first], grid[box.first]};
   for (int k = box.first.k; k <= box.last.k; ++k) {
     for (int j = box.first.j; j <= box.last.j; ++j) {

@@ -186,7 +186,7 @@ std::vector<std::size_t> piece_sizes(const DensityGrid& grid, double isovalue) {
   return largest_first(ConnectedRuns(grid, isovalue).sizes());
 }
 
-PiecesLeftOut leave_out_pieces(DensityGrid& grid, double isovalue, const PieceChoice& choice) {
+DiscardedPieces discard_pieces(DensityGrid& grid, double isovalue, const PieceChoice& choice) {
   ConnectedRuns runs(grid, isovalue);
   const std::vector<std::size_t> sizes = runs.sizes();
   const auto largest = static_cast<std::size_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
@@ -195,7 +195,7 @@ PiecesLeftOut leave_out_pieces(DensityGrid& grid, double isovalue, const PieceCh
     return (!choice.only_largest || piece == largest) &&
            static_cast<double>(sizes[piece]) * voxel_mm3 >= choice.min_mm3;
   };
-  PiecesLeftOut result;
+  DiscardedPieces result;
   for (std::size_t piece = 0; piece < sizes.size(); ++piece) {
     if (sizes[piece] == 0) continue;
     ++(is_kept(piece) ? result.kept : result.pieces);

@@ -149,7 +149,7 @@ TEST_F(TwoBalls, HaveTheVolumesOfBalls) {
 
 TEST_F(TwoBalls, OnlyTheLargestStays) {
   DensityGrid left = grid();
-  const PiecesLeftOut out = leave_out_pieces(left, kIsovalue, {.only_largest = true});
+  const DiscardedPieces out = discard_pieces(left, kIsovalue, {.only_largest = true});
   EXPECT_EQ(2u, out.pieces);
   EXPECT_EQ(1u, out.kept);
   EXPECT_EQ(piece_sizes(grid(), kIsovalue)[1] + 1, out.voxels);
@@ -161,7 +161,7 @@ TEST_F(TwoBalls, OnlyTheLargestStays) {
 TEST_F(TwoBalls, PiecesBelowASizeGo) {
   const auto kept = [&](const PieceChoice& choice) {
     DensityGrid left = grid();
-    return leave_out_pieces(left, kIsovalue, choice).kept;
+    return discard_pieces(left, kIsovalue, choice).kept;
   };
   EXPECT_EQ(3u, kept({}));
   EXPECT_EQ(3u, kept({.min_mm3 = geometry_.voxel_volume_mm3()}));
@@ -184,7 +184,7 @@ TEST_F(TwoBalls, OfAnEmptyVoxelThereIsNoPieceAndTooManyBricksAreRefused) {
 TEST(BonePieces, OfGridWithoutBoneThereIsNone) {
   DensityGrid none = made_of(centred_cube(4, 1), [](const VoxelIndex&) { return false; });
   EXPECT_TRUE(piece_sizes(none, kIsovalue).empty());
-  EXPECT_EQ(0u, leave_out_pieces(none, kIsovalue, {.only_largest = true}).pieces);
+  EXPECT_EQ(0u, discard_pieces(none, kIsovalue, {.only_largest = true}).pieces);
 }
 
 }  // namespace

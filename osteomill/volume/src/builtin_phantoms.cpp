@@ -23,7 +23,7 @@ constexpr double kSoftBone = 1200;
 constexpr double kHardBone = 1800;
 
 // Returns the fraction of a voxel inside a surface, given its centre's signed distance (negative inside).
-double share_inside(double distance_mm) {
+double inside_fraction(double distance_mm) {
   return std::clamp(0.5 - distance_mm / (2 * kSpacing_mm), 0.0, 1.0);
 }
 
@@ -47,8 +47,9 @@ DensityGrid grid_of(const std::array<int, 3>& dims, double top_z_mm, const Densi
 }
 
 double layers_density(const Vec3& p) {
-  const double hard_share = std::max(share_inside(-2 - p.z()), share_inside(std::abs(p.z() + 5.5) - 0.5));
-  return mixed(kAir, mixed(kSoftBone, kHardBone, hard_share), share_inside(p.z()));
+  const double hard_share =
+      std::max(inside_fraction(-2 - p.z()), inside_fraction(std::abs(p.z() + 5.5) - 0.5));
+  return mixed(kAir, mixed(kSoftBone, kHardBone, hard_share), inside_fraction(p.z()));
 }
 
 DensityGrid layers() {
@@ -106,10 +107,10 @@ double mastoid_density(const Vec3& p) {
   // Cells spare the cortex and the plates over nerve, sinus and dura.
   const double cell_mm = std::max({cell_distance_mm(p), kPlate_mm - tissue_mm, outside_mm + kCortex_mm});
   const double bone =
-      mixed(kSoftBone, kHardBone, share_inside(std::min(tissue_mm - kPlate_mm, -kCortex_mm - outside_mm)));
-  const double with_cells = mixed(bone, kAir, share_inside(cell_mm));
-  const double with_tissue = mixed(with_cells, kSoftTissue, share_inside(tissue_mm));
-  return mixed(kAir, with_tissue, share_inside(outside_mm));
+      mixed(kSoftBone, kHardBone, inside_fraction(std::min(tissue_mm - kPlate_mm, -kCortex_mm - outside_mm)));
+  const double with_cells = mixed(bone, kAir, inside_fraction(cell_mm));
+  const double with_tissue = mixed(with_cells, kSoftTissue, inside_fraction(tissue_mm));
+  return mixed(kAir, with_tissue, inside_fraction(outside_mm));
 }
 
 DensityGrid mastoid() {

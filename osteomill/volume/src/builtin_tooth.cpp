@@ -198,7 +198,7 @@ double in_mm(const Shape& shape, double value, double x, double y, double z) {
   return value / std::max(slope, 0.3);
 }
 
-double share_inside(double distance_mm) {
+double inside_fraction(double distance_mm) {
   return ramp(0.5 - distance_mm / kEdge_mm);
 }
 
@@ -209,7 +209,7 @@ double density(double x, double y, double z) {
   const double thickness_mm = enamel_thickness_mm(x, y, z);
   const bool enamel_near = thickness_mm > -kEdge_mm && value > -4;
   const double distance_mm = enamel_near || value > -kFar_mm ? in_mm(tooth, value, x, y, z) : value;
-  const double tooth_share = share_inside(distance_mm);
+  const double tooth_share = inside_fraction(distance_mm);
   if (tooth_share <= 0) return kSurroundings;
 
   const double enamel_share =
@@ -217,7 +217,7 @@ double density(double x, double y, double z) {
                   : 0;
   const double hard = kDentine + enamel_share * (kEnamel - kDentine);
   const double pulp_value = value < -0.3 && std::abs(x) < 5 && z < 18 ? pulp(x, y, z) : kFar_mm;
-  const double pulp_share = pulp_value < kFar_mm ? share_inside(in_mm(pulp, pulp_value, x, y, z)) : 0;
+  const double pulp_share = pulp_value < kFar_mm ? inside_fraction(in_mm(pulp, pulp_value, x, y, z)) : 0;
   return tooth_share * (hard + pulp_share * (kPulp - hard));
 }
 
@@ -233,17 +233,17 @@ GridGeometry tooth_geometry(double refinement) {
   return geometry;
 }
 
-// Blocks of voxels are skipped if the tooth is farther from their centre than any of their voxels; kSteepest
+// Blocks of voxels are skipped if the tooth is farther from their centre than any of their voxels; kMaxSlope
 // bounds the slope of tooth().
 constexpr int kBlock = 8;
-constexpr double kSteepest = 2.0;
+constexpr double kMaxSlope = 2.0;
 
 void fill_block(const GridGeometry& geometry, const VoxelBox& block, std::vector<float>& densities) {
   const Vec3 first = geometry.world_from_voxel(block.first);
   const Vec3 last = geometry.world_from_voxel(block.last);
   const Vec3 middle = 0.5 * (first + last);
   const double reach_mm = 0.5 * (last - first).norm() + kEdge_mm;
-  if (tooth(middle.x(), middle.y(), middle.z()) > kSteepest * reach_mm) return;
+  if (tooth(middle.x(), middle.y(), middle.z()) > kMaxSlope * reach_mm) return;
   for_each(block, [&](const VoxelIndex& v) {
     const Vec3 p = geometry.world_from_voxel(v);
     densities[row_major(geometry.dims, v.i, v.j, v.k)] = static_cast<float>(density(p.x(), p.y(), p.z()));

@@ -41,7 +41,7 @@ void write_all(int file, const char* bytes, std::size_t count, std::size_t at) {
 }
 
 // Frees the pages wholly inside [from, to).
-void give_back(float* from, float* to) {
+void release_pages(float* from, float* to) {
   const auto up = (reinterpret_cast<std::uintptr_t>(from) + kPageBytes - 1) / kPageBytes * kPageBytes;
   const auto down = reinterpret_cast<std::uintptr_t>(to) / kPageBytes * kPageBytes;
   if (up < down) madvise(reinterpret_cast<void*>(up), down - up, MADV_DONTNEED);
@@ -84,7 +84,7 @@ class CopyOnWriteFloats::Original {
       if (piece.size() < kAtOnce && row + 1 < rows) continue;
       write_all(file_, reinterpret_cast<const char*>(piece.data()), piece.size() * sizeof(float),
                 written * sizeof(float));
-      give_back(begin, from + layout.row_length);
+      release_pages(begin, from + layout.row_length);
       begin = from + layout.row_length;
       written += piece.size();
       piece.clear();

@@ -327,7 +327,7 @@ namespace {
 
 // Returns whether the isovalue belongs to the boundary. An isovalue halfway between two densities may be far
 // from the sharpest density of the bone's boundary, and is then that of another one, such as the skin.
-bool lies_on(const Choice& chosen, const Boundary& boundary) {
+bool is_on_boundary(const Choice& chosen, const Boundary& boundary) {
   constexpr double kNear = 0.18;
   const double off = std::abs(chosen.value - boundary.density) / (boundary.above - boundary.below);
   return boundary.below < chosen.value && chosen.value < boundary.above &&
@@ -343,7 +343,7 @@ SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_u
   Choice chosen = isovalue_of_bone(samples, in_hounsfield_units);
   std::string others;
   for (Boundary& boundary : boundaries) {
-    boundary.is_suggested = lies_on(chosen, boundary);
+    boundary.is_suggested = is_on_boundary(chosen, boundary);
     if (!boundary.is_suggested)
       others += fmt::format("{}{:.4g}", others.empty() ? "" : " and ", boundary.density);
   }

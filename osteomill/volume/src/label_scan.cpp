@@ -135,7 +135,8 @@ Edges edges_of(const DensityGrid& grid, const std::vector<int>& ranks) {
 LabelGuess guess_labels(const DensityGrid& grid) {
   // Measured: real label maps have `far` >= 0.23 and `between` = 0; CTs and phantoms quantised to 3 to 256
   // levels have `far` <= 0.05 or `between` >= 0.018.
-  constexpr double kSeldomFar = 0.05, kSeldomBetween = 0.01, kOftenBetween = 0.05;
+  constexpr double kMinNonadjacentShare = 0.05, kMaxBetweenShareOfLabels = 0.01,
+                   kMinBetweenShareOfDensities = 0.05;
   constexpr std::size_t kFewLevels = 32;
   const Values values = values_of(grid);
   if (values.different < 2) return LabelGuess::densities;
@@ -143,10 +144,11 @@ LabelGuess guess_labels(const DensityGrid& grid) {
   // With two values, neither can lie between others, and a mask gives the same bone as labels or as a scan.
   if (values.different == 2) return mostly_0 ? LabelGuess::labels : LabelGuess::densities;
   const Edges edges = edges_of(grid, ranks_of(values));
-  const bool touch_any = edges.far >= kSeldomFar;
-  if (mostly_0 && touch_any && edges.between <= kSeldomBetween) return LabelGuess::labels;
+  const bool has_nonadjacent_edges = edges.far >= kMinNonadjacentShare;
+  if (mostly_0 && has_nonadjacent_edges && edges.between <= kMaxBetweenShareOfLabels)
+    return LabelGuess::labels;
   if ((mostly_0 && values.different <= kFewLevels) ||
-      (values.counts[0] > 0 && touch_any && edges.between < kOftenBetween))
+      (values.counts[0] > 0 && has_nonadjacent_edges && edges.between < kMinBetweenShareOfDensities))
     return LabelGuess::unclear;
   return LabelGuess::densities;
 }

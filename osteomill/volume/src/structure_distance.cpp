@@ -9,7 +9,7 @@ namespace osteomill {
 
 namespace {
 
-VoxelBox reached_from(const VoxelBox& box, const Vec3& spacing_mm) {
+VoxelBox grown_by_reach(const VoxelBox& box, const Vec3& spacing_mm) {
   const auto voxels = [&](Eigen::Index axis) {
     return static_cast<int>(std::ceil(StructureDistance::kReach_mm / spacing_mm[axis]));
   };
@@ -56,7 +56,7 @@ double distance_mm(const CylinderShape& cylinder, const Vec3& point_W) noexcept 
 
 StructureDistance::StructureDistance(const VoxelSet& voxels, const GridGeometry& scan)
     : scan_(scan),
-      nearest_(voxels, reached_from(voxels.box(), scan.spacing_mm), scan.spacing_mm,
+      nearest_(voxels, grown_by_reach(voxels.box(), scan.spacing_mm), scan.spacing_mm,
                NearestVoxels::To::faces) {
   if (!nearest_.found()) throw std::invalid_argument("StructureDistance: the structure has no voxels");
 }
@@ -66,10 +66,10 @@ double StructureDistance::from(const Vec3& point_W) const noexcept {
   return std::visit([&](const auto& solid) { return distance_mm(solid, point_W); }, solid_);
 }
 
-DistanceSlope StructureDistance::slope_from(const Vec3& point_W) const noexcept {
+DistanceAndGradient StructureDistance::distance_and_gradient_from(const Vec3& point_W) const noexcept {
   if (nearest_.found()) return slope_from_voxels(point_W);
   return std::visit(
-      [&](const auto& solid) -> DistanceSlope {
+      [&](const auto& solid) -> DistanceAndGradient {
         const double distance = distance_mm(solid, point_W);
         if (!(distance > 0)) return {};
         return {distance, (point_W - nearest_point_W(solid, point_W)).normalized()};
@@ -109,7 +109,7 @@ double StructureDistance::from_voxels(const Vec3& point_W) const noexcept {
   return std::sqrt(least2_mm2);
 }
 
-DistanceSlope StructureDistance::slope_from_voxels(const Vec3& point_W) const noexcept {
+DistanceAndGradient StructureDistance::slope_from_voxels(const Vec3& point_W) const noexcept {
   const Vec3 point = scan_.voxel_from_world(point_W);
   const VoxelIndex corner = cell_corner(point);
   const Vec3 share = (point - Vec3(corner.i, corner.j, corner.k)).cwiseMax(0).cwiseMin(1);
@@ -126,7 +126,7 @@ DistanceSlope StructureDistance::slope_from_voxels(const Vec3& point_W) const no
   return {distance_mm, scan_.direction * rise.cwiseQuotient(scan_.spacing_mm)};
 }
 
-int guard_count(const NoGoDistances& structures) {
+int count_guards(const NoGoDistances& structures) {
   return static_cast<int>(
       std::ranges::count_if(structures, [](const auto& one) { return one.guard_mm.has_value(); }));
 }

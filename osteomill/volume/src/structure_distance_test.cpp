@@ -71,14 +71,14 @@ TEST(StructureDistance, InterpolatesWithoutStepsAndNoFartherThanItSays) {
   for (int n = 0; n < 10000; ++n) {
     const Vec3 point_W =
         scan.world_from_voxel(Vec3(39 * share(random), 39 * share(random), 39 * share(random)));
-    const DistanceSlope slope = distance.slope_from(point_W);
+    const DistanceAndGradient slope = distance.distance_and_gradient_from(point_W);
     const double true_mm = to_the_cubes_mm(voxels, scan, point_W);
     if (true_mm > 0) {
       ASSERT_LE(slope.distance_mm, true_mm + distance.max_excess_mm(true_mm) + 1e-5);
     }
     const Vec3 beside_W = point_W + 1e-4 * Vec3(share(random), share(random), share(random));
-    ASSERT_NEAR(distance.slope_from(beside_W).distance_mm, slope.distance_mm, 3e-4);
-    const double rise_mm = distance.slope_from(point_W + 1e-7 * slope.gradient_W).distance_mm;
+    ASSERT_NEAR(distance.distance_and_gradient_from(beside_W).distance_mm, slope.distance_mm, 3e-4);
+    const double rise_mm = distance.distance_and_gradient_from(point_W + 1e-7 * slope.gradient_W).distance_mm;
     ASSERT_NEAR((rise_mm - slope.distance_mm) / 1e-7, slope.gradient_W.squaredNorm(), 1e-3);
   }
 }
@@ -91,7 +91,7 @@ TEST(StructureDistance, HasTheSlopeOfItsDifferencesFromASolid) {
         StructureDistance(CylinderShape{{0, 0, -1}, {1, 1, 2}, 1})}) {
     for (int n = 0; n < 1000; ++n) {
       const Vec3 point_W(share(random), share(random), share(random));
-      const DistanceSlope slope = solid.slope_from(point_W);
+      const DistanceAndGradient slope = solid.distance_and_gradient_from(point_W);
       ASSERT_NEAR(slope.distance_mm, solid.from(point_W), 1e-9);
       for (int axis = 0; axis < 3; ++axis) {
         const Vec3 step = 1e-6 * Vec3::Unit(axis);

@@ -177,7 +177,7 @@ static std::string playback_text(Lines lines, const WindowContents& window) {
   lines.add("tick", playback.tick());
   lines.add("playing", playback.is_playing());
   lines.add("speed", playback.speed());
-  lines.add("recorded_camera", playback.follows_recorded_view());
+  lines.add("recorded_camera", playback.is_following_recorded_view());
   lines.add("verdict", playback.verdict());
   lines.add("force_N", fmt::format("{:.3f}", playback.record().wrench.force_N.norm()));
   playback.follower().read([&](const Volume& bone) { lines.add("bone", bone.change_hash()); });

@@ -137,7 +137,7 @@ void UiScript::begin(const Action& action, Window& window) {
   } else if (name == "resize") {
     window.resize({static_cast<int>(number(action, 0)), static_cast<int>(number(action, 1))});
   } else if (name == "quit") {
-    window.ask_to_close();
+    window.request_close();
   } else if (name == "controls") {
     controls_path_ = action.text;
   } else if (name == "display") {
@@ -154,7 +154,7 @@ void UiScript::next() {
   keys_.clear();
 }
 
-void UiScript::give_input(double passed_s, bool is_settled, Window& window) {
+void UiScript::inject_input(double passed_s, bool is_settled, Window& window) {
   ImGuiIO& io = ImGui::GetIO();
   double wheel = 0;
   bool pressed = false;
@@ -235,7 +235,7 @@ void UiScript::say(const std::string& text, const WindowContents& contents) {
   fmt::print(
       "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
       "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm³, {} cuts, scan {}\n",
-      text, contents.pictures_per_s, 1e3 * cpu_s / std::max(pictures_since_said_, 1), contents.triangles,
+      text, contents.frames_per_s, 1e3 * cpu_s / std::max(pictures_since_said_, 1), contents.triangles,
       timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
       record.removed_mm3, milling.follower().cuts(), contents.simulation->scan.name);
   for (const std::string& complaint : contents.view.dialogues.errors()) {

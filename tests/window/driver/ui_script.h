@@ -42,12 +42,14 @@ class UiScript : public WindowDriver {
   /// Throws InputError naming the file and the line if a line is not an action.
   explicit UiScript(const std::filesystem::path& path);
 
-  bool starts_before_scan() const override { return !actions_.empty() && actions_.front().name == "at-once"; }
+  bool is_started_before_scan() const override {
+    return !actions_.empty() && actions_.front().name == "at-once";
+  }
   /// Throws InputError if a label is not in the window.
-  void give_input(double passed_s, bool is_settled, Window& window) override;
+  void inject_input(double passed_s, bool is_settled, Window& window) override;
   /// Takes screenshots, and prints the requested states on standard output.
   void read(const WindowContents& contents) override;
-  bool wants_to_close() const override { return closed_; }
+  bool has_close_request() const override { return closed_; }
   /// Writes the file of controls.
   void finish() override;
 

@@ -52,7 +52,7 @@ bool is_device_or_pipe(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-void write_through(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+void write_to_special_file(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   // Without O_NONBLOCK, opening a FIFO blocks until another program reads it.
   const int reader_is_there = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (reader_is_there < 0)
@@ -177,7 +177,7 @@ fs::path output_path(const fs::path& path) {
 
 void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   const fs::path target = output_path(path);
-  if (is_device_or_pipe(target)) return write_through(path, write);
+  if (is_device_or_pipe(target)) return write_to_special_file(path, write);
   const fs::path beside = create_beside(target, create_file);
   const SignalCleanup cleanup(beside);
   try {

@@ -68,7 +68,7 @@ TEST_F(AtomicFileTest, ALinkStaysAndWhatItLeadsToIsWritten) {
   EXPECT_EQ(file_count(), 4);
 }
 
-TEST_F(AtomicFileTest, WhatIsNoFileIsWrittenInto) {
+TEST_F(AtomicFileTest, WritesIntoAFifoInsteadOfReplacingIt) {
   const fs::path pipe = folder_ / "pipe.csv";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
@@ -101,16 +101,16 @@ TEST_F(AtomicFileTest, APipeThatNobodyReadsIsRefused) {
   EXPECT_THROW(write_text_atomically(pipe, [](std::ostream&) { FAIL(); }), InputError);
 }
 
-TEST_F(AtomicFileTest, WhatIsReadIsNotWrittenOverByAnyOfItsNames) {
+TEST_F(AtomicFileTest, RefusesToOverwriteAnInputByAnyOfItsNames) {
   const fs::path scan = folder_ / "scan.nrrd";
   std::ofstream(scan) << "mine";
   fs::create_symlink(scan, folder_ / "link.nrrd");
   fs::create_hard_link(scan, folder_ / "other.nrrd");
-  note_input(scan);
+  register_input(scan);
   EXPECT_EQ(output_path(scan), scan);
   const InputProtection input_protection;
   EXPECT_EQ(output_path(scan), scan);
-  note_input(folder_ / "link.nrrd");
+  register_input(folder_ / "link.nrrd");
   for (const char* name : {"scan.nrrd", "link.nrrd", "other.nrrd"})
     EXPECT_THROW(output_path(folder_ / name), InputError) << name;
   EXPECT_THROW(write_folder_atomically(
@@ -151,7 +151,7 @@ TEST_F(AtomicFileTest, AFileThatFailsAmongOthersIsCalledByItsName) {
   }
 }
 
-TEST_F(AtomicFileTest, OfFilesThatBelongTogetherNoneIsLeftWhereOneFails) {
+TEST_F(AtomicFileTest, RemovesAllFilesOfAFolderIfOneFails) {
   const auto fail = [](const fs::path& beside) {
     std::ofstream(beside / "a.csv") << "half";
     throw InputError("b.csv", "cannot be written");
@@ -187,7 +187,7 @@ TEST_F(AtomicFileTest, AFolderKeepsNothingStaleOfAnEarlierOutput) {
 }
 
 // The child exits within `write`, like a killed process.
-TEST_F(AtomicFileTest, WhatAKilledProgramLeavesIsRemovedAndWhatALivingOneWritesIsNot) {
+TEST_F(AtomicFileTest, RemovesFoldersOfKilledProgramsButNotOfRunningOnes) {
   const ::pid_t child = ::fork();
   if (child == 0) {
     write_folder_atomically(folder_, [](const fs::path& beside) {

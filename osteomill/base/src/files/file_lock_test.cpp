@@ -30,7 +30,7 @@ TEST(FileLock, OneAtATimeHoldsAFile) {
   EXPECT_TRUE(FileLock::try_lock(folder / "b.h5"));
 }
 
-TEST(FileLock, WhatIsLeftIsSetAsideAndWhatIsHeldIsNot) {
+TEST(FileLock, RenamesLeftoversButNotLockedFiles) {
   const TemporaryFolder folder;
   const fs::path path = folder / "r.part.h5";
   EXPECT_FALSE(set_aside(path));

@@ -28,7 +28,7 @@ InputProtection::~InputProtection() {
   inputs.reset();
 }
 
-void note_input(const fs::path& path) {
+void register_input(const fs::path& path) {
   const std::lock_guard lock(mutex);
   if (inputs) inputs->insert(fs::absolute(path));
 }

@@ -26,12 +26,12 @@ namespace {
 constexpr std::chrono::milliseconds kConnectWithin{400};
 constexpr std::chrono::milliseconds kResolveWithin{400};
 
-bool would_wait() {
+bool would_block() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS;
 }
 
 // Prefers IPv4, because most servers on "localhost" listen there.
-std::string number_of(const addrinfo* found) {
+std::string numeric_address(const addrinfo* found) {
   const addrinfo* best = found;
   for (const addrinfo* other = found; other != nullptr && best->ai_family != AF_INET; other = other->ai_next)
     if (other->ai_family == AF_INET) best = other;
@@ -42,13 +42,13 @@ std::string number_of(const addrinfo* found) {
 
 // Returns the address of a host; empty if its name is unknown. Resolves it in a detached thread, so that
 // an unresponsive name server delays neither reopening a device nor ending the program.
-std::string resolved(const std::string& host) {
+std::string resolve_host(const std::string& host) {
   std::promise<std::string> promise;
   std::future<std::string> number = promise.get_future();
   std::thread([host, promise = std::move(promise)]() mutable {
     addrinfo* found = nullptr;
     const bool known = getaddrinfo(host.c_str(), nullptr, nullptr, &found) == 0;
-    promise.set_value(known ? number_of(found) : "");
+    promise.set_value(known ? numeric_address(found) : "");
     if (known) freeaddrinfo(found);
   }).detach();
   return number.wait_for(kResolveWithin) == std::future_status::ready ? number.get() : "";
@@ -56,14 +56,14 @@ std::string resolved(const std::string& host) {
 
 }  // namespace
 
-HostAndPort host_and_port(std::string_view device, const std::string& address) {
+HostAndPort resolve_address(std::string_view device, const std::string& address) {
   const std::size_t colon = address.rfind(':');
   HostAndPort at;
   if (colon != std::string::npos && colon > 0) {
     at.host = address.substr(0, colon);
-    at.port = parsed_number<decltype(at.port)>(std::string_view(address).substr(colon + 1)).value_or(0);
+    at.port = parse_number<decltype(at.port)>(std::string_view(address).substr(colon + 1)).value_or(0);
     if (at.port > 0 && at.port <= 65535) {
-      at.host = resolved(at.host);
+      at.host = resolve_host(at.host);
       if (!at.host.empty()) return at;
       throw InputError(fmt::format("{}:{}", device, address), "no such host is known");
     }
@@ -108,13 +108,13 @@ std::optional<std::size_t> Socket::receive(std::span<unsigned char> bytes) {
   const ssize_t length = ::recv(socket_, bytes.data(), bytes.size(), 0);
   const bool is_over = length == 0 && kind_ == Kind::stream;
   if (length >= 0 && !is_over) return static_cast<std::size_t>(length);
-  if (is_over || !would_wait()) close();
+  if (is_over || !would_block()) close();
   return std::nullopt;
 }
 
 std::size_t Socket::send(std::span<const unsigned char> bytes) {
   const ssize_t length = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-  if (length < 0 && !would_wait()) close();
+  if (length < 0 && !would_block()) close();
   return static_cast<std::size_t>(std::max<ssize_t>(length, 0));
 }
 

@@ -74,7 +74,7 @@ TEST(Field, ItReadsAndWritesNumbersSwitchesAndEnumerations) {
   EXPECT_EQ(sample.ends, (std::array<double, 2>{4, -0.5}));
 }
 
-TEST(Field, ThoseOfAPartAreFieldsOfTheWhole) {
+TEST(Field, FieldsOfAMemberBecomeFieldsOfTheStruct) {
   const auto fields = fields_within<Sample>(&Sample::part, part_fields());
   ASSERT_EQ(fields.size(), 2u);
   Sample sample;

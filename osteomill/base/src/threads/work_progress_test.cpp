@@ -21,7 +21,7 @@ void work_in_two_parts() {
   long_work(3);
 }
 
-TEST(WorkProgress, IsNothingWhereNobodyListens) {
+TEST(WorkProgress, DoesNothingWithoutAListener) {
   EXPECT_NO_THROW(work_in_two_parts());
 }
 

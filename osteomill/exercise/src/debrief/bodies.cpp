@@ -91,7 +91,7 @@ void add_bodies(json& data, const Attempt& attempt, const LabelMap& colours, std
   const PlacedExercise& exercise = *attempt.exercise;
   const Sphere near = target_ball(exercise);
   const std::size_t others = 4 + exercise.structures.size();
-  const auto add = [&](BodyLook look, const BrickMesh& mesh,
+  const auto add = [&](BodyStyle look, const BrickMesh& mesh,
                        const std::vector<ThicknessLeft>* left = nullptr) {
     if (mesh.empty()) return;
     look.choice = choice;

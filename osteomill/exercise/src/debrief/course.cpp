@@ -124,7 +124,7 @@ std::string command_at(const std::string& recording_name, double time_s) {
 }
 
 // Returns the moments that fit into a page: contacts first, then the largest removals.
-std::vector<Moment> shown_of(std::vector<Moment> moments) {
+std::vector<Moment> select_shown(std::vector<Moment> moments) {
   constexpr std::size_t kMost = 500;
   if (moments.size() <= kMost) return moments;
   std::ranges::stable_sort(moments, std::ranges::greater(), [](const Moment& one) {
@@ -208,14 +208,14 @@ void put_course(json& data, const Attempt& attempt, const Recording& recording,
     data["warn_mm"] = std::max(data["warn_mm"].get<double>(), structure.warn_mm);
   data["steps"] = data["burrs"] = data["marks"] = json::array();
   for (std::size_t n = 0; n < exercise.steps.size(); ++n) {
-    const double done_s = step_done_s(attempt, n);
+    const double done_s = step_completion_s(attempt, n);
     data["steps"].push_back({{"done_s", std::isnan(done_s) ? json() : json(done_s)}});
   }
   const auto burrs = burrs_of(recording);
   for (const auto& [tick, name] : burrs)
     if (tick < attempt.ticks.size())
       data["burrs"].push_back({{"time", attempt.ticks[tick].time_s}, {"text", name}});
-  const std::vector<Moment> moments = moments_of(attempt), shown = shown_of(moments);
+  const std::vector<Moment> moments = moments_of(attempt), shown = select_shown(moments);
   data["unlisted"] = unlisted_text(moments, shown);
   for (const Moment& moment : shown) {
     const auto later =
@@ -224,7 +224,7 @@ void put_course(json& data, const Attempt& attempt, const Recording& recording,
   }
 }
 
-void put_first_way(json& data, const FirstWay& first, const std::string& recording_name) {
+void put_original_attempt(json& data, const OriginalAttempt& first, const std::string& recording_name) {
   const std::size_t parting = first.from.ticks - 1;
   const AttemptTick& tick = first.attempt.ticks[parting];
   std::vector<AttemptProgress> rest = first.measured.progress;

@@ -18,6 +18,7 @@ void put_course(nlohmann::json& data, const Attempt& attempt, const Recording& r
 
 /// Adds the first attempt from where the other one branches off, with a mark there. `recording_name` is the
 /// first attempt's.
-void put_first_way(nlohmann::json& data, const FirstWay& first, const std::string& recording_name);
+void put_original_attempt(nlohmann::json& data, const OriginalAttempt& first,
+                          const std::string& recording_name);
 
 }  // namespace osteomill

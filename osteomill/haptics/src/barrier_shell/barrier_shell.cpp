@@ -82,15 +82,15 @@ constexpr double kMinRadius = 1e-9;
 // A small tool has a thinner skin, in proportion to its reduced rounding, so that it is felt where it is
 // drawn. A burr meets bone over about its cross-section, so pressure is scaled inversely with it: every burr
 // is held where it is drawn.
-Barrier skin_of(const MillingTool& tool, const Settings& settings) {
-  const double thinner = inset_within(tool, settings.rounding_mm) / settings.rounding_mm;
+Barrier scaled_barrier(const MillingTool& tool, const Settings& settings) {
+  const double thinner = core_inset_mm(tool, settings.rounding_mm) / settings.rounding_mm;
   const double smaller = MillingTool{}.burr_radius_mm / tool.burr_radius_mm;
   return {thinner * settings.skin_width_mm, smaller * smaller * settings.pressure_N_per_mm2};
 }
 
 // Returns the largest point spacing that a core of this radius cannot pass through: it passes when half the
 // diagonal of four points, 0.71 of the spacing, exceeds its radius. Leaves a margin of 15 %.
-double widest_spacing_mm(double core_radius_mm) {
+double max_point_spacing_mm(double core_radius_mm) {
   constexpr double kShareOfCore = 1.2;
   return kShareOfCore * core_radius_mm;
 }
@@ -158,17 +158,17 @@ void BarrierShell::prepare(const AlgorithmInputs& inputs) {
   require_valid(inputs.tool);
   volume_ = inputs.volume;
   tool_ = inputs.tool;
-  barrier_ = skin_of(inputs.tool, settings_);
+  barrier_ = scaled_barrier(inputs.tool, settings_);
   centreline_T_ = centreline_vertices(inputs.tool, kCentrelinePoints);
   core_inset_mm_ = 0;
   const Cores whole = cores();
-  const double at_shaft_mm = widest_spacing_mm(whole.cylinder_radius_mm);
+  const double at_shaft_mm = max_point_spacing_mm(whole.cylinder_radius_mm);
   const double spacing_mm =
-      std::min({settings_.point_spacing_mm, widest_spacing_mm(whole.ball_radius_mm), at_shaft_mm});
+      std::min({settings_.point_spacing_mm, max_point_spacing_mm(whole.ball_radius_mm), at_shaft_mm});
   bricks_ = BoneBricks(*inputs.volume, spacing_mm, inputs.tick_period_s);
   near_ = NearBone(kNearPoints, 2 * spacing_mm > at_shaft_mm);
   measured_ = MeasuredBone(kNearPoints);
-  guards_ = Guards(inputs.volume->no_go().get(), inputs.tool);
+  no_go_barriers_ = NoGoBarriers(inputs.volume->no_go().get(), inputs.tool);
   reset();
 }
 
@@ -195,7 +195,7 @@ void BarrierShell::begin_outside(const Pose& X_WD) {
   ramp_ = 0;
   ramp_from_ = {};
   has_energy_ = false;
-  guards_.begin_at(X_WT_.position_mm);
+  no_go_barriers_.begin_at(X_WT_.position_mm);
   if (started_inside_bone_) return;
   gather(X_WT_, {});
   has_begun_ = !near_.is_incomplete();
@@ -203,7 +203,8 @@ void BarrierShell::begin_outside(const Pose& X_WD) {
   const EnergySum &ball = measured_.ball.sum, &cylinder = measured_.cylinder.sum;
   const double nearest_mm = std::min(ball.nearest_mm, cylinder.nearest_mm);
   core_inset_mm_ = std::max(0.0, kStartGapShare * barrier_.width_mm - nearest_mm);
-  if (ball.touching + cylinder.touching == 0 && X_WT_ == X_WD && guards_.are_clear(X_WT_.position_mm, 0))
+  if (ball.touching + cylinder.touching == 0 && X_WT_ == X_WD &&
+      no_go_barriers_.is_clear(X_WT_.position_mm, 0))
     ramp_ = 1;
 }
 
@@ -228,7 +229,7 @@ BarrierShell::State BarrierShell::evaluate(const Pose& X_WT, const Pose& X_WD) {
               ball.gradient.head<3>()};
   state.sum += ball;
   state.sum += cylinder;
-  if (!guards_.empty()) state.barrier_Nmm += guards_.add_to(state.sum, X_WT);
+  if (!no_go_barriers_.empty()) state.barrier_Nmm += no_go_barriers_.add_to(state.sum, X_WT);
   ++counts_.passes;
   counts_.max_points = std::max<std::uint64_t>(counts_.max_points, near_.point_count());
   return state;
@@ -246,12 +247,12 @@ void BarrierShell::count_energy_rise(const State& state) {
 }
 
 // Returns true if no points are gathered, the move is within the bound, and the path is clear.
-bool BarrierShell::path_is_clear(const Pose& X_WD, const MoveBound& bound) {
+bool BarrierShell::check_path_clear(const Pose& X_WD, const MoveBound& bound) {
   const ToolMove move = move_between(X_WT_, X_WD);
   const MoveSize move_size = size_of(move);
   return near_.is_empty() && share_within(bound, move) >= 1 && move_size.move_mm <= kMaxFreeMove.move_mm &&
          move_size.turn_rad <= kMaxFreeMove.turn_rad &&
-         guards_.are_clear(X_WT_.position_mm, move_size.move_mm) &&
+         no_go_barriers_.is_clear(X_WT_.position_mm, move_size.move_mm) &&
          check_clearance(bricks_, cores(), barrier_.width_mm, X_WT_, move_size);
 }
 
@@ -293,11 +294,11 @@ NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   if (near_.is_incomplete()) return {.move_T = Vector6::Zero(), .is_last = true};
   const double within_leeway = share_with_leeway(step_size);
   step.move_T *= within_leeway;
-  double certified = certified_share(measured_.max_use(step.move_T, barrier_));
+  double certified = certified_fraction(measured_.max_use(step.move_T, barrier_));
   step.move_T *= certified;
-  if (!guards_.empty()) {
+  if (!no_go_barriers_.empty()) {
     const Vec3 move_W_mm = best.X_WT.orientation * Vec3(step.move_T.head<3>());
-    const double kept = guards_.share_kept(best.X_WT.position_mm, move_W_mm);
+    const double kept = no_go_barriers_.safe_step_fraction(best.X_WT.position_mm, move_W_mm);
     step.move_T *= kept;
     certified *= kept;
   }
@@ -315,10 +316,10 @@ BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
       move_bound(start, X_WD_before_, X_WD, coupling_.length_mm(),
                  {settings_.release_time_s, settings_.release_mm_s, settings_.release_rad_s}, dt_s);
   gather_for_next_move();
-  if (path_is_clear(X_WD, bound)) return {X_WD};
+  if (check_path_clear(X_WD, bound)) return {X_WD};
   State best = evaluate(start, X_WD);
   count_energy_rise(best);
-  counts_.nearest_share = std::min(counts_.nearest_share, best.sum.nearest_mm / barrier_.width_mm);
+  counts_.min_distance_share = std::min(counts_.min_distance_share, best.sum.nearest_mm / barrier_.width_mm);
   for (int passes = 1;;) {
     NewtonStep step = next_step(best, bound);
     if (step.is_last) {
@@ -391,7 +392,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
     has_energy_ = true;
     near_.list_supporting(measured_, barrier_.width_mm, bricks_);
     grow_cores(state.sum.nearest_mm, dt_s);
-    guards_.follow(X_WT_.position_mm);
+    no_go_barriers_.follow(X_WT_.position_mm);
     last_move_ = size_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);
   }

@@ -58,7 +58,7 @@ class BarrierShell final : public HapticAlgorithm {
   State evaluate(const Pose& X_WT, const Pose& X_WD);
   void gather(const Pose& X_WT, const MoveSize& leeway);
   void gather_for_next_move();
-  bool path_is_clear(const Pose& X_WD, const MoveBound& bound);
+  bool check_path_clear(const Pose& X_WD, const MoveBound& bound);
   double share_with_leeway(const MoveSize& step) const;
   NewtonStep next_step(const State& best, const MoveBound& bound);
   static Pose pose_after(const State& best, const NewtonStep& step, const Pose& X_WD);
@@ -75,7 +75,7 @@ class BarrierShell final : public HapticAlgorithm {
   BoneBricks bricks_;
   NearBone near_;
   MeasuredBone measured_;
-  Guards guards_;
+  NoGoBarriers no_go_barriers_;
 
   bool has_pose_ = false;
   Pose X_WT_;

@@ -96,7 +96,7 @@ TEST(BarrierShell, ABurrOfAnySizeRestsInItsOwnHoleWhereItIsDrawn) {
     const double down_mm = -step.X_WT.position_mm.z();
     EXPECT_NEAR(down_mm, 0, 0.03) << radius_mm;
     // Compares with the integrated pressure.
-    const double rounding_mm = inset_within(tool, settings.rounding_mm);
+    const double rounding_mm = core_inset_mm(tool, settings.rounding_mm);
     const Barrier skin{settings.skin_width_mm * rounding_mm / settings.rounding_mm,
                        settings.pressure_N_per_mm2 * 1.5 * 1.5 / (radius_mm * radius_mm)};
     EXPECT_NEAR(-step.burr_force_W_N.z(), bowl_force_N(radius_mm, rounding_mm, skin, down_mm), 0.1)
@@ -226,7 +226,7 @@ TEST(BarrierShell, NothingPushesThroughAThinSheet) {
       EXPECT_LT(deepest_of_push(algorithm, surface, tool, from, -normal, speed_mm_s, 12), 0.25);
     }
   }
-  EXPECT_GT(algorithm.counts().nearest_share, 0);
+  EXPECT_GT(algorithm.counts().min_distance_share, 0);
 }
 
 TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
@@ -254,7 +254,7 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
   }
   // While the bone does not change, only the device adds energy.
   EXPECT_EQ(algorithm.counts().energy_rises, 0u) << algorithm.counts().worst_rise_Nmm;
-  EXPECT_GT(algorithm.counts().nearest_share, 0);
+  EXPECT_GT(algorithm.counts().min_distance_share, 0);
 }
 
 TEST(BarrierShell, AToolThatBeginsInsideBoneIsCarriedOutAndThenHeld) {

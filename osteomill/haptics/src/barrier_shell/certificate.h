@@ -22,12 +22,12 @@ inline double distance_used_by_ball(const Vec3& outward_T, const Vector6& move_T
 }
 
 /// Smallest share of its distance that a step leaves to any point.
-inline constexpr double kDistanceKept = 0.1;
+inline constexpr double kMinDistanceShare = 0.1;
 
-/// Returns the largest share of a move that leaves every point `kDistanceKept` of its distance, given the
+/// Returns the largest share of a move that leaves every point `kMinDistanceShare` of its distance, given the
 /// largest `distance_used / distance` of all points.
-inline double certified_share(double max_use) noexcept {
-  return max_use > 1 - kDistanceKept ? (1 - kDistanceKept) / max_use : 1.0;
+inline double certified_fraction(double max_use) noexcept {
+  return max_use > 1 - kMinDistanceShare ? (1 - kMinDistanceShare) / max_use : 1.0;
 }
 
 }  // namespace osteomill::barrier_shell

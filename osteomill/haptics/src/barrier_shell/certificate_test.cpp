@@ -46,7 +46,7 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
     if (now.distance_mm < 1e-6) continue;
     const double used =
         is_ball ? distance_used_by_ball(now.outward_T, move) : distance_used(point_T, now.outward_T, move);
-    const double share = certified_share(std::max(0.0, used / now.distance_mm));
+    const double share = certified_fraction(std::max(0.0, used / now.distance_mm));
     // Checks the end of the certified move and a random point of it.
     for (const double t : {share, share * std::abs(uniform(bits, -1, 1))}) {
       const double then = distance_to(cores, after(X_WT, move, t).inverse() * point_W).distance_mm;
@@ -56,7 +56,7 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
     }
   }
   EXPECT_LE(worst, 1e-9);
-  EXPECT_GE(min_kept, kDistanceKept - 1e-6);
+  EXPECT_GE(min_kept, kMinDistanceShare - 1e-6);
 }
 
 // A point that slides along a core uses up none of its distance, however near; one that moves straight
@@ -65,17 +65,17 @@ TEST(Certificate, IsTightForSliding) {
   const Cores cores{1.3, 0.8, 24.8};
   const Vec3 beside_ball(0, 0, -1.3001), beside_shaft(0.8001, 0, 12);
   const CoreDistance ball = distance_to_ball(cores, beside_ball);
-  EXPECT_EQ(certified_share(distance_used_by_ball(ball.outward_T, move_of({0.4, 0, 0}, {0.1, 0.2, 0.3})) /
-                            ball.distance_mm),
+  EXPECT_EQ(certified_fraction(distance_used_by_ball(ball.outward_T, move_of({0.4, 0, 0}, {0.1, 0.2, 0.3})) /
+                               ball.distance_mm),
             1);
   const CoreDistance side = distance_to_cylinder(cores, beside_shaft);
   EXPECT_EQ(
-      certified_share(distance_used(beside_shaft, side.outward_T, move_of({0, 0.3, 0.3}, Vec3::Zero())) /
-                      side.distance_mm),
+      certified_fraction(distance_used(beside_shaft, side.outward_T, move_of({0, 0.3, 0.3}, Vec3::Zero())) /
+                         side.distance_mm),
       1);
   EXPECT_NEAR(
-      certified_share(distance_used(beside_shaft, side.outward_T, move_of({0.01, 0, 0}, Vec3::Zero())) /
-                      side.distance_mm),
+      certified_fraction(distance_used(beside_shaft, side.outward_T, move_of({0.01, 0, 0}, Vec3::Zero())) /
+                         side.distance_mm),
       0.9 * side.distance_mm / 0.01, 1e-12);
 }
 

@@ -17,13 +17,13 @@ Mat3 outer(const Vec3& v) {
 
 }  // namespace
 
-double inset_within(const MillingTool& tool, double rounding_mm) {
+double core_inset_mm(const MillingTool& tool, double rounding_mm) {
   return std::min(rounding_mm,
                   0.5 * std::min({tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm}));
 }
 
-Cores Cores::within(const MillingTool& tool, double rounding_mm, double smaller_mm) {
-  const double inset = inset_within(tool, rounding_mm) + smaller_mm;
+Cores Cores::within(const MillingTool& tool, double rounding_mm, double extra_inset_mm) {
+  const double inset = core_inset_mm(tool, rounding_mm) + extra_inset_mm;
   return {std::max(tool.burr_radius_mm - inset, kMinCore_mm),
           std::max(tool.shaft_radius_mm - inset, kMinCore_mm),
           std::max(tool.shaft_length_mm - inset, kMinCore_mm)};

@@ -6,7 +6,7 @@ namespace osteomill::barrier_shell {
 
 /// Returns the inset of the cores from the tool's surface, mm: the rounding, but at most half of the smallest
 /// of burr radius, shaft radius and shaft length.
-double inset_within(const MillingTool& tool, double rounding_mm);
+double core_inset_mm(const MillingTool& tool, double rounding_mm);
 
 /// The two convex bodies inside the tool that bone never reaches, in T: a ball about the burr's centre and a
 /// cylinder along the shaft from z = 0 to `cylinder_length_mm`. A burr of another convex shape would need
@@ -16,9 +16,9 @@ struct Cores {
   double cylinder_radius_mm;
   double cylinder_length_mm;
 
-  /// Returns the cores, inset by `inset_within`, and by `smaller_mm` more while a tool that started in
+  /// Returns the cores, inset by `core_inset_mm`, and by `extra_inset_mm` more while a tool that started in
   /// contact with bone has not grown to full size (a minimal core always remains).
-  static Cores within(const MillingTool& tool, double rounding_mm, double smaller_mm = 0);
+  static Cores within(const MillingTool& tool, double rounding_mm, double extra_inset_mm = 0);
 };
 
 /// Signed distance of a bone point to a core (negative inside), its gradient (the unit direction out of the

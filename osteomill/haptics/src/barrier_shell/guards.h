@@ -14,16 +14,16 @@ namespace osteomill::barrier_shell {
 /// stays at least `guard_mm` - `kYield_mm` away, whatever the force. The barrier is one more energy of the
 /// tool's pose, so holding the tool by it is as passive as holding it by bone. Safe in the haptic tick,
 /// except for the constructor.
-class Guards {
+class NoGoBarriers {
  public:
   /// Largest depth to which the burr enters a guard, mm.
   static constexpr double kYield_mm = 0.05;
 
-  Guards() = default;
+  NoGoBarriers() = default;
   /// Uses the structures that have a guard, if any. They must outlive this object.
-  Guards(const NoGoDistances* structures, const MillingTool& tool);
+  NoGoBarriers(const NoGoDistances* structures, const MillingTool& tool);
 
-  bool empty() const noexcept { return guards_.empty(); }
+  bool empty() const noexcept { return no_go_barriers_.empty(); }
   /// Starts with the burr's centre at `burr_W`. Shrinks a guard that the burr is already in until it exerts
   /// no force.
   void begin_at(const Vec3& burr_W) noexcept;
@@ -31,24 +31,24 @@ class Guards {
   /// pushes the burr.
   void follow(const Vec3& burr_W) noexcept;
   /// Returns whether no guard is in contact at this position, or after any move of this length from it.
-  bool are_clear(const Vec3& burr_W, double move_mm) const noexcept;
+  bool is_clear(const Vec3& burr_W, double move_mm) const noexcept;
   /// Returns the share of a move that leaves the burr part of its distance to each guard.
-  double share_kept(const Vec3& burr_W, const Vec3& move_W_mm) const noexcept;
+  double safe_step_fraction(const Vec3& burr_W, const Vec3& move_W_mm) const noexcept;
   /// Adds the guards' energy to `sum`, and returns it.
   double add_to(EnergySum& sum, const Pose& X_WT) const noexcept;
 
  private:
-  struct Guard {
+  struct NoGoBarrier {
     const StructureDistance* structure;
     // Minimum distance of the burr's centre, mm: final and current.
-    double whole_mm;
+    double full_offset_mm;
     double least_mm;
     double gap_mm(const Vec3& burr_W) const noexcept {
-      return structure->slope_from(burr_W).distance_mm - least_mm;
+      return structure->distance_and_gradient_from(burr_W).distance_mm - least_mm;
     }
   };
 
-  std::vector<Guard> guards_;
+  std::vector<NoGoBarrier> no_go_barriers_;
 };
 
 }  // namespace osteomill::barrier_shell

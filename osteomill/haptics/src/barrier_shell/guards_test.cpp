@@ -81,7 +81,7 @@ std::vector<Kind> kinds() {
            [=](const Vec3& p) { return nerve->distance_mm(p); }}};
 }
 
-TEST(Guards, KeepEveryOneOfTenThousandPushesOffByTheirDistanceLessATwentieth) {
+TEST(NoGoBarriers, KeepEveryOneOfTenThousandPushesOffByTheirDistanceLessATwentieth) {
   std::mt19937 random(7);
   for (const Kind& kind : kinds()) {
     double nearest_mm = std::numeric_limits<double>::infinity(), strongest_N = 0;
@@ -123,7 +123,7 @@ TEST(Guards, KeepEveryOneOfTenThousandPushesOffByTheirDistanceLessATwentieth) {
   }
 }
 
-TEST(Guards, GiveNoEnergyOnAClosedPathBeyondWhatSamplingLends) {
+TEST(NoGoBarriers, GiveNoEnergyOnAClosedPathBeyondWhatSamplingLends) {
   std::mt19937 random(3);
   const Settings settings;
   for (const Kind& kind : kinds()) {
@@ -165,7 +165,7 @@ TEST(Guards, GiveNoEnergyOnAClosedPathBeyondWhatSamplingLends) {
   }
 }
 
-TEST(Guards, LeaveABurrAloneThatBeginsWithinThemAndHoldItOnceItHasLeft) {
+TEST(NoGoBarriers, LeaveABurrAloneThatBeginsWithinThemAndHoldItOnceItHasLeft) {
   const SphereShape sphere{{0, 0, 0}, 1};
   const auto volume = with_structures({{StructureDistance(sphere), 1.0}});
   BarrierShell algorithm{Settings{}};
@@ -183,7 +183,7 @@ TEST(Guards, LeaveABurrAloneThatBeginsWithinThemAndHoldItOnceItHasLeft) {
   EXPECT_EQ(step.burr_force_W_N, Vec3::Zero());
 }
 
-TEST(Guards, ThatAreNotSetChangeNoBit) {
+TEST(NoGoBarriers, ThatAreNotSetChangeNoBit) {
   const SphereShape sphere{{0, 0, -4}, 1};
   const auto plain = with_structures({}, -3), watched = with_structures({{StructureDistance(sphere)}}, -3);
   BarrierShell without{Settings{}}, with{Settings{}};

@@ -14,8 +14,8 @@
 namespace osteomill::barrier_shell {
 namespace {
 
+using testing_support::available_instruction_sets;
 using testing_support::ForcedInstructionSet;
-using testing_support::instruction_sets_here;
 using testing_support::uniform;
 
 // Points all around the tool, also beyond the shaft's end and below the burr, none of them in a core.
@@ -72,7 +72,7 @@ void expect_near(const EnergySum& a, const EnergySum& b) {
 TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
   std::mt19937 bits(12);
   const Barrier barrier{0.25, 3};
-  ASSERT_GE(instruction_sets_here(near_kernel_targets()).size(), 1u);
+  ASSERT_GE(available_instruction_sets(near_kernel_targets()).size(), 1u);
   int on_ball = 0, on_cylinder = 0;
   for (const MillingTool& tool : {MillingTool{1.5, 1.0, 8}, MillingTool{0.8, 1.2, 6}, MillingTool{1, 1, 7}}) {
     const Cores cores = Cores::within(tool, 0.2);
@@ -102,7 +102,7 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
       on_ball += ball.touching;
       on_cylinder += cylinder.touching;
       std::vector<Occupancy> fast;
-      for (const std::int64_t target : instruction_sets_here(near_kernel_targets())) {
+      for (const std::int64_t target : available_instruction_sets(near_kernel_targets())) {
         const ForcedInstructionSet forced(target);
         fast.push_back(found(points, cores, barrier, move));
         EXPECT_TRUE(same_bits(fast.back().ball.sum, fast.front().ball.sum)) << hwy::TargetName(target);

@@ -89,7 +89,7 @@ VoxelBox mill_at_random(Volume& volume, std::mt19937& bits) {
 
 // Densities fall anywhere, also while earlier changes are pending: in the end all bricks equal newly built
 // ones, and meanwhile every point is finite.
-TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
+TEST(BoneBricks, EqualNewlyBuiltOnesAfterRandomMilling) {
   GridGeometry geometry = testing_support::centred_cube(36, 0.2);
   geometry.spacing_mm = {0.2, 0.25, 0.3};
   for (const double spacing_mm : {0.13, 0.4}) {

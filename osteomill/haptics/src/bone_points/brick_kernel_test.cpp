@@ -16,8 +16,8 @@
 namespace osteomill {
 namespace {
 
+using testing_support::available_instruction_sets;
 using testing_support::ForcedInstructionSet;
-using testing_support::instruction_sets_here;
 using testing_support::uniform;
 
 constexpr float kIsovalue = 0.4f;
@@ -113,7 +113,7 @@ void expect_mean(const ShellPoint& point, const Sums& sums) {
 
 TEST(BrickKernel, EveryInstructionSetGivesTheSameBitsAndThePlainMeans) {
   std::mt19937 bits(7);
-  const std::vector<std::int64_t> sets = instruction_sets_here(brick_kernel_targets());
+  const std::vector<std::int64_t> sets = available_instruction_sets(brick_kernel_targets());
   ASSERT_GE(sets.size(), 1u);
   for (int n = 0; n < 200; ++n) {
     const Scene scene(bits, 1 << n % 4);
@@ -163,7 +163,7 @@ TEST(BrickKernel, TheBoundHoldsEveryPointAndIsNoWiderThanTheyAskFor) {
     for (std::size_t n = 0; n < count; ++n) {
       max_distance_mm = std::max(max_distance_mm, (points.point(n).position_mm() - 0.5 * (min + max)).norm());
     }
-    for (const std::int64_t set : instruction_sets_here(brick_kernel_targets())) {
+    for (const std::int64_t set : available_instruction_sets(brick_kernel_targets())) {
       const ForcedInstructionSet forced(set);
       const BrickPoints::Bound bound = bound_of(points, count);
       EXPECT_LT((bound.centre() - 0.5 * (min + max)).norm(), 1e-6);

@@ -33,7 +33,7 @@ struct Coverage {
   }
 };
 
-int divide_down(int value, int divisor) {
+int floor_divide(int value, int divisor) {
   const int quotient = value / divisor;
   return value % divisor < 0 ? quotient - 1 : quotient;
 }
@@ -106,9 +106,9 @@ float SurfaceLattice::density(const VoxelIndex& voxel) const {
 VoxelBox SurfaceLattice::voxels_of(int level, const VoxelIndex& node, int more_nodes) const {
   const int n = brick_nodes_ << level;
   const auto& s = steps_per_voxel_;
-  const auto first = [&](int b, std::size_t axis) { return divide_down(n * b - 1 - more_nodes, s[axis]); };
+  const auto first = [&](int b, std::size_t axis) { return floor_divide(n * b - 1 - more_nodes, s[axis]); };
   const auto last = [&](int b, std::size_t axis) {
-    return divide_down(n * b + n - 2 + more_nodes, s[axis]) + 1;
+    return floor_divide(n * b + n - 2 + more_nodes, s[axis]) + 1;
   };
   return {{first(node.i, 0), first(node.j, 1), first(node.k, 2)},
           {last(node.i, 0), last(node.j, 1), last(node.k, 2)}};
@@ -149,7 +149,7 @@ VoxelBox SurfaceLattice::bricks_touched_by(const VoxelBox& voxels) const {
   // the edge's lower node to two above it. The lowest edges of a brick begin one node below its own.
   const auto first_node = [&](int v, std::size_t axis) { return (v - 1) * s[axis] + 1; };
   const auto last_node = [&](int v, std::size_t axis) { return (v + 1) * s[axis] - 1; };
-  const auto brick_of_edge = [&](int lower_node) { return divide_down(lower_node + 1, n); };
+  const auto brick_of_edge = [&](int lower_node) { return floor_divide(lower_node + 1, n); };
   const auto first = [&](int v, std::size_t axis) {
     return std::max(0, brick_of_edge(first_node(v, axis) - 2));
   };
@@ -198,7 +198,8 @@ void SurfaceLattice::copy_voxels(const VoxelIndex& first, Block& block) const {
 void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) const {
   const int count = brick_nodes_ + 3;
   const auto& s = steps_per_voxel_;
-  const VoxelIndex from{divide_down(first.i, s[0]), divide_down(first.j, s[1]), divide_down(first.k, s[2])};
+  const VoxelIndex from{floor_divide(first.i, s[0]), floor_divide(first.j, s[1]),
+                        floor_divide(first.k, s[2])};
   struct CellPosition {
     std::size_t cell;
     float fraction;
@@ -208,7 +209,7 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float per_step = 1.0f / static_cast<float>(s[axis]);
     for (int n = 0; n < count; ++n) {
-      const int cell = divide_down(nodes[axis] + n, s[axis]);
+      const int cell = floor_divide(nodes[axis] + n, s[axis]);
       positions[axis][static_cast<std::size_t>(n)] = {
           static_cast<std::size_t>(cell - voxels[axis]),
           per_step * static_cast<float>(nodes[axis] + n - s[axis] * cell)};
@@ -258,7 +259,7 @@ SurfaceLattice::Occupancy SurfaceLattice::find_surface(const VoxelIndex& brick, 
   const Nodes nodes = nodes_of(brick, block);
   Rows rows{};
   const Occupancy occupancy = find_bone(nodes, find_solid_rows(brick), empty_rows, rows);
-  if (occupancy == Occupancy::surface) mean_crossings(nodes, rows, surface);
+  if (occupancy == Occupancy::surface) add_cell_means(nodes, rows, surface);
   return occupancy;
 }
 
@@ -341,7 +342,7 @@ std::uint32_t SurfaceLattice::cells_of(std::uint32_t nodes) const {
 }
 
 // Computes one point per cell, one row of cells after the other.
-void SurfaceLattice::mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const {
+void SurfaceLattice::add_cell_means(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const {
   const int side = brick_nodes_ / group_;
   CrossingLattice lattice = crossings_;
   std::copy(nodes.next.begin(), nodes.next.end(), lattice.next);

@@ -117,7 +117,7 @@ class SurfaceLattice {
     return (crossed[0] | crossed[1] | crossed[2]) != 0;
   }
   std::uint32_t cells_of(std::uint32_t nodes) const;
-  void mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const;
+  void add_cell_means(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const;
 
   const Volume* volume_ = nullptr;
   std::array<int, 3> steps_per_voxel_{1, 1, 1};

@@ -22,7 +22,7 @@ class UpdateQueue {
   /// two calls, the tool would sink unevenly: a buzz at half the haptic rate of up to 0.04 N mm (tooth, 3 N).
   /// With 1/50, 0.008 N mm remain; with 1/100, 0.005, as if all bricks were updated. At most 1/share bricks
   /// reach it.
-  static constexpr float kBearingShare = 0.01f;
+  static constexpr float kAlwaysUpdateShare = 0.01f;
   /// Approximate number of points that a 1 ms tick updates in supporting bricks that take turns. (Tried:
   /// updating a brick only once its surface has sunk by 2 um, judged by bone lost per area. It halved the
   /// time but doubled the torque steps, from 0.14 to 0.28 N mm; tooth, 3 N.)
@@ -39,7 +39,7 @@ class UpdateQueue {
   void add(const VoxelBox& bricks);
   /// Removes and returns the next pending brick, if any.
   std::optional<VoxelIndex> next();
-  bool is_empty() const { return walked_.empty() && waiting_.empty(); }
+  bool is_empty() const { return active_box_.empty() && pending_box_.empty(); }
   /// Returns the number of pending bricks, including supporting ones.
   std::size_t size() const;
 
@@ -55,13 +55,13 @@ class UpdateQueue {
     load_ = 0;
   }
   /// Calls `use(slot)` for the supporting bricks that are due; a brick costs `cost_of(slot)` points. Bricks
-  /// that bear at least kBearingShare of the load are due at every call; if together they exceed the budget
-  /// of a tick (kSupportingPointsPerMs), as in fine voxels, only the most loaded ones are. The others take
-  /// turns, over as many calls as all bricks would need at that many points per call. Neighbours, whose slots
-  /// are consecutive, are due in different calls.
+  /// that bear at least kAlwaysUpdateShare of the load are due at every call; if together they exceed the
+  /// budget of a tick (kSupportingPointsPerMs), as in fine voxels, only the most loaded ones are. The others
+  /// take turns, over as many calls as all bricks would need at that many points per call. Neighbours, whose
+  /// slots are consecutive, are due in different calls.
   template <typename CostOf, typename Use>
   void update_supporting_in_turns(const CostOf& cost_of, const Use& use) {
-    const float least_load = bearing_load(cost_of);
+    const float least_load = always_update_load(cost_of);
     const auto turns = static_cast<std::uint32_t>(1 + cost_from(0, cost_of) / supporting_points_);
     ++turn_;
     supporting_pending_ = 0;
@@ -90,8 +90,8 @@ class UpdateQueue {
   }
   // Returns the smallest load at which a brick is updated at every call.
   template <typename CostOf>
-  float bearing_load(const CostOf& cost_of) const {
-    for (float share = kBearingShare; share < 1; share *= 2) {
+  float always_update_load(const CostOf& cost_of) const {
+    for (float share = kAlwaysUpdateShare; share < 1; share *= 2) {
       if (cost_from(share * load_, cost_of) <= supporting_points_) return share * load_;
     }
     return std::numeric_limits<float>::infinity();
@@ -106,9 +106,9 @@ class UpdateQueue {
 
   int supporting_points_;
   int built_points_;
-  VoxelBox waiting_;
+  VoxelBox pending_box_;
   // The box being visited, and its next brick.
-  VoxelBox walked_;
+  VoxelBox active_box_;
   VoxelIndex next_;
   bool added_ = false;
   struct Supporting {

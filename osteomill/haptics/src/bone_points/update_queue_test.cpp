@@ -52,7 +52,7 @@ TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATic
   EXPECT_EQ(queue.size(), 0u);
 }
 
-TEST(UpdateQueue, IfThoseThatBearCostMoreThanATickDoesThoseThatBearMostHaveAllTurns) {
+TEST(UpdateQueue, UpdatesTheMostLoadedBricksAtEveryCallIfAllExceedTheBudget) {
   UpdateQueue queue;
   std::vector<int> turns(8);
   // Loads of 1, 2, 4, ... of 255 in total; each brick costs a third of a tick's points.

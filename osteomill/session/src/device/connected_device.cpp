@@ -74,9 +74,9 @@ std::string DeviceReport::complaint() const {
 }
 
 // State of the device's thread; shared with it in case the thread is detached.
-class ConnectedDevice::Exchange {
+class ConnectedDevice::DeviceLoop {
  public:
-  Exchange(OpenConnection open, std::function<double()> now_s)
+  DeviceLoop(OpenConnection open, std::function<double()> now_s)
       : open_(std::move(open)),
         now_s_(now_s ? std::move(now_s) : &steady_now_s),
         connection_(open_()),
@@ -154,7 +154,7 @@ class ConnectedDevice::Exchange {
 };
 
 ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> now_s)
-    : exchange_(std::make_shared<Exchange>(std::move(open), std::move(now_s))),
+    : exchange_(std::make_shared<DeviceLoop>(std::move(open), std::move(now_s))),
       capabilities_(exchange_->opened()),
       workspace_(capabilities_, {}) {}
 
@@ -188,7 +188,7 @@ void ConnectedDevice::exchange() {
   exchange_->round();
 }
 
-void ConnectedDevice::Exchange::run() {
+void ConnectedDevice::DeviceLoop::run() {
   const BlockedSignals none_here;
   const VendorCallTracker named(call_);
   request_real_time();
@@ -204,7 +204,7 @@ void ConnectedDevice::Exchange::run() {
   has_ended.store(true, std::memory_order_release);
 }
 
-void ConnectedDevice::Exchange::round() {
+void ConnectedDevice::DeviceLoop::round() {
   try {
     if (!connection_) {
       at_rest.store(true, std::memory_order_release);
@@ -224,7 +224,7 @@ void ConnectedDevice::Exchange::round() {
   update_report();
 }
 
-void ConnectedDevice::Exchange::store_input(const DeviceInput& input) {
+void ConnectedDevice::DeviceLoop::store_input(const DeviceInput& input) {
   const double now_s = now_s_();
   newest_.input = input;
   newest_.at_s = now_s;
@@ -240,12 +240,12 @@ void ConnectedDevice::Exchange::store_input(const DeviceInput& input) {
   inputs_.count();
 }
 
-void ConnectedDevice::Exchange::set_gate(bool is_open) {
+void ConnectedDevice::DeviceLoop::set_gate(bool is_open) {
   const std::uint64_t number = gate.load(std::memory_order_relaxed);
   if (is_open != (number % 2 == 1)) gate.store(number + 1, std::memory_order_release);
 }
 
-bool ConnectedDevice::Exchange::check_drivable(double now_s) {
+bool ConnectedDevice::DeviceLoop::check_drivable(double now_s) {
   const RequestedWrench& newest_wrench = requested_wrench.read();
   const bool late = now_s - newest_wrench.at_s > kMaxAge_s;
   if (late && !wrench_was_late_ && !is_zero(newest_wrench.wrench_B)) ++pending_report_.late_wrenches;
@@ -255,7 +255,7 @@ bool ConnectedDevice::Exchange::check_drivable(double now_s) {
 }
 
 // Sends the next wrench on the way to the requested one. The only function that calls Connection::write.
-ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
+ConnectionStatus ConnectedDevice::DeviceLoop::send(double now_s, bool driven) {
   const double lapse_s = connection_->capabilities().watchdog_s;
   if (lapse_s > 0 && now_s - sent_s_ > lapse_s) {
     sent_B_ = {};
@@ -280,7 +280,7 @@ ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
 
 // Ramps the wrench down to zero, one step per millisecond. If sending fails, the device has to stop by
 // itself.
-void ConnectedDevice::Exchange::ramp_to_zero() {
+void ConnectedDevice::DeviceLoop::ramp_to_zero() {
   double now_s = sent_s_;
   try {
     for (int n = 0; n < kMaxFinalRounds && !is_zero(sent_B_); ++n) {
@@ -294,7 +294,7 @@ void ConnectedDevice::Exchange::ramp_to_zero() {
   }
 }
 
-void ConnectedDevice::Exchange::drop_connection(const std::string& reason) {
+void ConnectedDevice::DeviceLoop::drop_connection(const std::string& reason) {
   if (connection_) ramp_to_zero();
   connection_.reset();
   set_gate(false);
@@ -307,7 +307,7 @@ void ConnectedDevice::Exchange::drop_connection(const std::string& reason) {
   pending_report_.reason = reason;
 }
 
-void ConnectedDevice::Exchange::reopen() {
+void ConnectedDevice::DeviceLoop::reopen() {
   if (now_s_() - lost_s_ < kReopen_s) return;
   connection_ = open_();
   const DeviceCapabilities& now = connection_->capabilities();
@@ -319,7 +319,7 @@ void ConnectedDevice::Exchange::reopen() {
   ++pending_report_.reopened;
 }
 
-void ConnectedDevice::Exchange::update_report() {
+void ConnectedDevice::DeviceLoop::update_report() {
   const double now_s = now_s_();
   const DeviceInput& input = newest_.input;
   pending_report_.inputs_per_s = inputs_.per_s(now_s);
@@ -346,7 +346,7 @@ void ConnectedDevice::Exchange::update_report() {
   publish_report(state, now_s);
 }
 
-void ConnectedDevice::Exchange::publish_report(State state, double now_s) {
+void ConnectedDevice::DeviceLoop::publish_report(State state, double now_s) {
   if (state != pending_report_.state) {
     if (pending_report_.state == State::ok) ++pending_report_.faults;
     pending_report_.state = state;
@@ -374,7 +374,7 @@ DeviceReport ConnectedDevice::report() const {
   return exchange_->report();
 }
 
-DeviceReport ConnectedDevice::Exchange::report() {
+DeviceReport ConnectedDevice::DeviceLoop::report() {
   const std::lock_guard lock(report_mutex_);
   DeviceReport report = published_report_;
   const double now_s = now_s_();
@@ -390,7 +390,7 @@ DeviceReport ConnectedDevice::Exchange::report() {
 }
 
 Pose ConnectedDevice::read_pose() noexcept {
-  const Exchange::ReceivedInput& latest_input = exchange_->latest_input.read();
+  const DeviceLoop::ReceivedInput& latest_input = exchange_->latest_input.read();
   const std::uint64_t gate = exchange_->gate.load(std::memory_order_acquire);
   const std::uint64_t disengage_count = exchange_->disengage_count.load(std::memory_order_acquire);
   // Also false for one tick if the device was not driven at any time since the last tick.

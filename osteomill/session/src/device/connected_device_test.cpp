@@ -257,7 +257,7 @@ TEST_F(ConnectedDeviceTest, OneThatIsLostComesDownBeforeItIsClosed) {
   asked_.force_N = {0, 0, 19};
   run(20);
   EXPECT_NEAR(felt_N(), 19, 1e-9);
-  hardware_.deaf = true;
+  hardware_.reports_lost = true;
   tick();
   EXPECT_EQ(device_.report().state, State::lost);
   EXPECT_EQ(felt_N(), 0);
@@ -396,7 +396,7 @@ TEST_F(RunningDevice, ComesDownToZeroBeforeItIsClosed) {
   {
     ConnectedDevice device(way(), {});
     device.start();
-    ASSERT_TRUE(testing_support::comes_true([&] {
+    ASSERT_TRUE(testing_support::becomes_true_in_time([&] {
       device.write_wrench({{8, 0, 0}, Vec3::Zero()});
       return felt_N_ >= 8;
     }));

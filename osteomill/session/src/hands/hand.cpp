@@ -71,7 +71,7 @@ HandSettings random_hand(std::uint64_t seed) {
   return hand;
 }
 
-HandSettings gripping(HandSettings hand, double firmness) {
+HandSettings with_firmer_grip(HandSettings hand, double firmness) {
   for (double* value : {&hand.stiffness_N_per_mm, &hand.damping_Ns_per_mm,
                         &hand.torsional_stiffness_Nmm_per_rad, &hand.torsional_damping_Nmms_per_rad}) {
     *value *= firmness;

@@ -37,10 +37,10 @@ SimulatedOperator::SimulatedOperator(const OperatorSettings& settings, const Mil
       script_(settings.script, settings.hand, tool, entry),
       handle_(settings.handle, script_.intent().X_W_target) {
   require_integrable(settings.handle, settings.hand);
-  X_W_target_ = trembling(script_.intent().X_W_target);
+  X_W_target_ = with_tremor(script_.intent().X_W_target);
 }
 
-Pose SimulatedOperator::trembling(const Pose& X_W_intended) const {
+Pose SimulatedOperator::with_tremor(const Pose& X_W_intended) const {
   const Quat turn = quaternion_from_rotation_vector(tremor_rad_.at(time_s()));
   return {X_W_intended.position_mm + tremor_mm_.at(time_s()), (turn * X_W_intended.orientation).normalized()};
 }
@@ -59,7 +59,7 @@ void SimulatedOperator::tick_done(const Pose& X_WT, double dt_s) noexcept {
   substeps_ += count;
   const double passed_s = static_cast<double>(count) * substep_s;
   const Pose from = X_W_target_;
-  const Pose to = trembling(script_.step(time_s(), passed_s, handle_.pose(), X_WT, felt_).X_W_target);
+  const Pose to = with_tremor(script_.step(time_s(), passed_s, handle_.pose(), X_WT, felt_).X_W_target);
   const Vec3 turn_rad = rotation_vector(to.orientation * from.orientation.conjugate());
   const Twist speed{(to.position_mm - from.position_mm) / passed_s, turn_rad / passed_s};
   for (std::int64_t n = 0; n < count; ++n) {

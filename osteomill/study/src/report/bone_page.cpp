@@ -60,7 +60,7 @@ BrickMesh simplified(const BrickMesh& mesh, std::size_t max_vertices, double vox
   return simple;
 }
 
-json body_of(const BodyLook& look, const BrickMesh& mesh) {
+json body_of(const BodyStyle& look, const BrickMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const MeshVertex& vertex : mesh.vertices) box.extend(vec3_of(vertex.position_mm));
   // Quantizes positions to 16 bits over the mesh's bounding box.

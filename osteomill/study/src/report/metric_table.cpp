@@ -17,7 +17,7 @@ Field<M> figure(std::string column, const char* unit, Place place, std::string d
   return field<M>({std::move(column), unit, NumberRange::finite(), std::move(doc), flags}, place);
 }
 
-constexpr unsigned kTime = kLessIsBetter | kOfTheMachine;
+constexpr unsigned kTime = kLowerIsBetter | kMachineDependent;
 
 void add_times(std::vector<Field<M>>& all, const std::string& of, Distribution M::*times) {
   const auto add = [&](const char* name, double Distribution::*place, const char* doc, unsigned flags) {
@@ -26,7 +26,7 @@ void add_times(std::vector<Field<M>>& all, const std::string& of, Distribution M
         "compute time of a " + of + ", " + doc, flags));
   };
   add("median", &Distribution::median, "median", kTime);
-  add("p99", &Distribution::p99, "99th percentile", kOfTheMachine);
+  add("p99", &Distribution::p99, "99th percentile", kMachineDependent);
   add("max", &Distribution::max, "greatest", kTime);
 }
 
@@ -39,8 +39,8 @@ void add_felt(std::vector<Field<M>>& all, const std::string& what, const char* u
   };
   add("_mean_", &VectorMetrics::mean, "mean " + what);
   add("_max_", &VectorMetrics::max, "greatest " + what);
-  add("_hp_rms_", &VectorMetrics::hp_rms, what + " above 20 Hz, rms", kLessIsBetter);
-  add("_step_max_", &VectorMetrics::step_max, "greatest " + what + " step", kLessIsBetter);
+  add("_hp_rms_", &VectorMetrics::hp_rms, what + " above 20 Hz, rms", kLowerIsBetter);
+  add("_step_max_", &VectorMetrics::step_max, "greatest " + what + " step", kLowerIsBetter);
 }
 
 void add_contact(std::vector<Field<M>>& all, const char* column, double ContactShares::*place,
@@ -55,12 +55,12 @@ std::vector<Field<M>> all_figures() {
                        unsigned flags = 0) { all.push_back(figure(column, unit, place, doc, flags)); };
   using C = ContactShares;
   add_times(all, "step", &M::step_us);
-  add("rate_hz", "Hz", &M::rate_hz, "haptic rate that a 1 kHz loop would hold", kOfTheMachine);
+  add("rate_hz", "Hz", &M::rate_hz, "haptic rate that a 1 kHz loop would hold", kMachineDependent);
   add_felt(all, "force", "N", "N", &M::force_N);
   add_felt(all, "torque", "N mm", "Nmm", &M::torque_Nmm);
   add(
       "shaft_spread_deg", "degrees", [](auto& m) -> auto& { return m.shaft.spread_deg; },
-      "spread of the shaft", kLessIsBetter);
+      "spread of the shaft", kLowerIsBetter);
   add(
       "shaft_excursion_deg", "degrees", [](auto& m) -> auto& { return m.shaft.excursion_deg; },
       "greatest excursion of the shaft");
@@ -95,7 +95,7 @@ std::vector<Field<M>> all_figures() {
   add("burr_excursion_mm", "mm", &M::burr_excursion_mm, "greatest excursion of the burr's centre");
   add("put_back_mm3", "mm³", &M::put_back_mm3, "bone put back");
   add("shaft_from_handle_deg", "degrees", &M::shaft_from_handle_deg, "spread of the shaft against the handle",
-      kLessIsBetter);
+      kLowerIsBetter);
   add("removal_mm3_per_s", "mm³/s", &M::removal_mm3_per_s, "bone removed per second of cutting");
   add("counted_from_s", "s", &M::counted_from_s, "start of the counted ticks");
   return all;

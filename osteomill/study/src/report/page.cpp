@@ -91,7 +91,7 @@ std::string html(const Cell& cell) {
     for (auto at = text.find('\n'); at != std::string::npos; at = text.find('\n', at))
       text.replace(at, 1, "<br>");
     if (!piece.colour.empty()) text = fmt::format("<span style=\"color:{}\">{}</span>", piece.colour, text);
-    if (piece.look != Look::plain)
+    if (piece.look != CellStyle::plain)
       text = fmt::format("<span class=\"{}\">{}</span>", kClasses[static_cast<int>(piece.look)], text);
     html += text;
   }

@@ -27,7 +27,7 @@ TEST(Html, TextIsEscaped) {
 
 TEST(Html, ACellIsTextInPieces) {
   const Section section{
-      .tables = {{{"<a>"}, {{"x & y", Cell({{"1 > 2", Look::strong}, {"\nno", Look::faint}})}}}}};
+      .tables = {{{"<a>"}, {{"x & y", Cell({{"1 > 2", CellStyle::strong}, {"\nno", CellStyle::faint}})}}}}};
   const std::string page = html(section);
   EXPECT_NE(page.find("<th>&lt;a&gt;</th>"), std::string::npos) << page;
   EXPECT_NE(page.find("<th>x &amp; y</th><td><span class=\"strong\">1 &gt; 2</span><span "

@@ -122,8 +122,8 @@ LabelCount count_of(const Recording& recording) {
 }
 
 Cell name_with_colour(const Label& label) {
-  std::vector<Cell::Piece> pieces{{"■", Look::plain, hex_colour(label)}, {" " + label.name}};
-  if (label.no_go) pieces.insert(pieces.end(), {{" "}, {"no-go", Look::differs}});
+  std::vector<Cell::Piece> pieces{{"■", CellStyle::plain, hex_colour(label)}, {" " + label.name}};
+  if (label.no_go) pieces.insert(pieces.end(), {{" "}, {"no-go", CellStyle::differs}});
   return pieces;
 }
 
@@ -279,7 +279,7 @@ std::string raised(std::string unit) {
 
 // Rounds a number to six significant digits; returns other text unchanged.
 std::string rounded_number(const std::string& text) {
-  const auto number = parsed_number<double>(text);
+  const auto number = parse_number<double>(text);
   if (!number || (*number != 0 && text.find('.') == std::string::npos))
     return number && std::isinf(*number) ? "no limit" : text;
   return *number == 0 ? "0" : fmt::format("{:.6g}", *number);
@@ -289,7 +289,7 @@ std::string rounded_number(const std::string& text) {
 std::string rounded(const std::string& text) {
   std::vector<std::string> numbers;
   for (const std::string_view number : csv_fields(text)) {
-    if (!parsed_number<double>(number)) return text;
+    if (!parse_number<double>(number)) return text;
     numbers.push_back(rounded_number(std::string(number)));
   }
   return fmt::format("{}", fmt::join(numbers, ", "));

@@ -15,7 +15,7 @@ namespace osteomill {
 namespace {
 
 // A quantity drawn over time.
-struct Shown {
+struct PlottedQuantity {
   // Label of the y axis, with its unit.
   std::string label;
   std::function<double(const TickRecord&)> value;
@@ -35,7 +35,8 @@ double time_s(const MeasuredRun& run, const TickRecord& record) {
   return record.time_s - run.recording->records.front().time_s - run.metrics.counted_from_s;
 }
 
-Curve write_curve(const Shown& shown, const MeasuredRun& run, std::size_t bins, FigureScript& figure) {
+Curve write_curve(const PlottedQuantity& shown, const MeasuredRun& run, std::size_t bins,
+                  FigureScript& figure) {
   const std::vector<TickRecord>& records = run.recording->records;
   std::vector<double> values;
   values.reserve(records.size());
@@ -65,7 +66,7 @@ std::string time_range(const std::vector<const MeasuredRun*>& runs) {
 
 // Returns the range of the counted values, shared by the panels of a row; it begins at 0 unless the minimum
 // is far above 0.
-std::string value_range(const std::vector<const MeasuredRun*>& runs, const Shown& shown) {
+std::string value_range(const std::vector<const MeasuredRun*>& runs, const PlottedQuantity& shown) {
   double min = std::numeric_limits<double>::infinity(), max = 0;
   for (const MeasuredRun* run : runs) {
     for (const TickRecord& record : run->recording->records) {
@@ -115,8 +116,8 @@ std::string dashed_line(double y) {
 }
 
 // Draws the most restless curves first so that they do not hide the others.
-std::string curve_panel(const std::vector<const MeasuredRun*>& runs, const Shown& shown, std::size_t bins,
-                        FigureScript& figure) {
+std::string curve_panel(const std::vector<const MeasuredRun*>& runs, const PlottedQuantity& shown,
+                        std::size_t bins, FigureScript& figure) {
   std::vector<Curve> curves;
   for (const MeasuredRun* run : runs) curves.push_back(write_curve(shown, *run, bins, figure));
   std::stable_sort(curves.begin(), curves.end(),
@@ -134,14 +135,14 @@ std::string curve_panel(const std::vector<const MeasuredRun*>& runs, const Shown
 constexpr std::size_t kCurveBins = 1000;
 
 // Draws all algorithms in one panel per column, with a row for each phase.
-Figure draw_together(const RunGroup& group, const std::string& name, const std::vector<Shown>& columns,
-                     const std::filesystem::path& folder) {
+Figure draw_together(const RunGroup& group, const std::string& name,
+                     const std::vector<PlottedQuantity>& columns, const std::filesystem::path& folder) {
   const std::vector<std::string> phases = group.phases();
   const PanelGrid grid{
       phases.size() > 1 ? 760.0 : 440.0, columns.size(), phases.size(), 52, 0, 112, 26, 28, 60};
   const auto panel = [&](std::size_t column, std::size_t row, FigureScript& figure) {
     const auto runs = group.runs_of(phases[row]);
-    const Shown& shown = columns[column];
+    const PlottedQuantity& shown = columns[column];
     return fmt::format("{}{}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n", time_range(runs),
                        shown.setup, capitalised(phases[row]), shown.label,
                        row + 1 == phases.size() ? "set xlabel 'Time (s)'" : "unset xlabel") +
@@ -152,7 +153,7 @@ Figure draw_together(const RunGroup& group, const std::string& name, const std::
 
 // Draws a panel for each algorithm, side by side at the same scale, with a row for each phase, because
 // overlapping curves would be unreadable.
-Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& shown,
+Figure draw_apart(const RunGroup& group, const std::string& name, const PlottedQuantity& shown,
                   const std::string& dashed, const std::filesystem::path& folder) {
   const std::vector<std::string> phases = group.phases();
   const std::vector<AlgorithmId> algorithms = group.algorithms();
@@ -211,12 +212,12 @@ Cloud cloud_of(const MeasuredRun& run) {
 }
 
 // Axes across the mean shaft: the two axes of W most nearly perpendicular to it.
-struct Across {
+struct PerpendicularAxes {
   Vec3 right, up;
   char right_name, up_name;
 };
 
-Across across(const Vec3& mean) {
+PerpendicularAxes across(const Vec3& mean) {
   int least = 0, most = 0;
   for (int axis = 1; axis < 3; ++axis) {
     if (std::abs(mean[axis]) > std::abs(mean[most])) most = axis;
@@ -230,7 +231,7 @@ Across across(const Vec3& mean) {
 }
 
 // Returns the cloud's data for gnuplot, in degrees from its mean, and its largest extent.
-std::pair<std::string, double> cloud_data(const Cloud& cloud, const Across& axes) {
+std::pair<std::string, double> cloud_data(const Cloud& cloud, const PerpendicularAxes& axes) {
   std::string data;
   double reach_deg = 0.001;
   for (const std::size_t n : thin_out_cloud(cloud.directions, cloud.mean, kCloudBins)) {
@@ -263,7 +264,7 @@ std::string words(const MeasuredRun& run) {
 std::string shaft_panel(const MeasuredRun& run, const PanelGrid& grid, const PanelCell& cell,
                         FigureScript& figure) {
   const Cloud cloud = cloud_of(run);
-  const Across axes = across(cloud.mean);
+  const PerpendicularAxes axes = across(cloud.mean);
   const auto [data, reach_deg] = cloud_data(cloud, axes);
   const double half_deg = 1.05 * reach_deg;
   return fmt::format(
@@ -281,9 +282,9 @@ std::string shaft_panel(const MeasuredRun& run, const PanelGrid& grid, const Pan
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
   double max = 2000;
   for (const MeasuredRun& run : group.runs) max = std::max(max, run.metrics.tick_us.max);
-  const Shown compute{"compute time of a tick (µs)",
-                      [](const TickRecord& r) { return std::max(0.1, r.busy_us()); },
-                      fmt::format("set logscale y\nset yrange [1:{:.6g}]\n{}", 1.5 * max, dashed_line(1000))};
+  const PlottedQuantity compute{
+      "compute time of a tick (µs)", [](const TickRecord& r) { return std::max(0.1, r.busy_us()); },
+      fmt::format("set logscale y\nset yrange [1:{:.6g}]\n{}", 1.5 * max, dashed_line(1000))};
   return draw_apart(group, "fig6_rate", compute, "1 ms, a tick at 1000 Hz", folder);
 }
 
@@ -310,7 +311,7 @@ Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& f
 
 Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& folder) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
-  std::vector<Shown> columns;
+  std::vector<PlottedQuantity> columns;
   for (int axis = 0; axis < 3; ++axis) {
     columns.push_back({fmt::format("Burr along {} (mm)", kAxes[axis]),
                        [axis](const TickRecord& r) { return r.X_WT.position_mm[axis]; }, "set yrange [*:*]"});

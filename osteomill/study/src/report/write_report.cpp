@@ -148,7 +148,7 @@ const Topic kTimes{
     {"steps", "tick_us_median", "tick_us_p99", "tick_us_max", "rate_hz"}};
 
 // Returns a sentence on the parts of the curves that the tables exclude.
-std::string not_counted(const RunGroup& group) {
+std::string excluded_ticks_text(const RunGroup& group) {
   const auto longest = std::ranges::max_element(
       group.runs, {}, [](const MeasuredRun& run) { return run.metrics.counted_from_s; });
   const double before_s = longest->metrics.counted_from_s;
@@ -163,7 +163,7 @@ std::string not_counted(const RunGroup& group) {
 CaptionedFigure drawn(const RunFigure& figure, const RunGroup& group, const PageText& text,
                       const fs::path& folder) {
   std::string caption = figure.caption;
-  if (figure.name == kFelt[0].figures[0].name) caption += not_counted(group);
+  if (figure.name == kFelt[0].figures[0].name) caption += excluded_ticks_text(group);
   if (const auto note = text.caption_notes.find(figure.name); note != text.caption_notes.end())
     caption += " " + note->second;
   return {figure.draw(group, folder).svg, std::move(caption)};
@@ -179,7 +179,7 @@ std::vector<MetricLine> lines_of(const Topic& topic) {
                        // Missing contact does not explain why no bone was cut.
                        return figure.name == "removal_mm3_per_s"
                                   ? shown(value)
-                                  : Cell(contact_words(run.metrics.contact), Look::words);
+                                  : Cell(contact_words(run.metrics.contact), CellStyle::words);
                      }});
   }
   return lines;
@@ -189,7 +189,7 @@ Table metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines)
   Table table{{""}, {{"not reached"}}, true};
   for (const MeasuredRun& run : group.runs) {
     table.header.push_back(run.phase.empty() ? run.algorithm.label : run.phase + "\n" + run.algorithm.label);
-    table.rows.front().emplace_back(run.not_reached, Look::words);
+    table.rows.front().emplace_back(run.not_reached, CellStyle::words);
   }
   // Goals that were not reached come before all compared figures.
   if (std::ranges::all_of(group.runs, &std::string::empty, &MeasuredRun::not_reached)) table.rows.clear();

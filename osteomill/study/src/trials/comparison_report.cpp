@@ -41,7 +41,7 @@ constexpr const char* kTitleOfAMix = "Recordings of 6-DOF haptic algorithms whil
 std::string paper_rate(const MeasuredRun& run) {
   constexpr int kRates_hz[kPapersAlgorithms.size()][kPhases.size()] = {{976, 988}, {955, 963}, {973, 989}};
   const auto* const algorithm = std::ranges::find(kPapersAlgorithms, run.algorithm.name);
-  const std::size_t phase = phase_number(run.phase);
+  const std::size_t phase = phase_index(run.phase);
   if (algorithm == kPapersAlgorithms.end() || phase == kPhases.size()) return "";
   return fmt::format("{}", kRates_hz[algorithm - kPapersAlgorithms.begin()][phase]);
 }
@@ -114,7 +114,7 @@ Vec3 vector_in(const RunDescription& run, std::string_view key) {
   if (text == nullptr) return vector;
   const std::vector<std::string_view> numbers = csv_fields(*text);
   for (std::size_t n = 0; n < std::min<std::size_t>(3, numbers.size()); ++n)
-    vector[static_cast<Eigen::Index>(n)] = parsed_number<double>(numbers[n]).value_or(kNotMeasured);
+    vector[static_cast<Eigen::Index>(n)] = parse_number<double>(numbers[n]).value_or(kNotMeasured);
   return vector;
 }
 
@@ -187,13 +187,13 @@ std::string too_deep(const RunGroup& group) {
 Section opening(const Study& study, const RunGroup& group, const std::vector<Recording>& recordings) {
   const std::map<std::string, Probe> probes = probes_in(recordings);
   Section section{.tables = conclusions(study, probes)};
-  if (const std::string few = too_few_hands(study); !few.empty())
+  if (const std::string few = sample_size_warning(study); !few.empty())
     section.notices = {few + fmt::format(" For as many: --seeds {}.", study.seeds_needed())};
   if (const std::string deep = too_deep(group); !deep.empty()) section.notices.push_back(deep);
   for (const std::string& text :
-       {which_to_take(study), what_was_compared(study, recordings.front().description.scan_name),
+       {recommendation_text(study), comparison_sentence(study, recordings.front().description.scan_name),
         study.algorithms().size() > 1 ? about_stiffness(recordings) : "", about_cutting(recordings.front()),
-        about_line_proxy(study, recordings.front().description.tool), about_the_table(study),
+        about_line_proxy(study, recordings.front().description.tool), table_explanation(study),
         std::string(probes.empty() ? "" : kWhatWasProbed)})
     if (!text.empty()) section.paragraphs.push_back(text);
   return section;
@@ -216,7 +216,7 @@ bool have_the_same_phases(const RunGroup& group) {
 }
 
 // Notice for tables next to the recordings whose study.csv does not have the same figures.
-constexpr const char* kOtherTables =
+constexpr const char* kTablesMismatch =
     "The study.csv beside the recordings does not have their figures: it is from another comparison, or from "
     "another version of this program. Its other hands, grips and tremors are omitted here, and so are "
     "one-hole.csv and stability.csv.";
@@ -227,7 +227,8 @@ ReportExtras extras_beside(const RunGroup& group) {
   ReportExtras extras{.others = read_study_csv(folder / kStudyCsv, group.runs)};
   if (!has_runs(extras.others, group.runs)) return {};
   const std::uint64_t recorded = group.runs.front().seed;
-  std::erase_if(extras.others, [&](const MeasuredRun& row) { return row.is_own() && row.seed == recorded; });
+  std::erase_if(extras.others,
+                [&](const MeasuredRun& row) { return row.is_study_hand() && row.seed == recorded; });
   extras.passivity = read_passivity_csv(folder / kStabilityCsv, group.algorithms());
   extras.in_one_hole = read_study_csv(folder / kOneHoleCsv, group.runs);
   return extras;
@@ -235,15 +236,15 @@ ReportExtras extras_beside(const RunGroup& group) {
 
 }  // namespace
 
-bool are_of_comparison(const std::vector<Recording>& recordings) {
+bool is_comparison(const std::vector<Recording>& recordings) {
   return std::all_of(recordings.begin(), recordings.end(), [](const Recording& recording) {
     return find_setting<std::string>(recording.description, kScriptEntryKey) != nullptr;
   });
 }
 
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
-                                 const std::optional<ReportExtras>& measured, std::vector<Table>* came_out,
-                                 const ScanOf& scan_of) {
+                                 const std::optional<ReportExtras>& measured,
+                                 std::vector<Table>* result_tables, const ScanOf& scan_of) {
   const RunGroup group = group_runs(recordings, measured_phase);
   const bool belong = belong_together(recordings);
   if (!belong || !have_the_same_phases(group)) {
@@ -267,8 +268,8 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   if (!extras.passivity.empty()) write_passivity_csv(out_dir / kStabilityCsv, extras.passivity);
   if (!extras.in_one_hole.empty()) write_study_csv(out_dir / kOneHoleCsv, Study(extras.in_one_hole));
   Section came = opening(study, group, recordings);
-  if (has_other_tables) came.notices.insert(came.notices.begin(), kOtherTables);
-  if (came_out != nullptr) *came_out = came.tables;
+  if (has_other_tables) came.notices.insert(came.notices.begin(), kTablesMismatch);
+  if (result_tables != nullptr) *result_tables = came.tables;
   return write_report(group, out_dir, scan_of, [&](const fs::path& figures) {
     PageText text{.title = study.algorithms().size() > 1 ? kTitle : kTitleOfOne,
                   .opening = came,

@@ -43,7 +43,7 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-std::vector<std::string> names_in(const fs::path& folder) {
+std::vector<std::string> operands_of(const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
@@ -78,7 +78,7 @@ class ReportTest : public ::testing::Test {
 TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
   const fs::path page = write_comparison_report(sample_runs(), out_);
   EXPECT_EQ(page, out_ / "report.html");
-  EXPECT_EQ(names_in(out_), (std::vector<std::string>{"figures", "report.html", "summary.csv"}));
+  EXPECT_EQ(operands_of(out_), (std::vector<std::string>{"figures", "report.html", "summary.csv"}));
   std::vector<std::string> expected;
   for (const char* name :
        {"bone", "fig6_rate", "fig7_force", "fig8_torque", "fig9_shaft", "path", "removed"}) {
@@ -87,7 +87,7 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
     EXPECT_LT(fs::file_size(out_ / "figures" / expected.back()), 1500000u) << name;
     EXPECT_TRUE(bytes_of(out_ / "figures" / expected.back()).ends_with("</svg>\n\n")) << name;
   }
-  EXPECT_EQ(names_in(out_ / "figures"), expected);
+  EXPECT_EQ(operands_of(out_ / "figures"), expected);
   const std::string html = bytes_of(page);
   EXPECT_TRUE(html.ends_with("</html>\n"));
   for (const char* link : {"http", "<script", "<link", "url(", "src=\"f"}) {
@@ -288,8 +288,8 @@ TEST_F(ReportTest, RatesStandBesideThePapers) {
   measured.rows.front().paced_rate_hz = 940;
   const fs::path page = write_rates_report(measured, out_);
   EXPECT_EQ(page, out_ / "rates.html");
-  EXPECT_EQ(names_in(out_), (std::vector<std::string>{"figures", "rates.csv", "rates.html"}));
-  EXPECT_EQ(names_in(out_ / "figures"), (std::vector<std::string>{"rates.png", "rates.svg"}));
+  EXPECT_EQ(operands_of(out_), (std::vector<std::string>{"figures", "rates.csv", "rates.html"}));
+  EXPECT_EQ(operands_of(out_ / "figures"), (std::vector<std::string>{"rates.png", "rates.svg"}));
   const std::string csv = bytes_of(out_ / "rates.csv");
   EXPECT_TRUE(csv.starts_with(
       "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,steps_per_s,paper_rate_hz,"

@@ -27,7 +27,7 @@ std::optional<std::vector<unsigned char>> picture(const Volume& bone, double ref
 
 }  // namespace
 
-double share_seen(const Volume& before, const Volume& milled, const Camera& camera) {
+double visible_fraction(const Volume& before, const Volume& milled, const Camera& camera) {
   constexpr std::array kBeside{VoxelIndex{-1, 0, 0}, VoxelIndex{1, 0, 0},  VoxelIndex{0, -1, 0},
                                VoxelIndex{0, 1, 0},  VoxelIndex{0, 0, -1}, VoxelIndex{0, 0, 1}};
   constexpr int kBrick = BlockRanges::kBrickVoxels;
@@ -61,7 +61,7 @@ std::optional<std::vector<unsigned char>> EntryPictures::of(std::string_view nam
                                                             const RunEvents& events) const {
   if (!before_ || name == kPictureBefore) return before_;
   const bool along = name == kPictureAlong;
-  if (along && share_seen(bone_, milled, camera_) >= 0.5) return std::nullopt;
+  if (along && visible_fraction(bone_, milled, camera_) >= 0.5) return std::nullopt;
   const Camera camera =
       along ? camera_along(bone_, entry_.point_W, entry_.direction_W, entry_.lateral_W) : camera_;
   return picture(milled, reference_density_, camera, of_patient_, events);

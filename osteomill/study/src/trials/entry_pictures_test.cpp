@@ -21,12 +21,12 @@ double seen_of_hole(double ridge_mm) {
   });
   const Camera camera = camera_above(before, Vec3::Zero(), -Vec3::UnitZ(), Vec3::UnitX());
   Volume milled = before;
-  EXPECT_EQ(share_seen(before, milled, camera), 1);
+  EXPECT_EQ(visible_fraction(before, milled, camera), 1);
   for_each(before.geometry().all_voxels(), [&](const VoxelIndex& v) {
     const Vec3 p = before.geometry().world_from_voxel(v);
     if ((p - Vec3(0, 0, 0.5)).norm() < 2) milled.lower_density(v, 0);
   });
-  return share_seen(before, milled, camera);
+  return visible_fraction(before, milled, camera);
 }
 
 TEST(EntryPictures, TellWhetherAHoleIsSeen) {

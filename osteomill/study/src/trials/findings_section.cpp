@@ -16,11 +16,11 @@ namespace {
 // A single hand settles nothing, so its cell only states whether the rule holds in it.
 Cell verdict_cell(const StudyFinding& finding, bool one_hand) {
   const Verdict verdict = one_hand ? finding.of_medians.verdict : finding.verdict;
-  if (one_hand && verdict == Verdict::agrees) return {"holds in this hand", Look::faint};
-  if (one_hand && verdict == Verdict::does_not_agree) return {"does not hold in this hand", Look::faint};
-  return {std::string(name_of(verdict)), verdict == Verdict::agrees           ? Look::agrees
-                                         : verdict == Verdict::does_not_agree ? Look::differs
-                                                                              : Look::faint};
+  if (one_hand && verdict == Verdict::agrees) return {"holds in this hand", CellStyle::faint};
+  if (one_hand && verdict == Verdict::does_not_agree) return {"does not hold in this hand", CellStyle::faint};
+  return {std::string(name_of(verdict)), verdict == Verdict::agrees           ? CellStyle::agrees
+                                         : verdict == Verdict::does_not_agree ? CellStyle::differs
+                                                                              : CellStyle::faint};
 }
 
 // Returns the findings whose runs are present.

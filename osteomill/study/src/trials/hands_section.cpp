@@ -38,16 +38,16 @@ Cell differences(const Study& study, std::string_view phase, const Field<RunMetr
     if (!pieces.empty()) pieces.push_back({"\n"});
     if (!pair.is_settled()) {
       pieces.push_back({fmt::format("{} and {}{}: not settled, {}", first, second, in_hands, p_text(pair.p)),
-                        Look::faint});
+                        CellStyle::faint});
       continue;
     }
     pieces.push_back({fmt::format("{} is {} {}{}", pair.second_is_greater ? second : first, size_text(pair),
                                   pair.second_is_greater ? first : second, in_hands),
-                      pair.is_noticeable ? Look::strong : Look::faint});
+                      pair.is_noticeable ? CellStyle::strong : CellStyle::faint});
     pieces.push_back(
         {fmt::format("{}{}, {}", pair.is_noticeable ? "" : ": same for a hand",
                      pair.is_less_than_tremor ? ", less than another tremor gives" : "", p_text(pair.p)),
-         pair.is_noticeable ? Look::plain : Look::faint});
+         pair.is_noticeable ? CellStyle::plain : CellStyle::faint});
   }
   return pieces;
 }
@@ -58,14 +58,14 @@ Cell values_cell(const Study& study, const AlgorithmId& algorithm, std::string_v
                  const Field<RunMetrics>& metric) {
   const std::vector<double> values = study.values(algorithm, phase, metric.get);
   const std::size_t hands = study.seeds().size();
-  if (values.empty()) return {study.why_not_measured(algorithm, phase, metric.get), Look::words};
+  if (values.empty()) return {study.why_not_measured(algorithm, phase, metric.get), CellStyle::words};
   std::string text =
       hands == 1 ? fmt::format("{:.3g}", values.front()) : interval_text(median_interval(values));
   if (values.size() != hands) text += fmt::format(" in {} of {} hands", values.size(), hands);
-  const double by_tremor = given_by_tremor(study, algorithm, phase, metric);
+  const double by_tremor = tremor_effect(study, algorithm, phase, metric);
   if (std::isnan(by_tremor)) return text;
   return std::vector<Cell::Piece>{{std::move(text)},
-                                  {fmt::format("\ntremor {:.2g}", by_tremor), Look::faint}};
+                                  {fmt::format("\ntremor {:.2g}", by_tremor), CellStyle::faint}};
 }
 
 // Returns a table without rows: a column for each algorithm and, with several hands, one for the differences.
@@ -90,7 +90,7 @@ void add_not_reached(Table& table, const Study& study, std::string_view phase) {
   for (const AlgorithmId& algorithm : study.algorithms()) {
     const std::string words = study.not_reached(algorithm, phase);
     any = any || !words.empty();
-    row.emplace_back(words, Look::words);
+    row.emplace_back(words, CellStyle::words);
   }
   if (any) table.rows.push_back(std::move(row));
 }
@@ -141,7 +141,7 @@ std::vector<std::string> how_to_read(const Study& study) {
       min_corrected > kSignificance ? ", so that no difference can be significant here and none is shown"
                                     : ""));
   paragraphs.push_back(about_noticeable());
-  if (const std::size_t runs = tremors_tried(study); runs > 0) {
+  if (const std::size_t runs = tremor_run_count(study); runs > 0) {
     paragraphs.push_back(fmt::format(
         "Below a value is the effect of tremor alone: the difference between two runs of the same hand, that "
         "of seed {}, with different tremors (the median over the pairs of {} such runs). A smaller "

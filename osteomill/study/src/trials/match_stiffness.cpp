@@ -23,14 +23,14 @@ constexpr double kSoftest_N_per_mm = 0.05;
 constexpr double kStiffest_N_per_mm = 200;
 
 // One end of the remaining interval.
-struct Pressed {
+struct SearchBound {
   double stiffness_N_per_mm;
   /// Nothing if it has not been pressed.
   std::optional<double> felt_N_per_mm = std::nullopt;
 };
 
 // Returns why the interval does not contain the wanted stiffness.
-std::string reason(const Pressed& low, const Pressed& high) {
+std::string reason(const SearchBound& low, const SearchBound& high) {
   if (low.felt_N_per_mm == 0.0 && high.felt_N_per_mm) {
     return fmt::format("the softest that carries the press, {:.4g}, is felt as {:.4g}",
                        high.stiffness_N_per_mm, *high.felt_N_per_mm);
@@ -40,7 +40,7 @@ std::string reason(const Pressed& low, const Pressed& high) {
         "at a stiffness of {:.4g} that leaps from {:.3g} to {:.3g}, as its force rises in steps",
         low.stiffness_N_per_mm, *low.felt_N_per_mm, *high.felt_N_per_mm);
   }
-  const Pressed& last = low.felt_N_per_mm ? low : high;
+  const SearchBound& last = low.felt_N_per_mm ? low : high;
   return fmt::format("with a stiffness of {:.4g} it is felt as {:.4g}", last.stiffness_N_per_mm,
                      last.felt_N_per_mm.value_or(0));
 }
@@ -55,7 +55,7 @@ double felt_stiffness_N_per_mm(const MillingSetup& setup, const Volume& wall) {
   return press_slowly_on_wall(*made, setup.tool.burr_radius_mm, press);
 }
 
-HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, const Volume& wall) {
+HapticSettings::Named match_felt_stiffness(double felt_N_per_mm, MillingSetup setup, const Volume& wall) {
   const AlgorithmDescription& algorithm = setup.algorithm;
   const SettingDescription* setting = setting_of_option(algorithm, kStiffnessOption);
   if (setting == nullptr) {
@@ -69,7 +69,7 @@ HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, 
     named.push_back({algorithm.id.name, setting->name, std::clamp(value.value, softest, stiffest)});
   }
   double& stiffness = named.back().value;
-  Pressed low{softest}, high{stiffest};
+  SearchBound low{softest}, high{stiffest};
   for (int n = 0; n < kMaxPresses && high.stiffness_N_per_mm > kApart * low.stiffness_N_per_mm; ++n) {
     const double felt = felt_stiffness_N_per_mm(setup, wall);
     if (std::abs(felt - felt_N_per_mm) <= kWithin * felt_N_per_mm) return named.back();

@@ -71,7 +71,7 @@ TEST_P(MatchStiffness, IsFeltAsAskedFor) {
   const AlgorithmDescription& algorithm = algorithm_named(GetParam());
   HapticSettings haptics;
   const double felt_N_per_mm = 0.8;
-  haptics.named.push_back(setting_felt_as(felt_N_per_mm, setup_of(algorithm), wall()));
+  haptics.named.push_back(match_felt_stiffness(felt_N_per_mm, setup_of(algorithm), wall()));
   const auto made = make_algorithm(algorithm, haptics);
   made->prepare({&wall(), kTool, kTick_s});
   EXPECT_NEAR(slope_at_rest_N_per_mm(*made), felt_N_per_mm, 0.1 * felt_N_per_mm)
@@ -79,7 +79,7 @@ TEST_P(MatchStiffness, IsFeltAsAskedFor) {
 }
 
 TEST(MatchStiffness, ASpringToTheSurfaceIsFeltAsItsStiffness) {
-  const auto named = setting_felt_as(1.3, setup_of(algorithm_named("line-proxy")), wall());
+  const auto named = match_felt_stiffness(1.3, setup_of(algorithm_named("line-proxy")), wall());
   EXPECT_EQ(named.setting, "stiffness");
   EXPECT_NEAR(named.value, 1.3, 0.02 * 1.3);
 }
@@ -87,15 +87,15 @@ TEST(MatchStiffness, ASpringToTheSurfaceIsFeltAsItsStiffness) {
 TEST(MatchStiffness, WhatNoSettingGivesIsRefused) {
   for (const std::string& name : algorithm_names()) {
     const MillingSetup setup = setup_of(algorithm_named(name));
-    EXPECT_THROW(setting_felt_as(1e4, setup, wall()), std::invalid_argument) << name;
-    EXPECT_THROW(setting_felt_as(1e-4, setup, wall()), std::invalid_argument) << name;
+    EXPECT_THROW(match_felt_stiffness(1e4, setup, wall()), std::invalid_argument) << name;
+    EXPECT_THROW(match_felt_stiffness(1e-4, setup, wall()), std::invalid_argument) << name;
   }
 }
 
 // Surface-points adds one ring of vertices after another, each saturating once it is entirely in bone.
 TEST(MatchStiffness, ASlopeThatIsLeaptOverIsRefused) {
   try {
-    setting_felt_as(1.5, setup_of(algorithm_named("surface-points")), wall());
+    match_felt_stiffness(1.5, setup_of(algorithm_named("surface-points")), wall());
     ADD_FAILURE();
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("surface-points cannot be felt as 1.5 N/mm"), std::string::npos)

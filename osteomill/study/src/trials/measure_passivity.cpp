@@ -22,11 +22,11 @@ StiffnessLimit seek_stiffness_limit(const std::function<WallPressResult(double)>
   // Returns true if the limit is higher; a wall that gives way is too soft.
   const auto is_below_limit = [&](double stiffness) {
     const WallPressResult result = press(stiffness);
-    if (result.motion == WallMotion::dies_out && stiffness > limit.stiffness_N_per_mm) {
+    if (result.motion == WallMotion::decays && stiffness > limit.stiffness_N_per_mm) {
       limit.stiffness_N_per_mm = stiffness;
       limit.felt_N_per_mm = result.felt_N_per_mm;
     }
-    return result.motion != WallMotion::goes_on;
+    return result.motion != WallMotion::persists;
   };
   double low = std::clamp(start_N_per_mm, kSoftest_N_per_mm, kStiffest_N_per_mm);
   double high = low;

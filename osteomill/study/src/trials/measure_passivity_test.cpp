@@ -90,21 +90,21 @@ TEST(Passivity, ADeviceWithoutDampingKeepsNothingPassive) {
 TEST(Passivity, AWallThatGivesWayIsNotCalledPassive) {
   // It would carry the force only at 5 mm.
   IdealWall soft(0.1);
-  EXPECT_EQ(press_on_wall(soft, kRadius_mm, device(0.005, 0)).motion, WallMotion::gives_way);
+  EXPECT_EQ(press_on_wall(soft, kRadius_mm, device(0.005, 0)).motion, WallMotion::yields);
   IdealWall none(0);
-  EXPECT_EQ(press_on_wall(none, kRadius_mm, device(0.005, 0)).motion, WallMotion::gives_way);
+  EXPECT_EQ(press_on_wall(none, kRadius_mm, device(0.005, 0)).motion, WallMotion::yields);
 }
 
 TEST(Passivity, ADeviceTooWeakToHoldTheWallIsNotCalledPassive) {
   WallPress press = device(0.005, 0.3e-3);
   press.handle.limits.force_N = 0.3;
   IdealWall wall(1);
-  EXPECT_EQ(press_on_wall(wall, kRadius_mm, press).motion, WallMotion::goes_on);
+  EXPECT_EQ(press_on_wall(wall, kRadius_mm, press).motion, WallMotion::persists);
 }
 
 TEST(Passivity, AnOverdampedDeviceThatCreepsToRestIsPassive) {
   IdealWall wall(0.5);
-  EXPECT_EQ(press_on_wall(wall, kRadius_mm, device(0.1, 0)).motion, WallMotion::dies_out);
+  EXPECT_EQ(press_on_wall(wall, kRadius_mm, device(0.1, 0)).motion, WallMotion::decays);
 }
 
 // A force that jumps at the surface makes the handle oscillate without growth: not passive either.
@@ -124,7 +124,7 @@ class Relay final : public HapticAlgorithm {
 
 TEST(Passivity, WhatNeitherGrowsNorDiesIsNotCalledPassive) {
   Relay relay;
-  EXPECT_EQ(press_on_wall(relay, kRadius_mm, device(0.002, 2e-3)).motion, WallMotion::goes_on);
+  EXPECT_EQ(press_on_wall(relay, kRadius_mm, device(0.002, 2e-3)).motion, WallMotion::persists);
 }
 
 TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
@@ -147,16 +147,16 @@ TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
     int steps_ = 0;
   };
   Broken broken;
-  EXPECT_NE(press_on_wall(broken, kRadius_mm, device(0.005, 0)).motion, WallMotion::dies_out);
+  EXPECT_NE(press_on_wall(broken, kRadius_mm, device(0.005, 0)).motion, WallMotion::decays);
 }
 
 TEST(Passivity, TheSearchSaysWhereItEnds) {
   const auto limit_at = [](double true_limit, double softest, double start) {
     return seek_stiffness_limit(
         [=](double k) {
-          return WallPressResult{k < softest      ? WallMotion::gives_way
-                                 : k < true_limit ? WallMotion::dies_out
-                                                  : WallMotion::goes_on,
+          return WallPressResult{k < softest      ? WallMotion::yields
+                                 : k < true_limit ? WallMotion::decays
+                                                  : WallMotion::persists,
                                  0.5 * k};
         },
         start);
@@ -184,7 +184,7 @@ TEST(Passivity, TheWallIsWhereTheHandleIsPressed) {
   const auto algorithm = make_algorithm(algorithm_named("line-proxy"), settings);
   algorithm->prepare({&wall, tool});
   const WallPressResult result = press_on_wall(*algorithm, tool.burr_radius_mm, device(0.02, 0));
-  EXPECT_EQ(result.motion, WallMotion::dies_out);
+  EXPECT_EQ(result.motion, WallMotion::decays);
   EXPECT_NEAR(result.felt_N_per_mm, 1, 0.02);
 }
 

@@ -7,21 +7,21 @@
 
 namespace osteomill {
 
-double given_by_tremor(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
-                       const Field<RunMetrics>& figure) {
+double tremor_effect(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
+                     const Field<RunMetrics>& figure) {
   const std::vector<double> values = study.values_by_tremor(algorithm, phase, figure.get);
   std::vector<double> differences;
   for (std::size_t a = 0; a < values.size(); ++a)
     for (std::size_t b = 0; b < a; ++b) differences.push_back(std::abs(values[a] - values[b]));
-  return differences.empty() || figure.has(kOfTheMachine) ? kNotMeasured
-                                                          : distribution_of(differences).median;
+  return differences.empty() || figure.has(kMachineDependent) ? kNotMeasured
+                                                              : distribution_of(differences).median;
 }
 
 bool are_compared(const Study& study) {
   return study.algorithms().size() > 1 && study.seeds().size() >= study.seeds_needed();
 }
 
-std::size_t tremors_tried(const Study& study) {
+std::size_t tremor_run_count(const Study& study) {
   if (study.phases().empty()) return 0;
   const auto steps = [](const RunMetrics& m) { return m.steps; };
   return study.values_by_tremor(study.algorithms().front(), study.phases().front(), steps).size();
@@ -54,8 +54,8 @@ std::vector<PairedComparison> compare_algorithms(const Study& study, std::string
       pair.is_noticeable = pair.difference >= least_noticeable(figure, lesser);
       // False if no other tremors were tried.
       pair.is_less_than_tremor =
-          pair.difference < std::fmax(given_by_tremor(study, algorithms[a], phase, figure),
-                                      given_by_tremor(study, algorithms[b], phase, figure));
+          pair.difference < std::fmax(tremor_effect(study, algorithms[a], phase, figure),
+                                      tremor_effect(study, algorithms[b], phase, figure));
       p.push_back(test.p);
     }
   }

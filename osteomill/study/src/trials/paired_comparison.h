@@ -40,11 +40,11 @@ std::vector<PairedComparison> compare_algorithms(const Study& study, std::string
 bool are_compared(const Study& study);
 
 /// Returns the number of runs of one hand that differ only in tremor; 0 if no other tremors were tried.
-std::size_t tremors_tried(const Study& study);
+std::size_t tremor_run_count(const Study& study);
 
 /// Returns the median absolute difference of the figure between pairs of runs of one hand that differ only in
 /// tremor; NaN if no other tremors were tried, or if the figure depends on the machine.
-double given_by_tremor(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
-                       const Field<RunMetrics>& figure);
+double tremor_effect(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
+                     const Field<RunMetrics>& figure);
 
 }  // namespace osteomill

@@ -239,7 +239,7 @@ std::vector<PassivityRow> read_passivity_csv(const std::filesystem::path& path,
     PassivityRow& row = rows.emplace_back(PassivityRow{.algorithm = *algorithm});
     for (const Kind kind : {Kind::found, Kind::above_all, Kind::below_all})
       if (cells[3] == name_of_kind(kind)) row.limit.kind = kind;
-    const auto number = [&](std::size_t n) { return parsed_number<double>(cells[n]).value_or(0); };
+    const auto number = [&](std::size_t n) { return parse_number<double>(cells[n]).value_or(0); };
     row.damping_Ns_per_mm = 1e-3 * number(1);
     row.delay_s = number(2);
     row.limit.stiffness_N_per_mm = number(4);

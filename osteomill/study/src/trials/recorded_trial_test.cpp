@@ -82,15 +82,15 @@ TEST_F(RecordedTrialTest, AnotherTremorIsOneOfTheSameHand) {
   for (const TrialPlan& other : trials_with_other_tremors(plan)) {
     EXPECT_EQ(other.settings.hand_and_device.hand.stiffness_N_per_mm,
               plan.settings.hand_and_device.hand.stiffness_N_per_mm);
-    const MeasuredRun run = try_trial(StudyTest::milling, other).rows.front().run;
+    const MeasuredRun run = run_single_trial(StudyTest::milling, other).rows.front().run;
     EXPECT_EQ(run.seed, 5u);
-    EXPECT_FALSE(run.is_own());
+    EXPECT_FALSE(run.is_study_hand());
     EXPECT_EQ(run.other_tremor, other.other_tremor);
     paths_mm.push_back(run.metrics.path_mm);
   }
   ASSERT_EQ(paths_mm.size(), 2u);
   EXPECT_NE(paths_mm[0], paths_mm[1]);
-  EXPECT_NE(paths_mm[0], try_trial(StudyTest::milling, plan).rows.front().run.metrics.path_mm);
+  EXPECT_NE(paths_mm[0], run_single_trial(StudyTest::milling, plan).rows.front().run.metrics.path_mm);
 }
 
 // The algorithms are exchanged in the first second, in which the force may jump.

@@ -84,7 +84,7 @@ std::string new_comparison() {
   return fmt::format("{:08x}{:08x}", device(), device());
 }
 
-bool is_of_a_comparison(const std::string& name) {
+bool is_comparison_output(const std::string& name) {
   constexpr std::string_view kReport[] = {"report.html",   "summary.csv",  "study.csv",
                                           "stability.csv", "one-hole.csv", "figures"};
   if (std::ranges::find(kReport, name) != std::end(kReport)) return true;
@@ -105,7 +105,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
   for (const Recording& phase : milled.phases) {
     const bool first = paths.empty();
     RunDescription run = phase.description;
-    if (!pictures.can_be_had())
+    if (!pictures.is_available())
       run.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
     paths.push_back(folder / recording_name(plan, run.phase));
     Recorder recorder(
@@ -127,9 +127,9 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
   return paths;
 }
 
-TriedTrial try_trial(StudyTest test, const TrialPlan& plan) {
+TrialResult run_single_trial(StudyTest test, const TrialPlan& plan) {
   const double before_s = thread_cpu_s();
-  TriedTrial tried;
+  TrialResult tried;
   if (test == StudyTest::milling) {
     MillingTrial trial(plan.bone, plan.densities, plan.entry, plan.settings);
     const MilledTrial milled = mill(plan, trial, {});
@@ -183,7 +183,7 @@ std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan) {
     TrialPlan& other = trials.emplace_back(plan);
     other.settings.algorithm = algorithm_named(kPapersAlgorithms[1]);
     HandSettings& hand = other.settings.hand_and_device.hand;
-    hand = gripping(hand, grip);
+    hand = with_firmer_grip(hand, grip);
     other.grip = grip;
   }
   return trials;
@@ -215,13 +215,13 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
 namespace {
 
 // Warns once per algorithm, with its first trial that had faulty ticks.
-void warn_of_faults(const std::vector<TriedTrial>& tried, const RunEvents& events) {
+void warn_of_faults(const std::vector<TrialResult>& tried, const RunEvents& events) {
   struct Faults {
     std::string first;
     std::size_t trials = 0;
   };
   std::map<AlgorithmId, Faults> faults;
-  for (const TriedTrial& trial : tried) {
+  for (const TrialResult& trial : tried) {
     if (!trial.faults) continue;
     const MeasuredRun& run = trial.rows.back().run;
     Faults& of_algorithm = faults[run.algorithm];
@@ -240,10 +240,11 @@ void warn_of_faults(const std::vector<TriedTrial>& tried, const RunEvents& event
 
 std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
                                           const RunEvents& events) {
-  const auto tried = run_trials(trials, "study", threads, events,
-                                [](const TrialPlan& plan) { return try_trial(StudyTest::milling, plan); });
+  const auto tried = run_trials(trials, "study", threads, events, [](const TrialPlan& plan) {
+    return run_single_trial(StudyTest::milling, plan);
+  });
   std::vector<MeasuredRun> all;
-  for (const TriedTrial& trial : tried)
+  for (const TrialResult& trial : tried)
     for (const TrialRow& row : trial.rows) all.push_back(row.run);
   warn_of_faults(tried, events);
   return all;

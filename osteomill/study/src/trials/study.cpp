@@ -30,7 +30,7 @@ using M = RunMetrics;
 
 // Sorts phase before algorithm, as in summary.csv.
 auto place(const MeasuredRun& run) {
-  return std::tuple(phase_number(run.phase), run.algorithm);
+  return std::tuple(phase_index(run.phase), run.algorithm);
 }
 
 // Parses a row; returns nothing unless `rows` has its algorithm and phase and it has the right number of
@@ -45,12 +45,12 @@ std::optional<MeasuredRun> read_row(const std::vector<std::string>& cells,
     return cells[algorithm] == row.algorithm.name && cells[algorithm + 1] == row.phase;
   });
   if (of == rows.end()) return std::nullopt;
-  const auto number = [&](std::size_t n) { return parsed_number<double>(cells[n]).value_or(kNotMeasured); };
+  const auto number = [&](std::size_t n) { return parse_number<double>(cells[n]).value_or(kNotMeasured); };
   MeasuredRun row{.algorithm = of->algorithm,
                   .phase = of->phase,
                   .metrics = {},
                   .not_reached = cells.back(),
-                  .seed = parsed_number<std::uint64_t>(cells[0]).value_or(0)};
+                  .seed = parse_number<std::uint64_t>(cells[0]).value_or(0)};
   for (std::size_t n = 0; n < of_hand.size(); ++n) of_hand[n].set(row, number(1 + n));
   for (std::size_t n = 0; n < figures.size(); ++n) figures[n].set(row.metrics, number(first + n));
   return row;
@@ -60,7 +60,7 @@ std::optional<MeasuredRun> read_row(const std::vector<std::string>& cells,
 bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
   return std::ranges::all_of(fields_of<M>(), [&](const Field<M>& figure) {
     const double first = figure.get(a.metrics), second = figure.get(b.metrics);
-    return figure.has(kOfTheMachine) || first == second || (std::isnan(first) && std::isnan(second));
+    return figure.has(kMachineDependent) || first == second || (std::isnan(first) && std::isnan(second));
   });
 }
 
@@ -81,9 +81,9 @@ std::string short_label(const AlgorithmId& algorithm) {
 }
 
 Study::Study(std::vector<MeasuredRun> rows) : rows_(std::move(rows)) {
-  const auto others =
-      std::stable_partition(rows_.begin(), rows_.end(), [](const MeasuredRun& row) { return row.is_own(); });
-  beside_.assign(others, rows_.end());
+  const auto others = std::stable_partition(rows_.begin(), rows_.end(),
+                                            [](const MeasuredRun& row) { return row.is_study_hand(); });
+  extra_rows_.assign(others, rows_.end());
   rows_.erase(others, rows_.end());
   if (rows_.empty()) throw std::invalid_argument("study: there are no trials");
   std::map<std::uint64_t, std::size_t> order;
@@ -146,7 +146,7 @@ std::vector<double> Study::all_values(const AlgorithmId& algorithm, std::string_
                                       const RunFigure& figure) const {
   std::vector<double> values;
   for (const MeasuredRun& row : rows_) {
-    if (place(row) == std::tuple(phase_number(phase), algorithm)) values.push_back(figure(row.metrics));
+    if (place(row) == std::tuple(phase_index(phase), algorithm)) values.push_back(figure(row.metrics));
   }
   return values;
 }
@@ -162,13 +162,13 @@ std::vector<double> Study::values_by_tremor(const AlgorithmId& algorithm, std::s
                                             const RunFigure& figure) const {
   std::vector<double> values;
   std::optional<std::uint64_t> hand;
-  for (const MeasuredRun& row : beside_) {
-    if (row.other_tremor == 0 || place(row) != std::tuple(phase_number(phase), algorithm)) continue;
+  for (const MeasuredRun& row : extra_rows_) {
+    if (row.other_tremor == 0 || place(row) != std::tuple(phase_index(phase), algorithm)) continue;
     values.push_back(figure(row.metrics));
     hand = row.seed;
   }
   for (const MeasuredRun& row : rows_) {
-    if (row.seed == hand && place(row) == std::tuple(phase_number(phase), algorithm))
+    if (row.seed == hand && place(row) == std::tuple(phase_index(phase), algorithm))
       values.push_back(figure(row.metrics));
   }
   std::erase_if(values, [](double value) { return std::isnan(value); });
@@ -179,7 +179,7 @@ std::string Study::why_not_measured(const AlgorithmId& algorithm, std::string_vi
                                     const RunFigure& figure) const {
   std::vector<ContactShares> unmeasured;
   for (const MeasuredRun& row : rows_) {
-    if (place(row) == std::tuple(phase_number(phase), algorithm) && std::isnan(figure(row.metrics)))
+    if (place(row) == std::tuple(phase_index(phase), algorithm) && std::isnan(figure(row.metrics)))
       unmeasured.push_back(row.metrics.contact);
   }
   return seeds_.size() == 1 && !unmeasured.empty() ? contact_words(unmeasured.front())
@@ -191,7 +191,7 @@ std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view ph
   constexpr std::string_view kBetween = "; ";
   std::map<std::string, std::size_t> hands;
   for (const MeasuredRun& row : rows_) {
-    if (place(row) != std::tuple(phase_number(phase), algorithm)) continue;
+    if (place(row) != std::tuple(phase_index(phase), algorithm)) continue;
     for (std::size_t from = 0; from < row.not_reached.size();) {
       const std::size_t to = std::min(row.not_reached.find(kBetween, from), row.not_reached.size());
       ++hands[row.not_reached.substr(from, to - from)];
@@ -217,7 +217,7 @@ std::vector<std::string> unreached_lines(const Study& study) {
   };
   for (const AlgorithmId& algorithm : study.algorithms()) {
     const auto own = count(study.rows(), algorithm, true),
-               beside = count(study.rows_beside(), algorithm, true);
+               beside = count(study.extra_rows(), algorithm, true);
     if (own + beside == 0) continue;
     std::string line = algorithm.name + ": ";
     if (own > 0 && study.seeds().size() > 1)
@@ -225,7 +225,7 @@ std::vector<std::string> unreached_lines(const Study& study) {
     line += study.not_reached(algorithm, last);
     if (beside > 0)
       line += fmt::format("{}{} of {} trials with another grip or tremor did not do all of {}",
-                          own > 0 ? "; " : "", beside, count(study.rows_beside(), algorithm, false),
+                          own > 0 ? "; " : "", beside, count(study.extra_rows(), algorithm, false),
                           own > 0 ? "it either" : "the test");
     lines.push_back(std::move(line));
   }
@@ -235,7 +235,7 @@ std::vector<std::string> unreached_lines(const Study& study) {
 void write_study_csv(const std::filesystem::path& path, const Study& study) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << columns() << '\n';
-    for (const auto* rows : {&study.rows(), &study.rows_beside()}) {
+    for (const auto* rows : {&study.rows(), &study.extra_rows()}) {
       for (const MeasuredRun& row : *rows)
         out << row.seed << csv_values(fields_of<MeasuredRun>(), row) << ',' << summary_fields(row) << '\n';
     }
@@ -253,7 +253,8 @@ std::vector<MeasuredRun> read_study_csv(const std::filesystem::path& path,
 bool has_runs(const std::vector<MeasuredRun>& rows, const std::vector<MeasuredRun>& runs) {
   return std::ranges::all_of(runs, [&](const MeasuredRun& run) {
     return std::ranges::any_of(rows, [&](const MeasuredRun& row) {
-      return row.is_own() && row.seed == run.seed && place(row) == place(run) && same_figures(row, run);
+      return row.is_study_hand() && row.seed == run.seed && place(row) == place(run) &&
+             same_figures(row, run);
     });
   });
 }

@@ -23,7 +23,7 @@ std::string labels_in_words(const std::vector<AlgorithmId>& algorithms) {
 namespace {
 
 // A criterion for choosing an algorithm: a figure of a phase; less is better.
-struct Question {
+struct Criterion {
   const char* name;
   std::string_view phase;
   const char* column;
@@ -32,8 +32,8 @@ struct Question {
   const char* less;
 };
 
-std::vector<Question> questions_of(const Study& study) {
-  std::vector<Question> all{
+std::vector<Criterion> criteria_of(const Study& study) {
+  std::vector<Criterion> all{
       {"calm force while milling", kMilling, "force_hp_share", "is calmest in force while milling", "calmer"},
       {"calm torque while milling", kMilling, "torque_hp_share", "is calmest in torque while milling",
        "calmer"},
@@ -44,12 +44,12 @@ std::vector<Question> questions_of(const Study& study) {
        "keeps its shaft nearest to the handle while milling", "nearer"}};
   const std::vector<std::string_view> phases = study.phases();
   std::erase_if(all,
-                [&](const Question& one) { return std::ranges::find(phases, one.phase) == phases.end(); });
+                [&](const Criterion& one) { return std::ranges::find(phases, one.phase) == phases.end(); });
   return all;
 }
 
 // Returns the number of hands in which the algorithm completed the test, milling and holding.
-std::size_t hands_that_did_all(const Study& study, const AlgorithmId& algorithm) {
+std::size_t completed_hand_count(const Study& study, const AlgorithmId& algorithm) {
   std::size_t done = 0;
   for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
     done += std::ranges::all_of(study.rows_of_seed(seed), [&](const MeasuredRun& run) {
@@ -60,8 +60,8 @@ std::size_t hands_that_did_all(const Study& study, const AlgorithmId& algorithm)
 }
 
 // "0 of 8"
-std::string did_all_text(const Study& study, const AlgorithmId& algorithm) {
-  return fmt::format("{} of {}", hands_that_did_all(study, algorithm), study.seeds().size());
+std::string completed_text(const Study& study, const AlgorithmId& algorithm) {
+  return fmt::format("{} of {}", completed_hand_count(study, algorithm), study.seeds().size());
 }
 
 // Only algorithms that completed the test in most hands are ranked, however calm the others are.
@@ -72,7 +72,7 @@ struct Considered {
 Considered considered(const Study& study) {
   Considered all;
   for (const AlgorithmId& algorithm : study.algorithms())
-    (study.are_most(hands_that_did_all(study, algorithm)) ? all.in : all.out).push_back(algorithm);
+    (study.are_most(completed_hand_count(study, algorithm)) ? all.in : all.out).push_back(algorithm);
   return all;
 }
 
@@ -88,7 +88,7 @@ struct Rank {
   bool is_first() const { return is_measured && open.empty() && place == 1; }
 };
 
-std::vector<Rank> ranks_of(const Study& study, const Question& question,
+std::vector<Rank> ranks_of(const Study& study, const Criterion& question,
                            const std::vector<AlgorithmId>& algorithms) {
   std::vector<Rank> ranks;
   const Field<RunMetrics>& figure = metric(question.column);
@@ -132,7 +132,7 @@ std::string share_text(double share) {
 }
 
 // Returns a column heading: the criterion's name, with what its cells contain.
-std::string head_of(const Question& question) {
+std::string head_of(const Criterion& question) {
   std::string head = question.name;
   head[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(head[0])));
   const Field<RunMetrics>& figure = metric(question.column);
@@ -146,23 +146,24 @@ std::vector<Cell::Piece> rank_pieces(const Study& study, const AlgorithmId& algo
                                      const std::vector<Rank>& ranks) {
   if (!are_compared(study)) return {};
   const auto rank = std::ranges::find(ranks, algorithm, &Rank::algorithm);
-  if (rank == ranks.end()) return {{"\nnot considered", Look::faint}};
+  if (rank == ranks.end()) return {{"\nnot considered", CellStyle::faint}};
   if (ranks.size() == 1) return {};
-  return {{"\n" + rank_text(*rank), rank->is_first() ? Look::strong : Look::faint}};
+  return {{"\n" + rank_text(*rank), rank->is_first() ? CellStyle::strong : CellStyle::faint}};
 }
 
 // Returns the value of a single hand and of its other tremors, or the median and rank of several hands.
-Cell answer_cell(const Study& study, const Question& question, const AlgorithmId& algorithm,
+Cell answer_cell(const Study& study, const Criterion& question, const AlgorithmId& algorithm,
                  const std::vector<Rank>& ranks) {
   const Field<RunMetrics>& figure = metric(question.column);
   const auto text_of = [&](double value) {
     return figure.unit.empty() ? share_text(value) : in_two_digits(value);
   };
   const std::vector<double> values = study.values(algorithm, question.phase, figure.get);
-  if (values.empty()) return {study.why_not_measured(algorithm, question.phase, figure.get), Look::words};
+  if (values.empty())
+    return {study.why_not_measured(algorithm, question.phase, figure.get), CellStyle::words};
   std::vector<Cell::Piece> cell{{text_of(distribution_of(values).median)}};
   if (values.size() < study.seeds().size())
-    cell.push_back({fmt::format("\n{} of {} hands", values.size(), study.seeds().size()), Look::faint});
+    cell.push_back({fmt::format("\n{} of {} hands", values.size(), study.seeds().size()), CellStyle::faint});
   const std::vector<Cell::Piece> rank = rank_pieces(study, algorithm, ranks);
   cell.insert(cell.end(), rank.begin(), rank.end());
   if (study.seeds().size() > 1) return cell;
@@ -170,21 +171,21 @@ Cell answer_cell(const Study& study, const Question& question, const AlgorithmId
   if (by_tremor.size() > 1) {
     const auto [least, most] = std::ranges::minmax(by_tremor);
     const std::string from = figure.unit.empty() ? fmt::format("{:.2g}", 100 * least) : in_two_digits(least);
-    cell.push_back({fmt::format("\n{} to {}", from, text_of(most)), Look::faint});
+    cell.push_back({fmt::format("\n{} to {}", from, text_of(most)), CellStyle::faint});
   }
   return cell;
 }
 
 Table answer_table(const Study& study, const std::map<std::string, Probe>& probes) {
-  Table table{{study.seeds().size() > 1   ? "Median over the hands"
-               : tremors_tried(study) > 1 ? "In this hand\n(with other tremors)"
-                                          : "In this hand"},
+  Table table{{study.seeds().size() > 1      ? "Median over the hands"
+               : tremor_run_count(study) > 1 ? "In this hand\n(with other tremors)"
+                                             : "In this hand"},
               {},
               true};
   const std::vector<AlgorithmId> algorithms = study.algorithms();
   for (const AlgorithmId& algorithm : algorithms) table.rows.push_back({algorithm.label});
   const std::vector<AlgorithmId> ranked = considered(study).in;
-  for (const Question& question : questions_of(study)) {
+  for (const Criterion& question : criteria_of(study)) {
     table.header.push_back(head_of(question));
     const std::vector<Rank> ranks = ranks_of(study, question, ranked);
     for (std::size_t n = 0; n < algorithms.size(); ++n)
@@ -198,7 +199,7 @@ Table answer_table(const Study& study, const std::map<std::string, Probe>& probe
   const Field<RunMetrics>& cost = metric("tick_us_median");
   for (std::size_t n = 0; n < table.rows.size(); ++n) {
     std::vector<Cell>& row = table.rows[n];
-    row.emplace_back(did_all_text(study, algorithms[n]));
+    row.emplace_back(completed_text(study, algorithms[n]));
     if (!probes.empty()) {
       const auto probed = probes.find(algorithms[n].name);
       const bool is_probed = probed != probes.end();
@@ -214,7 +215,7 @@ Table answer_table(const Study& study, const std::map<std::string, Probe>& probe
 
 }  // namespace
 
-std::string what_was_compared(const Study& study, std::string_view bone) {
+std::string comparison_sentence(const Study& study, std::string_view bone) {
   const std::size_t hands = study.seeds().size();
   const bool one = study.algorithms().size() == 1;
   return fmt::format(
@@ -226,21 +227,21 @@ std::string what_was_compared(const Study& study, std::string_view bone) {
       hands == 1 ? "one simulated hand" : fmt::format("{} simulated hands", hands), one ? "It" : "Each");
 }
 
-std::string about_the_table(const Study& study) {
+std::string table_explanation(const Study& study) {
   std::string text =
       "The table rates how calm a force or torque is by its rms above 20 Hz, which a hand feels as a buzz "
       "and cannot follow, relative to its mean. The shaft is that of the simulated tool; its spread against "
       "the handle is 0 if an algorithm shows the tool at the handle.";
-  if (study.seeds().size() == 1 && tremors_tried(study) > 1)
+  if (study.seeds().size() == 1 && tremor_run_count(study) > 1)
     text +=
         fmt::format(" Below each value is the range over {} runs of this hand that differ only in tremor.",
-                    tremors_tried(study));
+                    tremor_run_count(study));
   if (are_compared(study) && !considered(study).out.empty())
     text += " Ranks are those among the algorithms that did all of the test in most hands.";
   return text;
 }
 
-std::string too_few_hands(const Study& study) {
+std::string sample_size_warning(const Study& study) {
   const std::size_t hands = study.seeds().size(), needed = study.seeds_needed();
   if (hands >= needed || study.algorithms().size() == 1) return "";
   return fmt::format(
@@ -261,7 +262,7 @@ namespace {
 // A criterion with its results over the hands.
 struct Answers {
   const Study& study;
-  const Question& question;
+  const Criterion& question;
   const Field<RunMetrics>& figure = metric(question.column);
   std::vector<PairedComparison> pairs = compare_algorithms(study, question.phase, figure);
 
@@ -319,7 +320,7 @@ std::vector<std::string> words_on_less(const Answers& answers, const AlgorithmId
                           pair->is_settled() ? "though the same for a hand" : "which is not settled");
     sentences.push_back(fmt::format("{} {} ({}{}), but did all of the test in {} hands.", other.label, had,
                                     answers.value(other), answers.test(best, other),
-                                    did_all_text(answers.study, other)));
+                                    completed_text(answers.study, other)));
   }
   return sentences;
 }
@@ -351,13 +352,13 @@ std::string alike_words(const Answers& answers, const std::vector<Rank>& first) 
 std::string hands_in_words(const Study& study, const std::vector<AlgorithmId>& algorithms) {
   std::vector<std::string> all;
   for (const AlgorithmId& algorithm : algorithms)
-    all.push_back(fmt::format("{} ({})", algorithm.label, did_all_text(study, algorithm)));
+    all.push_back(fmt::format("{} ({})", algorithm.label, completed_text(study, algorithm)));
   return in_words(all);
 }
 
 }  // namespace
 
-std::string which_to_take(const Study& study) {
+std::string recommendation_text(const Study& study) {
   if (!are_compared(study)) return "";
   const auto [in, out] = considered(study);
   if (in.empty())
@@ -367,7 +368,7 @@ std::string which_to_take(const Study& study) {
     return fmt::format("Only {} did all of the test in most hands, so nothing is compared; {} did not.",
                        hands_in_words(study, in), hands_in_words(study, out));
   std::vector<std::string> sentences, same, open, unmeasured;
-  for (const Question& question : questions_of(study)) {
+  for (const Criterion& question : criteria_of(study)) {
     const Answers answers{study, question};
     const std::vector<Rank> ranks = ranks_of(study, question, in);
     const std::vector<AlgorithmId> by_median = answers.by_median(in);

@@ -16,14 +16,14 @@ std::string labels_in_words(const std::vector<AlgorithmId>& algorithms);
 
 /// Returns a sentence on what was compared: which algorithms, on which bone (omitted if empty), in how many
 /// hands.
-std::string what_was_compared(const Study& study, std::string_view bone);
+std::string comparison_sentence(const Study& study, std::string_view bone);
 
 /// Explains how to read the first table of `conclusions`.
-std::string about_the_table(const Study& study);
+std::string table_explanation(const Study& study);
 
 /// Returns a warning for the top of the page that a study has too few hands to show anything; empty if it has
 /// enough.
-std::string too_few_hands(const Study& study);
+std::string sample_size_warning(const Study& study);
 
 /// Returns the tables with the main results of a comparison: a row for each algorithm with the figures to
 /// choose by, each with its rank if the hands settle it; and how many of the paper's findings hold. `probes`
@@ -34,6 +34,6 @@ std::vector<Table> conclusions(const Study& study, const std::map<std::string, P
 /// ranks that the hands settle among the algorithms that completed the test in most hands; which of the
 /// others had lower values; and what the hands do not settle. Empty if there are too few hands or only one
 /// algorithm.
-std::string which_to_take(const Study& study);
+std::string recommendation_text(const Study& study);
 
 }  // namespace osteomill

@@ -65,7 +65,7 @@ TEST(Conclusions, RankAlgorithmsByWhatTheHandsSettle) {
   EXPECT_TRUE(answer_row(rows, "2 surface-points").starts_with("2 surface-points|52 %\n3rd|20 %\n2nd|"));
   EXPECT_TRUE(answer_row(rows, "3 point-shell")
                   .starts_with("3 point-shell|5.2 %\nnot settled\nagainst 1|10 %\n1st|"));
-  EXPECT_EQ(which_to_take(study),
+  EXPECT_EQ(recommendation_text(study),
             "3 point-shell is calmest in torque while milling: 10 % (2 surface-points 20 %, p = 0.023, 8 "
             "hands). 3 point-shell is calmest in torque while holding: 10 % (2 surface-points 20 %, p = "
             "0.023, 8 hands). Not settled: calm force while milling (3 point-shell 5.2 %, 1 line-proxy 5.2 "
@@ -77,7 +77,7 @@ TEST(Conclusions, RankAlgorithmsByWhatTheHandsSettle) {
                   .starts_with("agrees|5|“all the algorithms fulfill the real-time requirements”, in 8 of 8 "
                                "hands;\n"));
   EXPECT_TRUE(row_of(tables[1], "does not agree").starts_with("does not agree|3|"));
-  EXPECT_TRUE(too_few_hands(study).empty());
+  EXPECT_TRUE(sample_size_warning(study).empty());
 }
 
 TEST(Conclusions, GiveTheSizeOfADifferenceAndIfAHandNoticesIt) {
@@ -126,7 +126,7 @@ TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
     if (r.algorithm == "line-proxy") r.metrics.torque_Nmm.hp_share = 0.001;
     if (r.algorithm == "point-shell" && r.seed < 5) r.not_reached = "the shaft turned";
   }
-  const std::string take = which_to_take(Study(rows));
+  const std::string take = recommendation_text(Study(rows));
   EXPECT_TRUE(take.starts_with(
       "Of the algorithms that did all of the test in most hands, 1 line-proxy is calmest in force while "
       "milling: 5.2 % (2 surface-points 52 %, p = 0.023, 8 hands). 3 point-shell had less, which is not "
@@ -137,16 +137,18 @@ TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
   // It has no rank, and takes none from the others.
   expect_says(answer_row(rows, "3 point-shell"), "|10 %\nnot considered|");
   expect_says(answer_row(rows, "2 surface-points"), "|20 %\n2nd|");
-  expect_says(about_the_table(Study(rows)), "Ranks are those among the algorithms that did all of the test");
+  expect_says(table_explanation(Study(rows)),
+              "Ranks are those among the algorithms that did all of the test");
   for (MeasuredRun& r : rows) r.not_reached = r.algorithm == "surface-points" ? "" : "lost";
-  EXPECT_EQ(which_to_take(Study(rows)),
+  EXPECT_EQ(recommendation_text(Study(rows)),
             "Only 2 surface-points (8 of 8) did all of the test in most hands, so nothing is compared; 1 "
             "line-proxy (0 of 8) and 3 point-shell (0 of 8) did not.");
   EXPECT_TRUE(answer_row(rows, "2 surface-points").starts_with("2 surface-points|52 %|20 %|"));
   for (MeasuredRun& r : rows) r.not_reached = "lost";
-  EXPECT_TRUE(which_to_take(Study(rows)).starts_with("None did all of the test in most hands, so nothing "));
+  EXPECT_TRUE(
+      recommendation_text(Study(rows)).starts_with("None did all of the test in most hands, so nothing "));
   for (MeasuredRun& r : rows) r.not_reached = r.algorithm == "line-proxy" && r.seed < 5 ? "lost" : "";
-  expect_says(which_to_take(Study(rows)),
+  expect_says(recommendation_text(Study(rows)),
               "3 point-shell is calmest in torque while milling: 10 % (2 surface-points 20 %, p = 0.023, 8 "
               "hands). 1 line-proxy was calmer (0.1 %, p = 0.023, 8 hands), but did all of the test in 4 of "
               "8 hands.");
@@ -169,7 +171,7 @@ TEST(Conclusions, SayWhatTremorAloneGives) {
     EXPECT_EQ(study.rows().size(), 6 * seeds);
     if (seeds == 1) {
       expect_says(answer_row(rows, "2 surface-points"), "|50 %\n50 to 52 %|20 %\n20 to 20 %|");
-      expect_says(about_the_table(study), "the range over 3 runs of this hand");
+      expect_says(table_explanation(study), "the range over 3 runs of this hand");
     } else {
       // The median of the differences 0.01, 0.02 and 0.03.
       expect_says(force_row(rows), "|1.04 [1.01, 1.08]\ntremor 0.02|");
@@ -205,10 +207,10 @@ TEST(Conclusions, HaveWhatWasProbed) {
 
 TEST(Conclusions, WithTooFewHandsNothingIsClaimed) {
   const Study one{sample_rows(1)};
-  EXPECT_TRUE(too_few_hands(one).starts_with(
+  EXPECT_TRUE(sample_size_warning(one).starts_with(
       "Only one hand tried this, too few to say which algorithm is better: it takes 7 or more "));
   EXPECT_EQ(conclusions(one)[0].header.front(), "In this hand");
-  EXPECT_EQ(which_to_take(one), "");
+  EXPECT_EQ(recommendation_text(one), "");
   EXPECT_EQ(plain_text(conclusions(one)[0]).find("1st"), std::string::npos);
   expect_says(plain_text(conclusions(one)[1]), "holds in this hand");
   EXPECT_EQ(plain_text(conclusions(one)[1]).find("agrees"), std::string::npos);
@@ -238,7 +240,7 @@ TEST(Conclusions, WhatMostHandsCouldNotMeasureIsNotCompared) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows)
     if (r.phase == kMilling && r.algorithm != "point-shell") r.metrics.torque_Nmm.hp_share = kNotMeasured;
-  const std::string take = which_to_take(Study(rows));
+  const std::string take = recommendation_text(Study(rows));
   expect_says(take, "3 point-shell is calmest in torque while holding: 10 % (2 surface-points 20 %, p = ");
   expect_says(take, "Not compared, because most hands felt too little of it: calm torque while milling.");
 }
@@ -305,9 +307,9 @@ TEST(Conclusions, OneAlgorithmHasNothingToBeComparedWith) {
   const Study study(rows);
   EXPECT_EQ(conclusions(study)[0].rows.size(), 1u);
   EXPECT_EQ(plain_text(conclusions(study)[0]).find("settled"), std::string::npos);
-  EXPECT_EQ(which_to_take(study), "");
-  EXPECT_EQ(too_few_hands(Study(std::vector<MeasuredRun>{rows[0], rows[1]})), "");
-  EXPECT_EQ(what_was_compared(study, "a tooth").find("1 line-proxy milled a bone (a tooth) in 8 "), 0u);
+  EXPECT_EQ(recommendation_text(study), "");
+  EXPECT_EQ(sample_size_warning(Study(std::vector<MeasuredRun>{rows[0], rows[1]})), "");
+  EXPECT_EQ(comparison_sentence(study, "a tooth").find("1 line-proxy milled a bone (a tooth) in 8 "), 0u);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ namespace {
 // Rounds off errors in the last bits of a number for people: 4, not 3.9999999999999996.
 double without_last_digits(double value) {
   if (value == std::floor(value)) return value;
-  return parsed_number<double>(fmt::format("{:.12g}", value)).value_or(value);
+  return parse_number<double>(fmt::format("{:.12g}", value)).value_or(value);
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ std::vector<double> steps_of(const StudyRange& range, std::size_t steps) {
   return values;
 }
 
-std::vector<std::string> names_in(std::string_view shown) {
+std::vector<std::string> operands_of(std::string_view shown) {
   constexpr std::string_view kOver = " / ";
   const std::size_t over = shown.find(kOver);
   if (over == std::string_view::npos) return {std::string(shown)};

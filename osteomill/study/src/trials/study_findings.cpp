@@ -39,7 +39,7 @@ RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
 // Returns algorithm 2's force above 20 Hz while holding in a grip, for one seed or for all.
 std::vector<double> grip_forces(const Study& study, double grip, std::optional<std::uint64_t> seed) {
   std::vector<double> forces;
-  for (const auto* rows : {&study.rows(), &study.rows_beside()}) {
+  for (const auto* rows : {&study.rows(), &study.extra_rows()}) {
     for (const MeasuredRun& run : *rows) {
       if (run.grip == grip && run.other_tremor == 0 && run.phase == kHolding &&
           run.algorithm == kPapersAlgorithms[1] && (!seed || run.seed == *seed)) {

@@ -52,10 +52,10 @@ std::size_t place_in(std::vector<std::string>& known, const std::string& text) {
 }
 
 // Quantity along an axis or as a colour: an option, a column of the rows, or the ratio of two of them.
-class Shown {
+class MapQuantity {
  public:
-  Shown(const StudyDesign& design, const std::string& shown) {
-    for (const std::string& name : names_in(shown)) {
+  MapQuantity(const StudyDesign& design, const std::string& shown) {
+    for (const std::string& name : operands_of(shown)) {
       const auto& columns = columns_of(design.test);
       const Field<TrialRow>* column = find_field(columns, name);
       parts_.push_back({name, column});
@@ -85,7 +85,7 @@ class Shown {
     if (part.column != nullptr) return part.column->get(row);
     const std::string* text = find_value(settings, part.name);
     if (text == nullptr) return kNotMeasured;
-    if (const auto number = parsed_number<double>(*text)) return *number;
+    if (const auto number = parse_number<double>(*text)) return *number;
     return static_cast<double>(place_in(words, *text));
   }
 
@@ -143,14 +143,14 @@ Cells cells_of(const std::set<double>& values, bool words) {
 }
 
 // Returns the width of the tics and label of the y axis, px.
-double room_left_px(const Shown& shown) {
+double left_margin_px(const MapQuantity& shown) {
   constexpr double kNumbers_px = 84, kLetter_px = 9, kLabel_px = 64;
   std::size_t longest = 0;
   for (const std::string& word : shown.words) longest = std::max(longest, word.size());
   return std::max(kNumbers_px, kLabel_px + kLetter_px * static_cast<double>(longest));
 }
 
-std::string axis_script(char axis, const Cells& cells, const Shown& shown) {
+std::string axis_script(char axis, const Cells& cells, const MapQuantity& shown) {
   std::string script =
       fmt::format("{0} logscale {1}\nset {1}range [{2:.9g}:{3:.9g}]\nset {1}label {4} noenhanced\n",
                   cells.logarithmic ? "set" : "unset", axis, cells.edges.front(), cells.edges.back(),
@@ -206,12 +206,12 @@ struct Point {
 
 std::string panel_name(const StudyMap& map, const StudySettings& settings) {
   std::string name;
-  for (const std::string& key : names_in(map.panels))
+  for (const std::string& key : operands_of(map.panels))
     if (const std::string* value = find_value(settings, key)) name += (name.empty() ? "" : ", ") + *value;
   return name;
 }
 
-Cells cells_along(double Point::*axis, const std::vector<Point>& points, const Shown& shown) {
+Cells cells_along(double Point::*axis, const std::vector<Point>& points, const MapQuantity& shown) {
   std::set<double> all, values;
   for (const Point& point : points) all.insert(point.*axis);
   for (const double value : all)
@@ -220,7 +220,7 @@ Cells cells_along(double Point::*axis, const std::vector<Point>& points, const S
 }
 
 struct Gathered {
-  Shown x, y, colour;
+  MapQuantity x, y, colour;
   std::vector<std::string> panels = {};
   std::vector<Point> points = {};
 };
@@ -281,7 +281,7 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
   }
   PanelGrid grid{.columns = std::min<std::size_t>(panels.size(), 4),
                  .head_px = 118,
-                 .left_px = room_left_px(shown_y),
+                 .left_px = left_margin_px(shown_y),
                  .right_px = 34,
                  .above_px = 34,
                  .below_px = 58};

@@ -58,7 +58,7 @@ std::string group_of(const StudyDesign& design, const StudySettings& settings) {
 }
 
 // Drops hands that have not tried everything yet, in an unfinished study.
-std::vector<MeasuredRun> of_whole_hands(std::vector<MeasuredRun> rows) {
+std::vector<MeasuredRun> drop_incomplete_hands(std::vector<MeasuredRun> rows) {
   std::map<std::uint64_t, std::size_t> tried;
   std::size_t most = 0;
   for (const MeasuredRun& row : rows) most = std::max(most, ++tried[row.seed]);
@@ -75,7 +75,7 @@ std::vector<Section> findings_sections(const StudyDesign& design, const std::vec
   }
   std::vector<Section> sections;
   for (const auto& [group, rows] : groups) {
-    const Study study(of_whole_hands(rows));
+    const Study study(drop_incomplete_hands(rows));
     const fs::path folder = figures / fmt::format("{}", sections.size());
     create_folder(folder);
     Section& section =
@@ -83,9 +83,9 @@ std::vector<Section> findings_sections(const StudyDesign& design, const std::vec
                                       .figures = draw_hands(study, folder),
                                       .tables = conclusions(study),
                                       .parts = {findings_section(study)}});
-    if (const std::string few = too_few_hands(study); !few.empty()) section.notices = {few};
+    if (const std::string few = sample_size_warning(study); !few.empty()) section.notices = {few};
     for (const std::string& text :
-         {which_to_take(study), what_was_compared(study, group), about_the_table(study)})
+         {recommendation_text(study), comparison_sentence(study, group), table_explanation(study)})
       if (!text.empty()) section.paragraphs.push_back(text);
   }
   return sections;

@@ -166,7 +166,7 @@ fs::path slice_path(const fs::path& folder, std::size_t number) {
   return folder / fmt::format("slice-{}.h5", number);
 }
 
-void throw_of_trial(const fs::path& file, std::size_t trial) {
+void rethrow_with_trial(const fs::path& file, std::size_t trial) {
   std::string reason = "not enough memory";
   try {
     throw;
@@ -184,9 +184,9 @@ Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<
   const std::size_t first = study.record.first_of(number);
   const auto tried = run_trials(trials, "study", threads, events, [&](const TrialPlan& trial) {
     try {
-      return try_trial(study.test, trial);
+      return run_single_trial(study.test, trial);
     } catch (...) {
-      throw_of_trial(study.path / "study.toml", first + static_cast<std::size_t>(&trial - trials.data()));
+      rethrow_with_trial(study.path / "study.toml", first + static_cast<std::size_t>(&trial - trials.data()));
     }
   });
   for (std::size_t n = 0; n < tried.size(); ++n) {

@@ -264,7 +264,7 @@ TEST(StudySlices, ARowEqualsTheRowMeasuredFromItsRecording) {
     EXPECT_EQ(row.run.not_reached, measured.run.not_reached);
     std::size_t compared = 0;
     for (const Field<TrialRow>& column : columns_of(StudyTest::milling)) {
-      if (column.has(kOfTheMachine)) continue;
+      if (column.has(kMachineDependent)) continue;
       EXPECT_TRUE(same_number(column.get(row), column.get(measured)))
           << column.name << ": " << column.get(row) << " in the study, " << column.get(measured);
       ++compared;

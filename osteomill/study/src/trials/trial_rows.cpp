@@ -59,9 +59,9 @@ WallFigures wall_figures(const TrialSettings& settings, const WallPressResult& r
   WallFigures figures{.rule_N_per_mm =
                           passive_stiffness_rule_N_per_mm(settings.device_damping_Ns_per_mm, settings.tick_s,
                                                           settings.hand_and_device.handle.force_delay_s)};
-  if (result.motion == WallMotion::gives_way) return figures;
+  if (result.motion == WallMotion::yields) return figures;
   figures.carries = 1;
-  figures.passive = result.motion == WallMotion::dies_out ? 1 : 0;
+  figures.passive = result.motion == WallMotion::decays ? 1 : 0;
   figures.felt_N_per_mm = result.felt_N_per_mm;
   return figures;
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMmPerM = 1000;
 // Force that presses the handle.
-constexpr double kBias_N = 0.5;
+constexpr double kPressForce_N = 0.5;
 // Slow press, 5 mm/s at 1000 Hz, up to 3 mm beyond the first resistance: a wall that needs more counts as too
 // soft.
 constexpr double kDepthStep_mm = 0.005;
@@ -51,14 +51,14 @@ class Wall {
 };
 
 // State in which the wall carries the pressing force, with the slope of its force there.
-struct Rest {
+struct Equilibrium {
   double depth_mm;
   /// Depth beyond the wall's first resistance: an algorithm may feel the burr's centre and not its surface.
   double pressed_mm;
   double felt_N_per_mm;
 };
 
-std::optional<Rest> press_slowly(Wall& wall) {
+std::optional<Equilibrium> press_slowly(Wall& wall) {
   double depth_mm = -kBeginsAbove_mm;
   double force_N = 0;
   double last_force_N = 0;
@@ -74,14 +74,14 @@ std::optional<Rest> press_slowly(Wall& wall) {
   };
   // Measures from the last depth below three quarters of the force, so that a jump in force gives a steep
   // slope, not a flat one.
-  if (!press_to(0.75 * kBias_N)) return std::nullopt;
+  if (!press_to(0.75 * kPressForce_N)) return std::nullopt;
   const double shallow_mm = depth_mm - kDepthStep_mm;
   const double shallow_N = last_force_N;
-  if (!press_to(kBias_N)) return std::nullopt;
+  if (!press_to(kPressForce_N)) return std::nullopt;
   const double rest_mm = depth_mm;
-  if (!press_to(1.25 * kBias_N)) return std::nullopt;
-  const Rest rest{rest_mm, std::max(rest_mm - touch_mm, kDepthStep_mm),
-                  (force_N - shallow_N) / (depth_mm - shallow_mm)};
+  if (!press_to(1.25 * kPressForce_N)) return std::nullopt;
+  const Equilibrium rest{rest_mm, std::max(rest_mm - touch_mm, kDepthStep_mm),
+                         (force_N - shallow_N) / (depth_mm - shallow_mm)};
   while (depth_mm > rest_mm) wall.force_N(wall.pose_at(depth_mm -= kDepthStep_mm));
   for (int n = 0; n < kSettleTicks; ++n) wall.force_N(wall.pose_at(rest_mm));
   return rest;
@@ -92,7 +92,7 @@ class Swings {
  public:
   explicit Swings(double depth_mm) : turned_at_mm_(depth_mm), last_mm_(depth_mm) {}
 
-  void see(double depth_mm) {
+  void add_sample(double depth_mm) {
     const double move = depth_mm - last_mm_;
     if (move * direction_ < 0) {
       sizes_mm_.push_back(std::abs(last_mm_ - turned_at_mm_));
@@ -116,7 +116,7 @@ class Swings {
 };
 
 // Returns whether the motion dies out, once this can be decided. The first swing is only half a swing.
-std::optional<bool> dies_out(const Swings& swings) {
+std::optional<bool> decays(const Swings& swings) {
   const auto& sizes = swings.sizes_mm();
   if (sizes.size() < 3) return std::nullopt;
   if (std::max(sizes.back(), sizes[sizes.size() - 2]) < kDeadSwing_mm) return true;
@@ -124,11 +124,11 @@ std::optional<bool> dies_out(const Swings& swings) {
   return std::nullopt;
 }
 
-bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
+bool swing_dies_out(Wall& wall, const Equilibrium& rest, const WallPress& press) {
   SimulatedHandle handle(press.handle, wall.pose_at(rest.depth_mm));
   const double amplitude_mm = std::clamp(0.5 * rest.pressed_mm, kMinSwing_mm, kMaxSwing_mm);
   // Uses the mean stiffness over the whole depth; the slope may include a jump.
-  const double stiffness_N_per_mm = kBias_N / rest.pressed_mm;
+  const double stiffness_N_per_mm = kPressForce_N / rest.pressed_mm;
   const double speed_mm_s = amplitude_mm * std::sqrt(kMmPerM * stiffness_N_per_mm / press.handle.mass_kg);
   const double substep_s = press.handle.substep_s;
   const int substeps = static_cast<int>(std::lround(press.tick_s / substep_s));
@@ -143,10 +143,10 @@ bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
     handle.command(along);
     for (int n = 0; n < substeps; ++n) {
       handle.advance(other);
-      swings.see(wall.depth_of(handle.pose()));
-      other.force_N.z() = -kBias_N - press.damping_Ns_per_mm * handle.velocity().linear_mm_s.z();
+      swings.add_sample(wall.depth_of(handle.pose()));
+      other.force_N.z() = -kPressForce_N - press.damping_Ns_per_mm * handle.velocity().linear_mm_s.z();
     }
-    if (const auto known = dies_out(swings)) return *known;
+    if (const auto known = decays(swings)) return *known;
   }
   const std::size_t count = swings.sizes_mm().size();
   // An overdamped handle creeps to rest without turning; one that breaks through does not come to rest.
@@ -160,15 +160,15 @@ bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
 WallPressResult press_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press) {
   require_valid(press.handle);
   Wall wall(algorithm, burr_radius_mm, press);
-  const std::optional<Rest> rest = press_slowly(wall);
+  const std::optional<Equilibrium> rest = press_slowly(wall);
   if (!rest) return {};
-  return {swing_dies_out(wall, *rest, press) ? WallMotion::dies_out : WallMotion::goes_on,
+  return {swing_dies_out(wall, *rest, press) ? WallMotion::decays : WallMotion::persists,
           rest->felt_N_per_mm};
 }
 
 double press_slowly_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press) {
   Wall wall(algorithm, burr_radius_mm, press);
-  const std::optional<Rest> rest = press_slowly(wall);
+  const std::optional<Equilibrium> rest = press_slowly(wall);
   return rest ? rest->felt_N_per_mm : 0;
 }
 

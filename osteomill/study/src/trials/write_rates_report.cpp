@@ -182,7 +182,7 @@ Section vertices_section(const std::vector<VertexSearchRow>& rows) {
       table_of(rows, {"part"}, [](const VertexSearchRow& row) { return std::vector<Cell>{row.part}; });
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const bool least = rows[n].vertices == least_vertices(rows, rows[n].part);
-    table.rows[n].back() = least              ? Cell("yes, the least", Look::strong)
+    table.rows[n].back() = least              ? Cell("yes, the least", CellStyle::strong)
                            : rows[n].suffices ? Cell("yes")
                                               : Cell("no");
   }

@@ -13,7 +13,7 @@ constexpr double kSlowest_per_s = 1, kFastest_per_s = 10;
 constexpr double kTouching_per_s = 1000;
 constexpr double kBeat_s = 0.06;
 constexpr double kLoudness = 0.18;
-constexpr double kLoudnessFollows_per_s = 250;
+constexpr double kLoudnessRate_per_s = 250;
 
 }  // namespace
 
@@ -30,16 +30,16 @@ BeatState distance_beat(double distance_mm, double warn_mm, std::size_t structur
 }
 
 void DistanceBeat::add_to(const BeatState& state, std::span<float> samples) {
-  const double share = 1 - std::exp(-kLoudnessFollows_per_s / sample_rate_hz_);
+  const double share = 1 - std::exp(-kLoudnessRate_per_s / sample_rate_hz_);
   for (float& sample : samples) {
     // The first beat starts immediately.
-    beat_ = state.beats_per_s > 0 ? beat_ + state.beats_per_s / sample_rate_hz_ : 0;
-    beat_ -= std::floor(beat_);
-    const bool sounds = state.beats_per_s > 0 && beat_ < kBeat_s * state.beats_per_s;
+    beat_phase_ = state.beats_per_s > 0 ? beat_phase_ + state.beats_per_s / sample_rate_hz_ : 0;
+    beat_phase_ -= std::floor(beat_phase_);
+    const bool sounds = state.beats_per_s > 0 && beat_phase_ < kBeat_s * state.beats_per_s;
     loudness_ += share * ((sounds ? kLoudness : 0.0) - loudness_);
-    turns_ += state.pitch_hz / sample_rate_hz_;
-    turns_ -= std::floor(turns_);
-    sample += static_cast<float>(loudness_ * std::sin(2 * std::numbers::pi * turns_));
+    phase_turns_ += state.pitch_hz / sample_rate_hz_;
+    phase_turns_ -= std::floor(phase_turns_);
+    sample += static_cast<float>(loudness_ * std::sin(2 * std::numbers::pi * phase_turns_));
   }
 }
 

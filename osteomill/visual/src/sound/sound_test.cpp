@@ -17,7 +17,7 @@ namespace {
 
 using testing_support::brightness;
 using testing_support::strength;
-using testing_support::TwoKinds;
+using testing_support::TwoClasses;
 
 constexpr int kRate_hz = SoundStream::kSampleRate_hz;
 static_assert(kRate_hz == testing_support::kSoundRate_hz);
@@ -67,9 +67,9 @@ TEST(SpindleSound, UnderLoadItIsLouderAndASaggingSpindleSoundsLower) {
 }
 
 // Returns the fraction of runs classified correctly by a threshold learnt from other runs.
-double told_apart(const SpindleState& a, const SpindleState& b) {
+double classification_accuracy(const SpindleState& a, const SpindleState& b) {
   constexpr int kRuns = 16;
-  TwoKinds learnt, tried;
+  TwoClasses learnt, tried;
   const auto varied = [](int run, int factor) { return (run * factor) % kRuns / static_cast<double>(kRuns); };
   for (int run = 0; run < kRuns; ++run) {
     for (const std::size_t kind : {0u, 1u}) {
@@ -81,14 +81,14 @@ double told_apart(const SpindleState& a, const SpindleState& b) {
       (run % 2 == 0 ? learnt : tried)[kind].push_back(brightness(sound, SpindleSound::pitch_hz(state)));
     }
   }
-  return testing_support::told_apart(learnt, tried);
+  return testing_support::classification_accuracy(learnt, tried);
 }
 
 TEST(SpindleSound, TellsEnamelFromDentineAndThroughFromNotYet) {
-  EXPECT_GE(told_apart({40000, 0.5, 1.0}, {40000, 0.5, 1.9}), 0.9);
-  EXPECT_GE(told_apart({40000, 0.5, 1.0}, {40000, 0.02, 0.2}), 0.9);
+  EXPECT_GE(classification_accuracy({40000, 0.5, 1.0}, {40000, 0.5, 1.9}), 0.9);
+  EXPECT_GE(classification_accuracy({40000, 0.5, 1.0}, {40000, 0.02, 0.2}), 0.9);
   // Sounds of the same kind must not be distinguishable.
-  EXPECT_LE(told_apart({40000, 0.5, 1.0}, {40000, 0.5, 1.0}), 0.7);
+  EXPECT_LE(classification_accuracy({40000, 0.5, 1.0}, {40000, 0.5, 1.0}), 0.7);
 }
 
 TEST(SpindleSound, ADiamondHissesMoreThanACuttingBurr) {

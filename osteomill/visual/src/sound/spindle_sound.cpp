@@ -108,14 +108,14 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
     loudness_ += speed_share * ((on ? 1.0 : 0.0) - loudness_);
     load_ += load_share * (wanted_load - load_);
     density_ += load_share * (wanted_density - density_);
-    turns_ += pitch_hz_ / sample_rate_hz_;
-    turns_ -= 2 * std::floor(0.5 * turns_);
-    double tone = kHalfTone * sine(0.5 * turns_);
+    phase_turns_ += pitch_hz_ / sample_rate_hz_;
+    phase_turns_ -= 2 * std::floor(0.5 * phase_turns_);
+    double tone = kHalfTone * sine(0.5 * phase_turns_);
     double overtone = 1;
     for (const double share : kOvertones) {
       // Skip overtones near half the sample rate and above, which would alias.
       if (overtone * pitch_hz_ < 0.45 * sample_rate_hz_)
-        tone += (overtone > 1 ? tones : 1) * share * sine(overtone * turns_);
+        tone += (overtone > 1 ? tones : 1) * share * sine(overtone * phase_turns_);
       overtone += 1;
     }
     const double hiss = kNoiseLoudness * static_cast<double>(noise());

@@ -166,7 +166,7 @@ BrickLevels full_detail(BrickMesh mesh) {
   return result;
 }
 
-BrickLevels levels_of(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells) {
+BrickLevels build_levels(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells) {
   BrickLevels result = full_detail(mesh);
   if (mesh.empty()) return result;
   Coarsening coarsening(mesh, geometry, cells);

@@ -35,7 +35,7 @@ class BrickLevelsTest : public ::testing::Test {
  protected:
   BrickLevelsTest() {
     for (std::size_t n = 0; n < mesh_.bricks.size(); ++n) {
-      levels_.push_back(levels_of(mesh_.bricks[n], bone_.geometry(), mesh_.layout.cells(n)));
+      levels_.push_back(build_levels(mesh_.bricks[n], bone_.geometry(), mesh_.layout.cells(n)));
     }
   }
 
@@ -101,7 +101,7 @@ TEST(BrickLevels, SharpEdgesStayWhereTheyAre) {
   const SurfaceMesh mesh = mesh_surface(DensityView(plate));
   int rims = 0;
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
-    const BrickLevels levels = levels_of(mesh.bricks[n], plate.geometry(), mesh.layout.cells(n));
+    const BrickLevels levels = build_levels(mesh.bricks[n], plate.geometry(), mesh.layout.cells(n));
     double outermost_mm = 0;
     for (std::size_t at = 0; at < levels.levels[3].count; ++at) {
       const std::size_t own = mesh.bricks[n].vertices.size();

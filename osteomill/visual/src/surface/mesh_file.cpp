@@ -106,7 +106,7 @@ MeshFormat mesh_format_of(const std::filesystem::path& path) {
   throw InputError(path.string(), "a mesh is written as .stl, .ply or .obj");
 }
 
-bool holds_colours(MeshFormat format) {
+bool has_vertex_colours(MeshFormat format) {
   return format != MeshFormat::stl;
 }
 

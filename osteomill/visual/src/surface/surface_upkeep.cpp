@@ -41,8 +41,9 @@ ChangedBricks SurfaceUpkeep::remesh(const DensityView& view) {
     const bool had_mesh = has_mesh_[brick] != 0;
     has_mesh_[brick] = !mesh.empty();
     if (!had_mesh && mesh.empty()) continue;
-    changed[brick] = changing_.contains(brick) ? full_detail(mesh)
-                                               : levels_of(mesh, view.grid.geometry(), layout_.cells(brick));
+    changed[brick] = changing_.contains(brick)
+                         ? full_detail(mesh)
+                         : build_levels(mesh, view.grid.geometry(), layout_.cells(brick));
   }
   to_mesh_.clear();
   return changed;

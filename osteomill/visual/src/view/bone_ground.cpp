@@ -131,7 +131,7 @@ BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry
 void BoneGround::set_brick(std::size_t brick, const BrickLevels& levels) {
   bone_.set_brick(brick, levels);
   changed_.insert(brick);
-  changed_since_.insert(brick);
+  changed_while_refining_.insert(brick);
 }
 
 void BoneGround::set_clip_face(std::size_t cut, const ClipFace& face) {
@@ -153,7 +153,7 @@ void BoneGround::draw(const ViewScene& scene, const PixelSize& size) {
   if (same && draw_changed(scene, projection_of(scene, shown_->size()))) {
     if (!settled_) refine(scene, projection_of(scene, size));
   } else {
-    draw_at_once(scene, affordable_size(size));
+    draw_at_once(scene, size_within_budget(size));
   }
   scene_ = scene;
   ++drawn_;
@@ -176,7 +176,7 @@ void BoneGround::draw_inset(const ViewScene& scene, const PixelSize& size) {
 
 // Returns the largest size within the pixel budget. As for triangles, increases only if that leaves a
 // reserve.
-PixelSize BoneGround::affordable_size(const PixelSize& size) {
+PixelSize BoneGround::size_within_budget(const PixelSize& size) {
   const auto coarse = [&](int n) { return PixelSize{(size.width + n - 1) / n, (size.height + n - 1) / n}; };
   const auto budget = static_cast<double>(pixels_.budget());
   int n = 1;
@@ -205,7 +205,7 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   pixels_.record_draw(pixels_of(size), passed_s);
   settled_ = refining_ = false;
   changed_.clear();
-  to_shade_.clear();
+  bricks_to_reshade_.clear();
 }
 
 // Returns the visible bricks at the finest detail within the budget. Detail increases only if that leaves a
@@ -231,7 +231,7 @@ void BoneGround::begin_refining(const ViewScene& scene, const Projection& projec
   to_refine_ = bone_.visible_bricks(scene, projection, kFullDetail);
   refined_ = 0;
   refining_ = true;
-  changed_since_.clear();
+  changed_while_refining_.clear();
   clear_depths(*resting_);
 }
 
@@ -258,7 +258,7 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
     shown_ = &*resting_;
     settled_ = true;
     refining_ = false;
-    changed_ = std::exchange(changed_since_, {});
+    changed_ = std::exchange(changed_while_refining_, {});
   }
   glFinish();
   triangles_.record_draw(triangles, seconds_since(start));
@@ -268,15 +268,15 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
 // cavity darkening uses the previous frame. Returns false if that would take too long.
 bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projection) {
   const bool last = changed_.empty();
-  if (last && to_shade_.empty()) return true;
+  if (last && bricks_to_reshade_.empty()) return true;
   const auto start = Clock::now();
   if (last || drawn_ % kPicturesPerBlur == 0) update_cavities(projection);
-  to_shade_.insert(changed_.begin(), changed_.end());
-  const Eigen::AlignedBox2i part = changed_part(last ? to_shade_ : changed_, scene, projection);
+  bricks_to_reshade_.insert(changed_.begin(), changed_.end());
+  const Eigen::AlignedBox2i part = changed_part(last ? bricks_to_reshade_ : changed_, scene, projection);
   const Eigen::AlignedBox2d box = part.cast<double>();
   std::vector<VisibleBrick> visible = bone_.visible_bricks(scene, projection, kFullDetail);
   std::erase_if(visible, [&](const VisibleBrick& brick) {
-    return !box.intersects(drawn_within(scene, projection, bone_.bounds(brick.brick)));
+    return !box.intersects(projected_bounds(scene, projection, bone_.bounds(brick.brick)));
   });
   const std::size_t triangles = bone_.triangle_count(visible);
   if (triangles > triangles_.budget()) return false;
@@ -289,14 +289,14 @@ bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projecti
   glFinish();
   triangles_.record_draw(triangles, seconds_since(start));
   changed_.clear();
-  if (last) to_shade_.clear();
+  if (last) bricks_to_reshade_.clear();
   return true;
 }
 
 Eigen::AlignedBox2i BoneGround::changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
                                              const Projection& projection) const {
   Eigen::AlignedBox2d box;
-  for (const std::size_t brick : bricks) box.extend(drawn_within(scene, projection, bone_.bounds(brick)));
+  for (const std::size_t brick : bricks) box.extend(projected_bounds(scene, projection, bone_.bounds(brick)));
   // Removed bone also changes the darkening around it.
   const double more_px = cavities_->reach_px(projection.size);
   const Eigen::Array2d all(projection.size.width, projection.size.height);

@@ -18,13 +18,13 @@ namespace osteomill {
 
 /// Estimates from the times of earlier frames how many triangles or pixels can be drawn in one frame. Reads
 /// no clock itself.
-class DrawingPace {
+class FrameBudget {
  public:
   /// Time for the bone in one frame, which leaves time for everything else at 30 frames per second.
   static constexpr double kBone_s = 0.018;
 
   /// The budget is never less than `min_count`, and initially `expected`.
-  DrawingPace(std::size_t min_count, double expected)
+  FrameBudget(std::size_t min_count, double expected)
       : min_count_(min_count), seconds_per_item_(kBone_s / expected) {}
 
   std::size_t min_count() const { return min_count_; }
@@ -83,11 +83,11 @@ class BoneGround {
   const FrameTarget& inset() const { return inset_->picture; }
   const FrameTarget& picture() const { return *shown_; }
   /// Returns true if nothing is left to draw as long as neither view nor bone changes.
-  bool is_settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
+  bool is_settled() const { return settled_ && changed_.empty() && bricks_to_reshade_.empty(); }
 
  private:
   void fit(const PixelSize& size);
-  PixelSize affordable_size(const PixelSize& size);
+  PixelSize size_within_budget(const PixelSize& size);
   void draw_at_once(const ViewScene& scene, const PixelSize& size);
   void begin_refining(const ViewScene& scene, const Projection& projection);
   void refine(const ViewScene& scene, const Projection& projection);
@@ -118,8 +118,8 @@ class BoneGround {
   std::optional<CavityPass> cavities_;
   std::optional<Inset> inset_;
   std::optional<ViewScene> scene_;
-  DrawingPace triangles_{20'000, 150'000};
-  DrawingPace pixels_{500'000, 2'000'000};
+  FrameBudget triangles_{20'000, 150'000};
+  FrameBudget pixels_{500'000, 2'000'000};
   double cell_px_ = kFullDetail.cell_px;
   std::vector<VisibleBrick> to_refine_;
   std::size_t refined_ = 0;
@@ -127,9 +127,9 @@ class BoneGround {
   bool settled_ = false;
   // Bricks changed since they were drawn: in the image shown, and in the one being refined.
   std::set<std::size_t> changed_;
-  std::set<std::size_t> changed_since_;
+  std::set<std::size_t> changed_while_refining_;
   // Bricks redrawn since, but with cavity darkening from an earlier frame.
-  std::set<std::size_t> to_shade_;
+  std::set<std::size_t> bricks_to_reshade_;
   unsigned drawn_ = 0;
 };
 

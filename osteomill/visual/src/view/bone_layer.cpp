@@ -127,7 +127,7 @@ LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex)
   return {red, green, blue, 255};
 }
 
-Facing facing_of(const BrickLevels& brick) {
+NormalCone facing_of(const BrickLevels& brick) {
   std::vector<Vec3> normals;
   normals.reserve(brick.levels[0].count / 3);
   Vec3 sum = Vec3::Zero();
@@ -194,7 +194,8 @@ Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells) {
           0.5 * geometry.spacing_mm.cwiseProduct(last - first).norm()};
 }
 
-Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& projection, const Sphere& sphere) {
+Eigen::AlignedBox2d projected_bounds(const ViewScene& scene, const Projection& projection,
+                                     const Sphere& sphere) {
   const double front_mm = depth_of(scene.camera, sphere.centre_W) - sphere.radius_mm;
   const Eigen::Vector2d all(projection.size.width, projection.size.height);
   if (front_mm < projection.near_mm) return {Eigen::Vector2d::Zero(), all};

@@ -36,7 +36,8 @@ Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells);
 
 /// Returns a bounding box of the projected sphere, pixels from the lower left; the whole picture if the
 /// sphere reaches the eye.
-Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& projection, const Sphere& sphere);
+Eigen::AlignedBox2d projected_bounds(const ViewScene& scene, const Projection& projection,
+                                     const Sphere& sphere);
 
 /// Maximum depth drawn so far in each square tile of the picture: anything behind it is hidden and need not
 /// be drawn.
@@ -85,7 +86,7 @@ struct VisibleBrick {
 };
 
 /// Cone of triangle normals: all lie within `spread_rad` about the axis. Initially unbounded.
-struct Facing {
+struct NormalCone {
   Vec3 axis_W = Vec3::UnitZ();
   double spread_rad = 4;
 };
@@ -123,7 +124,7 @@ class BoneLayer {
     gl::Buffer label_colours;
     std::array<BrickLevels::Range, BrickLevels::kCount> levels{};
     Sphere bounds;
-    Facing facing;
+    NormalCone facing;
     bool empty() const { return levels[0].count == 0; }
     bool is_facing_away(const Vec3& eye_W) const;
   };

@@ -53,7 +53,7 @@ Extent extent_of_bone(const Volume& bone, const Camera& camera) {
   };
   for_each(geometry.all_voxels().bricks(BlockRanges::kBrickVoxels), [&](const VoxelIndex& brick) {
     if (static_cast<double>(bone.ranges().at(brick).max) > bone.isovalue())
-      include(BlockRanges::counted_voxels(brick, geometry));
+      include(BlockRanges::covered_voxels(brick, geometry));
   });
   if (box.isEmpty()) include(geometry.all_voxels());
   return {axes * box.center(), std::max(box.sizes().head<2>().maxCoeff(), 1e-3)};

@@ -303,7 +303,7 @@ TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
   const Image all = renderer_->picture();
   const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
-    BrickLevels levels = levels_of(mesh.bricks[n], bone_.geometry(), mesh.layout.cells(n));
+    BrickLevels levels = build_levels(mesh.bricks[n], bone_.geometry(), mesh.layout.cells(n));
     levels.levels[0] = levels.levels[1 + n % 3];
     renderer_->set_brick(n, levels);
   }
@@ -314,25 +314,25 @@ TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
   EXPECT_LT(sum / static_cast<double>(all.rgb.size()), 1.5);
 }
 
-TEST(DrawingPace, HasFewerTrianglesTheLongerTheyTakeAndMoreAgainLater) {
-  DrawingPace pace(20'000, 150'000);
+TEST(FrameBudget, HasFewerTrianglesTheLongerTheyTakeAndMoreAgainLater) {
+  FrameBudget pace(20'000, 150'000);
   const std::size_t first = pace.budget();
   for (int n = 0; n < 20; ++n) pace.record_draw(pace.budget(), 2e-6 * static_cast<double>(pace.budget()));
   EXPECT_LT(pace.budget(), first / 2);
   EXPECT_GE(pace.budget(), 20'000u);
   for (int n = 0; n < 60; ++n) pace.record_draw(pace.budget(), 1e-8 * static_cast<double>(pace.budget()));
-  EXPECT_NEAR(static_cast<double>(pace.budget()), DrawingPace::kBone_s / 1e-8, 2e5);
+  EXPECT_NEAR(static_cast<double>(pace.budget()), FrameBudget::kBone_s / 1e-8, 2e5);
 }
 
-TEST(DrawingPace, OnePictureThatWasHeldUpCountsLittle) {
-  DrawingPace pace(20'000, 150'000);
+TEST(FrameBudget, OnePictureThatWasHeldUpCountsLittle) {
+  FrameBudget pace(20'000, 150'000);
   const std::size_t first = pace.budget();
   pace.record_draw(pace.budget(), 1.0);
   EXPECT_GT(pace.budget(), first / 2);
 }
 
-TEST(DrawingPace, HasFewerPixelsWhereTheyTakeLong) {
-  DrawingPace pace(500'000, 2'000'000);
+TEST(FrameBudget, HasFewerPixelsWhereTheyTakeLong) {
+  FrameBudget pace(500'000, 2'000'000);
   EXPECT_GT(pace.budget(), 1'500'000u);
   for (int n = 0; n < 20; ++n) pace.record_draw(1'000'000, 0.1);
   EXPECT_EQ(pace.budget(), 500'000u);

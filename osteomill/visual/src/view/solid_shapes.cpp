@@ -50,7 +50,7 @@ Mat3 axes_along(const Vec3& direction) {
 
 // Revolves an outline about z. Its points are radius, height, and the normal's radial and axial components,
 // two per segment.
-SolidShapes::Shape SolidShapes::turned(const std::vector<std::array<float, 4>>& outline) {
+SolidShapes::Shape SolidShapes::make_surface_of_revolution(const std::vector<std::array<float, 4>>& outline) {
   std::vector<float> corners;
   const auto corner = [&](const std::array<float, 4>& point, int side) {
     const double angle = 2 * std::numbers::pi * side / kSides;
@@ -84,9 +84,11 @@ SolidShapes::SolidShapes() : program_(gl::make_program(kSolidVertex, kSolidFragm
       round.push_back({radius, height, radius, height});
     }
   }
-  sphere_ = turned(round);
-  cylinder_ = turned({{0, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 1, 0}, {1, 1, 1, 0}, {1, 1, 0, 1}, {0, 1, 0, 1}});
-  cone_ = turned({{0, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 0.9f, 0.43f}, {0, 1, 0.9f, 0.43f}});
+  sphere_ = make_surface_of_revolution(round);
+  cylinder_ = make_surface_of_revolution(
+      {{0, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 1, 0}, {1, 1, 1, 0}, {1, 1, 0, 1}, {0, 1, 0, 1}});
+  cone_ =
+      make_surface_of_revolution({{0, 0, 0, -1}, {1, 0, 0, -1}, {1, 0, 0.9f, 0.43f}, {0, 1, 0.9f, 0.43f}});
 }
 
 std::string_view SolidShapes::vertex_source() {

@@ -36,7 +36,7 @@ class SolidShapes {
     gl::Buffer vertices;
     GLsizei vertex_count = 0;
   };
-  static Shape turned(const std::vector<std::array<float, 4>>& outline);
+  static Shape make_surface_of_revolution(const std::vector<std::array<float, 4>>& outline);
   void draw(const Shape& shape, const Vec3& place_W, const Mat3& axes, const Vec3& sizes_mm,
             const Colour& colour, float gloss) const;
 

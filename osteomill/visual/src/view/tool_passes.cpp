@@ -111,9 +111,9 @@ BoneVeil::BoneVeil() : program_(kVeilFragment) {}
 void BoneVeil::begin(const ViewScene& scene, const Projection& projection) const {
   const MillingTool& tool = scene.tool;
   const Vec3 end_W = *scene.X_WT * Vec3(0, 0, tool.shaft_length_mm);
-  Eigen::AlignedBox2d box = drawn_within(
+  Eigen::AlignedBox2d box = projected_bounds(
       scene, projection, {scene.X_WT->position_mm, std::max(tool.burr_radius_mm, tool.shaft_radius_mm)});
-  box.extend(drawn_within(scene, projection, {end_W, tool.shaft_radius_mm}));
+  box.extend(projected_bounds(scene, projection, {end_W, tool.shaft_radius_mm}));
   const Eigen::Array2d all(projection.size.width, projection.size.height);
   const Eigen::Array2i first = box.min().array().floor().max(0.0).min(all).cast<int>();
   const Eigen::Array2i size = box.max().array().ceil().max(0.0).min(all).cast<int>() - first;

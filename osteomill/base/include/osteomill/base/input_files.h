@@ -17,7 +17,7 @@ class InputProtection {
 
 /// Registers an input file. All code that opens an input file must call this, whether the user named the file
 /// or it was found in a folder, through a header or beside a recording. From any thread.
-void note_input(const std::filesystem::path& path);
+void register_input(const std::filesystem::path& path);
 
 /// Returns whether the file is registered, compared by device and inode; always false without an
 /// InputProtection. From any thread.

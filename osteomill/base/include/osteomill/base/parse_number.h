@@ -11,7 +11,7 @@ namespace osteomill {
 /// Parses the whole text as a number, independent of the locale; accepts "nan" and "inf". Returns nothing if
 /// it is not a number.
 template <typename Number>
-std::optional<Number> parsed_number(std::string_view text) {
+std::optional<Number> parse_number(std::string_view text) {
   Number number = 0;
   const char* const end = text.data() + text.size();
   const auto [stopped, error] = std::from_chars(text.data(), end, number);
@@ -21,8 +21,8 @@ std::optional<Number> parsed_number(std::string_view text) {
 
 /// Parses the whole text as a finite number, independent of the locale. Returns nothing if it is not one.
 /// Every numeric option and field is read by this function.
-inline std::optional<double> parsed_finite(std::string_view text) {
-  const auto number = parsed_number<double>(text);
+inline std::optional<double> parse_finite(std::string_view text) {
+  const auto number = parse_number<double>(text);
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 

@@ -16,15 +16,15 @@ struct HostAndPort {
 
 /// Splits "HOST:PORT" and resolves the host to a numeric address. Throws InputError naming `device` and the
 /// address if it is malformed, or the name cannot be resolved within 400 ms.
-HostAndPort host_and_port(std::string_view device, const std::string& address);
+HostAndPort resolve_address(std::string_view device, const std::string& address);
 
 /// Client side of a connection; never blocks longer than the given timeout. For one thread at a time.
 class Socket {
  public:
   enum class Kind : unsigned char { stream, datagrams };
 
-  /// Connects to `at`, as returned by `host_and_port`. Throws InputError naming `device` on failure, or, for
-  /// a stream, if the connection is not established within 400 ms.
+  /// Connects to `at`, as returned by `resolve_address`. Throws InputError naming `device` on failure, or,
+  /// for a stream, if the connection is not established within 400 ms.
   Socket(const std::string& device, const HostAndPort& at, Kind kind);
   ~Socket();
   Socket(const Socket&) = delete;

@@ -48,7 +48,7 @@ struct SeriesSummary {
   std::string modality;
   std::string description;
   /// Marks that distinguish it from other volumes of its series; empty if it is a whole series.
-  std::string told_by;
+  std::string distinguishing_marks;
   std::size_t slices = 0;
   /// Pixels per slice.
   int columns = 0;

@@ -93,7 +93,7 @@ struct AttemptProgress {
 std::vector<AttemptProgress> progress_of(const Attempt& attempt);
 
 /// Returns when a step of the exercise was completed, s; NaN if it never was.
-double step_done_s(const Attempt& attempt, std::size_t step);
+double step_completion_s(const Attempt& attempt, std::size_t step);
 
 /// Returns whether a burr's contact point is hidden in a view: by bone that is not cut away in it, or because
 /// it is outside the picture.

@@ -28,7 +28,7 @@ struct DebriefedAttempt {
 DebriefedAttempt debriefed(const Attempt& attempt, const Recording& recording);
 
 /// The attempt from which another attempt branched off.
-struct FirstWay {
+struct OriginalAttempt {
   Attempt attempt;
   DebriefedAttempt measured;
   BranchPoint from;
@@ -37,8 +37,8 @@ struct FirstWay {
 /// Attempts with which an attempt's page compares it; all may be empty.
 struct DebriefPeers {
   /// The attempt it branched off from, or the reason why that is not shown.
-  std::shared_ptr<FirstWay> first;
-  std::string no_first;
+  std::shared_ptr<OriginalAttempt> first;
+  std::string original_missing_reason;
   std::vector<DebriefedAttempt> experts;
   /// Earlier attempts of the same person, by time.
   std::vector<DebriefedAttempt> before;
@@ -46,9 +46,9 @@ struct DebriefPeers {
 
 /// Reads and measures the recording that an attempt branched off from (branch_point), by its name relative to
 /// that recording or in its folder, and the experts' recordings in the exercise's regions. Throws as
-/// `read_recording_chain` and `make_attempt` for experts' recordings; for the first one, sets `no_first`
-/// instead. The exercise and the scan of `attempt` must outlive the result. Slow.
-DebriefPeers peers_of(const Attempt& attempt, const Recording& recording);
+/// `read_recording_chain` and `make_attempt` for experts' recordings; for the first one, sets
+/// `original_missing_reason` instead. The exercise and the scan of `attempt` must outlive the result. Slow.
+DebriefPeers load_peers(const Attempt& attempt, const Recording& recording);
 
 /// Writes an attempt's `debrief.csv`, `progress.csv` and `debrief.html`, a page without external resources,
 /// into a folder. Throws InputError if one cannot be written. Slow.

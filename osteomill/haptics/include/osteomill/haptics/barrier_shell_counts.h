@@ -22,7 +22,7 @@ struct Counts {
   double energy_risen_Nmm = 0;
   double worst_rise_Nmm = 0;
   /// Smallest distance between a point and a core, as a share of the skin's width.
-  double nearest_share = 1;
+  double min_distance_share = 1;
 };
 
 /// Returns the counts of barrier-shell; null for another algorithm. Valid as long as the algorithm exists;

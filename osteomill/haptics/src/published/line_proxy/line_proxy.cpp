@@ -43,10 +43,10 @@ void LineProxy::prepare(const AlgorithmInputs& inputs) {
 
 HapticStep LineProxy::step(const Pose& X_WD, double) noexcept {
   const Vec3& tip_W = X_WD.position_mm;
-  follow_with_tip_proxy(tip_W);
+  update_tip_proxy(tip_W);
   const Pose X_WL{state_.tip_proxy_W.value_or(tip_W), X_WD.orientation};
-  follow_with_intersection(X_WL);
-  turn_reaction(X_WL);
+  update_intersection(X_WL);
+  update_reaction(X_WL);
   state_.X_WL = X_WL;
   state_.device_tip_W = tip_W;
   HapticStep result;
@@ -62,7 +62,7 @@ HapticStep LineProxy::step(const Pose& X_WD, double) noexcept {
   return result;
 }
 
-void LineProxy::follow_with_tip_proxy(const Vec3& tip_W) {
+void LineProxy::update_tip_proxy(const Vec3& tip_W) {
   const Volume& volume = *inputs_.volume;
   if (!is_bone_at(volume, tip_W)) {
     state_.tip_proxy_W.reset();
@@ -82,7 +82,7 @@ std::optional<Vec3> LineProxy::first_tip_proxy(const Vec3& tip_W) const {
   return nearest_exit(volume, tip_W, kExitReach_mm);
 }
 
-void LineProxy::follow_with_intersection(const Pose& X_WL) {
+void LineProxy::update_intersection(const Pose& X_WL) {
   if (state_.intersection_W) {
     state_.intersection_W = next_intersection(X_WL);
   } else if (count_in_bone(*inputs_.volume, shaft_vertices(), X_WL) > 0) {
@@ -107,7 +107,7 @@ std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) const {
   return move_point_proxy(volume, *state_.intersection_W, probe.point_W);
 }
 
-void LineProxy::turn_reaction(const Pose& X_WL) {
+void LineProxy::update_reaction(const Pose& X_WL) {
   state_.reaction_N.setZero();
   if (!state_.intersection_W) return;
   // The point on the device's shaft at the same distance from the tip as IP, and g, the error of orientation

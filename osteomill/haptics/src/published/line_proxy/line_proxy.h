@@ -52,12 +52,12 @@ class LineProxy final : public HapticAlgorithm {
   };
 
   std::span<const Vec3> shaft_vertices() const { return std::span(vertices_T_).subspan(1); }
-  void follow_with_tip_proxy(const Vec3& tip_W);
+  void update_tip_proxy(const Vec3& tip_W);
   std::optional<Vec3> first_tip_proxy(const Vec3& tip_W) const;
-  void follow_with_intersection(const Pose& X_WL);
+  void update_intersection(const Pose& X_WL);
   std::optional<Vec3> first_intersection(const Pose& X_WL) const;
   std::optional<Vec3> next_intersection(const Pose& X_WL) const;
-  void turn_reaction(const Pose& X_WL);
+  void update_reaction(const Pose& X_WL);
   void reset_if_not_finite();
   Pose drawn_tool(const Pose& X_WL) const;
 

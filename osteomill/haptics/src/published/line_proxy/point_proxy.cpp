@@ -34,7 +34,7 @@ std::optional<Vec3> exit_along(const Volume& volume, const Vec3& point_W, const 
 }
 
 // Moves a point in bone out along the surface normal, at most two voxels.
-std::optional<Vec3> raised_out(const Volume& volume, const Vec3& point_W) {
+std::optional<Vec3> exit_along_normal(const Volume& volume, const Vec3& point_W) {
   const auto normal = surface_normal(volume, point_W);
   if (!normal) return std::nullopt;
   return exit_along(volume, point_W, *normal, 0.25 * voxel_mm(volume), 2 * voxel_mm(volume));
@@ -42,7 +42,7 @@ std::optional<Vec3> raised_out(const Volume& volume, const Vec3& point_W) {
 
 // Slides along the tangent and back to the isosurface. If the surface falls away by more than 45 degrees,
 // leaves the point in free space for the next march; if it rises by more than that, stops at the wall.
-Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const Vec3& normal) {
+Vec3 slide_along_surface(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const Vec3& normal) {
   const Vec3 aside = proxy_W + tangent;
   const double reach_mm = tangent.norm() + kTouching_mm;
   if (!is_bone_at(volume, aside)) {
@@ -54,7 +54,7 @@ Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const 
 }
 
 // Moves straight toward the probe until bone blocks the way.
-Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
+Vec3 march_to_probe(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
   const Vec3 path = probe_W - proxy_W;
   const double distance = path.norm();
   if (distance == 0.0) return probe_W;
@@ -99,12 +99,12 @@ std::optional<Vec3> surface_normal(const Volume& volume, const Vec3& point_W) {
 Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
   Vec3 proxy = proxy_W;
   if (is_bone_at(volume, proxy)) {
-    const auto out = raised_out(volume, proxy);
+    const auto out = exit_along_normal(volume, proxy);
     if (!out) return proxy_W;
     proxy = *out;
   }
   for (int n = 0; n < kSlides; ++n) {
-    proxy = marched(volume, proxy, probe_W);
+    proxy = march_to_probe(volume, proxy, probe_W);
     if (proxy == probe_W) return proxy;
     const auto normal = surface_normal(volume, proxy);
     if (!normal) return proxy;
@@ -113,7 +113,8 @@ Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& pro
     const double aside_mm = aside.norm();
     if (aside_mm < kAtRest_mm) return proxy;
     // A slide of more than a voxel could step over a wall or a crack.
-    proxy = slid(volume, proxy, std::min(aside_mm, voxel_mm(volume)) / aside_mm * aside, *normal);
+    proxy =
+        slide_along_surface(volume, proxy, std::min(aside_mm, voxel_mm(volume)) / aside_mm * aside, *normal);
   }
   return proxy;
 }

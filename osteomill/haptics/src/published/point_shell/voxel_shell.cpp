@@ -70,7 +70,7 @@ VoxelShell::VoxelShell(const Volume& volume, int scale)
 void VoxelShell::refresh(const VoxelBox& voxels) {
   const VoxelBox nodes = nodes_touched_by(voxels);
   if (nodes.empty()) return;
-  lower_bone(nodes);
+  clear_milled_nodes(nodes);
   for_each(nodes.grown(1).intersected(geometry_.all_voxels()).bricks(kSide),
            [&](const VoxelIndex& brick) { refresh_brick(brick); });
 }
@@ -96,7 +96,7 @@ std::uint8_t VoxelShell::bone_byte(int byte, int j, int k) const {
 }
 
 // Densities only fall, so bytes without bone are skipped.
-void VoxelShell::lower_bone(const VoxelBox& nodes) {
+void VoxelShell::clear_milled_nodes(const VoxelBox& nodes) {
   for (int k = nodes.first.k; k <= nodes.last.k; ++k) {
     for (int j = nodes.first.j; j <= nodes.last.j; ++j) {
       for (int byte = nodes.first.i / 8; byte <= nodes.last.i / 8; ++byte) {

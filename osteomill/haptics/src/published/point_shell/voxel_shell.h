@@ -92,7 +92,7 @@ class VoxelShell {
   using SurfaceMask = std::array<std::uint8_t, kBrickNodes * kBrickNodes>;
 
   std::uint8_t bone_byte(int byte, int j, int k) const;
-  void lower_bone(const VoxelBox& nodes);
+  void clear_milled_nodes(const VoxelBox& nodes);
   VoxelBox nodes_touched_by(const VoxelBox& voxels) const;
   SurfaceMask mask_of(const VoxelIndex& brick) const;
   void refresh_brick(const VoxelIndex& brick);

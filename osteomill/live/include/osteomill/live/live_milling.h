@@ -159,7 +159,7 @@ class LiveMilling {
   // Taken when the algorithm was prepared, because the points in use belong to the haptic thread and change.
   int sample_points_;
   std::uint64_t scan_hash_;
-  SessionHandover begun_from_;
+  SessionHandover initial_handover_;
   std::unique_ptr<BoneFollower> follower_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
@@ -167,7 +167,7 @@ class LiveMilling {
   // Description of the first recorded session.
   RunDescription recorded_;
   // Number of the first recorded session.
-  std::uint32_t recorded_from_ = 0;
+  std::uint32_t first_recorded_session_ = 0;
   HapticThread live_;
   // Held while starting and while handing over changes without a haptic thread, so that changes come from one
   // thread at a time.

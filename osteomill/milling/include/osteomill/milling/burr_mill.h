@@ -38,7 +38,7 @@ struct MillingSettings {
   /// feel it, and the whole burr cuts as efficiently as its rim.
   double reaction_share = 0;
   /// Chip law, used instead of kappa. Its power always takes into account which part of the burr cuts
-  /// (`rim_share`).
+  /// (`rim_power_fraction`).
   std::optional<ChipLaw> chips = {};
   /// Tangential force at the rim relative to the normal force.
   double tangential_share = CuttingSettings{}.tangential_share;
@@ -100,35 +100,37 @@ class BurrMill {
   /// volume has no labels.
   LabelTally& by_label() { return by_label_; }
   /// Returns the unspent cutting budget, in mm^3 of reference density.
-  double carry_mm3() const { return carry_mm3_; }
+  double unspent_mm3() const { return unspent_mm3_; }
 
   /// State carried between steps, apart from the bone. (If steps process only part of the lines, they also
   /// depend on which voxels are known to be empty.)
   struct Memory {
     CutBone cut_bone;
     BurrReach::Share share;
-    std::size_t found_of_round = 0;
+    std::size_t pieces_this_round = 0;
     double ahead_mm = 0;
-    double carry_mm3 = 0;
+    double unspent_mm3 = 0;
     double force_free_s = 0;
   };
-  Memory memory() const { return {cut_bone_, share_, found_of_round_, ahead_mm_, carry_mm3_, force_free_s_}; }
+  Memory memory() const {
+    return {cut_bone_, share_, pieces_this_round_, ahead_mm_, unspent_mm3_, force_free_s_};
+  }
   /// Resumes from the state of another mill on an identical bone. Call before the first step.
   void resume_from(const Memory& memory) {
     cut_bone_ = memory.cut_bone;
     share_ = memory.share;
-    found_of_round_ = memory.found_of_round;
+    pieces_this_round_ = memory.pieces_this_round;
     ahead_mm_ = memory.ahead_mm;
-    carry_mm3_ = memory.carry_mm3;
+    unspent_mm3_ = memory.unspent_mm3;
     force_free_s_ = memory.force_free_s;
   }
 
  private:
   double rate_mm3_s(double force_N, double speed_share) const;
-  void lift(double dt_s);
-  void look_ahead(const Vec3& centre_W, const Vec3& ahead_W, double dt_s);
+  void step_without_force(double dt_s);
+  void sample_ahead(const Vec3& centre_W, const Vec3& ahead_W, double dt_s);
   void measure_contact(double slope_per_mm, double dt_s);
-  void share_after(std::size_t found, double advance_voxels);
+  void update_line_share(std::size_t found, double advance_voxels);
   CuttingBall ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const;
   void find(const CuttingBall& ball, double max_ahead_mm, double pressed_mm3);
   MillingStep lower_found(double dropped);
@@ -142,16 +144,16 @@ class BurrMill {
   double mm3_per_density_;
   MillingSettings settings_;
   CutBone cut_bone_;
-  std::vector<Vec3> directions_;  // sampled by look_ahead; empty without the chip law
+  std::vector<Vec3> directions_;  // sampled by sample_ahead; empty without the chip law
   double min_ahead_mm_;
   double max_ahead_mm_;
   BurrReach reach_;
   CutVoxels voxels_;
   LabelTally by_label_;
   BurrReach::Share share_;
-  std::size_t found_of_round_ = 0;  // pieces found since the current round over all lines began
+  std::size_t pieces_this_round_ = 0;  // pieces found since the current round over all lines began
   double ahead_mm_ = 0;
-  double carry_mm3_ = 0;
+  double unspent_mm3_ = 0;
   double force_free_s_ = 0;
 };
 

@@ -71,7 +71,7 @@ ChipLaw chip_law(BurrEdge burr, double earlier_cuts = 0);
 
 /// State of the cutting burr in one tick.
 struct ChipContact {
-  /// Force that pays for removal, N: the pressing force times `rim_share`.
+  /// Force that pays for removal, N: the pressing force times `rim_power_fraction`.
   double force_N = 0;
   double burr_radius_mm = 0;
   double speed_rpm = 0;

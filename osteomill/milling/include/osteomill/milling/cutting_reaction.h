@@ -10,11 +10,11 @@ namespace osteomill {
 /// cuts, 1/2 if the slower pole does. `ahead_W` (pressing direction) and `shaft_W` are unit vectors. The cut
 /// is distributed over the leading half of the ball as in BurrMill, by the cosine of the angle to `ahead_W`.
 /// The resistance on each surface element is proportional to its speed.
-double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) noexcept;
+double rim_power_fraction(const Vec3& ahead_W, const Vec3& shaft_W) noexcept;
 
 /// Returns the part of the burr's force that pays for removal. Zero if the spindle is off, so that the mill
-/// drops its unspent budget as if the burr were lifted. Otherwise the force times `rim_share`, or all of it
-/// if energy is constant (no `MillingSettings::chips`) and there is no reaction
+/// drops its unspent budget as if the burr were lifted. Otherwise the force times `rim_power_fraction`, or
+/// all of it if energy is constant (no `MillingSettings::chips`) and there is no reaction
 /// (`MillingSettings::reaction_share` is 0). Safe in the haptic tick.
 Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N,
                       bool spindle_on) noexcept;
@@ -53,8 +53,8 @@ class CuttingReaction {
   void follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) noexcept;
   /// Updates the reaction from the part of the force that paid for removal (its tangential force is
   /// `reaction_share` times that) and from the drag on the shaft.
-  void follow_paid(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s,
-                   const Wrench& shaft_drag = {}) noexcept;
+  void update_from_force(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s,
+                         const Wrench& shaft_drag = {}) noexcept;
   /// Resets to the state before the first tick.
   void reset() noexcept { wrench_ = {}; }
 

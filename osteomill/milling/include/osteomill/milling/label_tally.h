@@ -29,9 +29,9 @@ class LabelTally {
   }
   /// Records contact with a label without removal. Ignores label 0.
   void add_contact(LabelMap::LabelIndex label) noexcept {
-    if (label == 0 || waits_[label]) return;
-    waits_[label] = true;
-    waiting_[count_++] = label;
+    if (label == 0 || is_queued_[label]) return;
+    is_queued_[label] = true;
+    queue_[count_++] = label;
   }
 
   /// Removes and returns the labels queued longest.
@@ -39,21 +39,21 @@ class LabelTally {
     LabelCuts cuts;
     const std::size_t taken = std::min(cuts.size(), count_);
     for (std::size_t n = 0; n < taken; ++n) {
-      const LabelMap::LabelIndex label = waiting_[n];
+      const LabelMap::LabelIndex label = queue_[n];
       cuts[n] = {label, removed_mm3_[label]};
       removed_mm3_[label] = 0;
-      waits_[label] = false;
+      is_queued_[label] = false;
     }
-    std::copy(waiting_.begin() + static_cast<std::ptrdiff_t>(taken),
-              waiting_.begin() + static_cast<std::ptrdiff_t>(count_), waiting_.begin());
+    std::copy(queue_.begin() + static_cast<std::ptrdiff_t>(taken),
+              queue_.begin() + static_cast<std::ptrdiff_t>(count_), queue_.begin());
     count_ -= taken;
     return cuts;
   }
 
  private:
   std::array<double, LabelMap::kMaxLabels + 1> removed_mm3_{};
-  std::array<bool, LabelMap::kMaxLabels + 1> waits_{};
-  std::array<LabelMap::LabelIndex, LabelMap::kMaxLabels> waiting_{};
+  std::array<bool, LabelMap::kMaxLabels + 1> is_queued_{};
+  std::array<LabelMap::LabelIndex, LabelMap::kMaxLabels> queue_{};
   std::size_t count_ = 0;
 };
 

@@ -159,8 +159,8 @@ inline constexpr std::string_view kSamplePointsKey = "sample_points";
 void put_setting(RunDescription& run, const FieldDescription& field, double value);
 /// Returns a number from a run's settings; nullopt if it is missing and `field` may be absent. Throws
 /// InputError, naming the recording's `path`, if a required one is missing.
-std::optional<double> taken_setting(const RunDescription& run, const FieldDescription& field,
-                                    const std::filesystem::path& path);
+std::optional<double> read_setting(const RunDescription& run, const FieldDescription& field,
+                                   const std::filesystem::path& path);
 
 /// Stores every field that has a name in files (FieldDescription::name) in a run's settings.
 template <typename Struct>
@@ -168,12 +168,12 @@ void put_fields(RunDescription& run, const Struct& s) {
   for (const Field<Struct>& setting : fields_of<Struct>())
     if (!setting.name.empty()) put_setting(run, setting, setting.get(s));
 }
-/// Reads every field that has a name in files from a run's settings. Throws as `taken_setting`.
+/// Reads every field that has a name in files from a run's settings. Throws as `read_setting`.
 template <typename Struct>
 void take_fields(const RunDescription& run, const std::filesystem::path& path, Struct& s) {
   for (const Field<Struct>& setting : fields_of<Struct>()) {
     if (setting.name.empty()) continue;
-    if (const auto value = taken_setting(run, setting, path)) setting.set(s, *value);
+    if (const auto value = read_setting(run, setting, path)) setting.set(s, *value);
   }
 }
 

@@ -9,7 +9,7 @@
 namespace osteomill {
 
 /// Clipping plane of a view: hides points p of W with normal . p < offset. A zero normal clips nothing.
-struct ViewCut {
+struct ViewClipPlane {
   Vec3 normal_W = Vec3::Zero();
   double offset_mm = 0;
 };
@@ -23,7 +23,7 @@ struct ViewSample {
   /// Vertical field of view, and aspect ratio (width / height).
   double field_of_view_rad = 0.5;
   double aspect = 1;
-  std::array<ViewCut, 4> cuts;
+  std::array<ViewClipPlane, 4> cuts;
   /// Current step of the exercise, from 1; 0 for none.
   int step = 0;
   /// True if steps, colours and distances were shown.

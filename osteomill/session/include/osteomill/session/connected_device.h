@@ -117,14 +117,14 @@ class ConnectedDevice final : public Device {
 
  private:
   // State of the device's thread, which shares ownership in case it is detached.
-  class Exchange;
+  class DeviceLoop;
   struct Mapping {
     WorkspaceSettings settings;
     Quat R_WV = view_from_the_front();
     std::uint64_t number = 0;
   };
 
-  std::shared_ptr<Exchange> exchange_;
+  std::shared_ptr<DeviceLoop> exchange_;
   std::thread thread_;
   Mapping requested_mapping_;
   LatestValue<Mapping> mapping_;

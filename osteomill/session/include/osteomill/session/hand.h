@@ -58,7 +58,7 @@ HandSettings random_hand(std::uint64_t seed);
 /// Returns a hand with a `firmness` times firmer grip: scales all stiffness and damping by `firmness`,
 /// because both increase with grip force (Hasser and Cutkosky 2002, nine hands on a knob; stiffness
 /// proportionally: Hoeppner, McIntyre and van der Smagt 2013).
-HandSettings gripping(HandSettings hand, double firmness);
+HandSettings with_firmer_grip(HandSettings hand, double firmness);
 
 /// Hand tremor as a displacement or rotation vector in W, a function of time only. Along each axis a sum of
 /// sines with seeded frequencies and phases: 90 % of the power between 8 and 12 Hz (physiological tremor),

@@ -56,16 +56,16 @@ struct MillingSetup {
 };
 
 /// Flag of a MillingSetup field: part of the tool.
-inline constexpr unsigned kOfTheTool = 1;
+inline constexpr unsigned kToolField = 1;
 /// Flag of a MillingSetup field: part of the cutting.
-inline constexpr unsigned kOfTheCutting = 2;
+inline constexpr unsigned kCuttingField = 2;
 /// Flag of a MillingSetup field: one of the device's limits.
-inline constexpr unsigned kOfTheLimits = 4;
+inline constexpr unsigned kLimitField = 4;
 /// Flag of a MillingSetup field: a replay keeps the recorded value, because a recording belongs to one scan,
 /// milled with one tool.
-inline constexpr unsigned kOfTheRecording = 8;
+inline constexpr unsigned kRecordedField = 8;
 /// Flag of a MillingSetup field: unless set, the value is computed from other fields.
-inline constexpr unsigned kFollows = 16;
+inline constexpr unsigned kDerivedField = 16;
 
 /// Returns the fields of a setup except for the tick length and the algorithm's own settings, which are in
 /// its description.

@@ -59,7 +59,7 @@ class SimulatedOperator : public Device {
   const SimulatedHandle& handle() const { return handle_; }
 
  private:
-  Pose trembling(const Pose& X_W_intended) const;
+  Pose with_tremor(const Pose& X_W_intended) const;
 
   HandSettings hand_;
   Tremor tremor_mm_;

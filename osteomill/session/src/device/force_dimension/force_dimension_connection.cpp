@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 // The library uses m and N m.
 constexpr double kMmPerM = 1000;
 // Polling interval: twice the rate at which wrenches change. The library's read does not wait for the device.
-constexpr auto kBetweenReadings = 500us;
+constexpr auto kPollInterval = 500us;
 constexpr auto kBetweenStatuses = 20ms;
 // dhd functions return 0 on success, a negative value on failure, and a positive value on success without a
 // new pose.
@@ -104,7 +104,7 @@ Model model_of(int system_type) {
 
 char number_of(const std::string& address) {
   if (address.empty()) return 0;
-  const auto number = parsed_number<signed char>(address);
+  const auto number = parse_number<signed char>(address);
   if (!number || *number < 0) fail("'" + address + "' is not the number of a device");
   return static_cast<char>(*number);
 }
@@ -137,8 +137,8 @@ class ForceDimensionConnection final : public Connection {
     // Also after reopening: force that the operator or the brakes switched off may only be switched on by the
     // operator.
     StatusOfDevice found{};
-    switches_on_ = dhd_.status(found.data(), id_) < 0 || !is_off(found) || found[kForceOffCause] == 0 ||
-                   found[kForceOffCause] == kByWatchdog || found[kForceOffCause] == kByProgram;
+    may_enable_force_ = dhd_.status(found.data(), id_) < 0 || !is_off(found) || found[kForceOffCause] == 0 ||
+                        found[kForceOffCause] == kByWatchdog || found[kForceOffCause] == kByProgram;
     if (dhd_.enable_force(0, id_) < 0 || dhd_.set_max_force(model.limits.force_N, id_) < 0 ||
         dhd_.set_max_torque(model.limits.torque_Nmm / kMmPerM, id_) < 0) {
       const std::string reason = dhd_.last_error();
@@ -161,9 +161,9 @@ class ForceDimensionConnection final : public Connection {
     int result = kNoNewFrame;
     Vec3 position_m;
     double frame[3][3];
-    while (result > 0 && Clock::now() + kBetweenReadings < end) {
+    while (result > 0 && Clock::now() + kPollInterval < end) {
       std::this_thread::sleep_until(next_);
-      next_ = Clock::now() + kBetweenReadings;
+      next_ = Clock::now() + kPollInterval;
       result = dhd_.pose(&position_m.x(), &position_m.y(), &position_m.z(), frame, id_);
     }
     if (result != 0) return result < 0 ? ConnectionStatus::lost : ConnectionStatus::silent;
@@ -210,14 +210,14 @@ class ForceDimensionConnection final : public Connection {
     StatusOfDevice status{};
     if (dhd_.status(status.data(), id_) < 0) return "does not report whether it is calibrated";
     if (status[kIsReset] != 0) {
-      switches_on_ = true;
+      may_enable_force_ = true;
       return "is not calibrated: calibrate it with the maker's tool (HapticInit), a Falcon by hand";
     }
     const auto cause = static_cast<std::size_t>(status[kForceOffCause]);
     const char* const off = is_off(status) ? kForceIsOff[cause < kForceIsOff.size() ? cause : 0] : nullptr;
     const bool by_watchdog = cause == kByWatchdog && not_driven_ == off && sends_zero_;
-    if (off != nullptr && (switches_on_ || by_watchdog)) {
-      switches_on_ = false;
+    if (off != nullptr && (may_enable_force_ || by_watchdog)) {
+      may_enable_force_ = false;
       dhd_.set_brakes(0, id_);
       dhd_.enable_force(1, id_);
       if (dhd_.status(status.data(), id_) < 0) return "does not report whether its force is on";
@@ -231,7 +231,7 @@ class ForceDimensionConnection final : public Connection {
   Clock::time_point next_ = Clock::now();
   Clock::time_point next_status_ = Clock::now();
   const char* not_driven_ = nullptr;
-  bool switches_on_ = true;
+  bool may_enable_force_ = true;
   bool sends_zero_ = true;
 };
 

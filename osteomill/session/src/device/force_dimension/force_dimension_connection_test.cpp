@@ -141,15 +141,15 @@ TEST_F(ForceDimension, AFunctionThatDoesNotReturnIsNamedAndLeftBehind) {
     ConnectedDevice device([] { return open_force_dimension(""); });
     device.start();
     hang.in = kFunction;
-    EXPECT_TRUE(
-        testing_support::comes_true([&] { return device.report().state == DeviceReport::State::hangs; }));
+    EXPECT_TRUE(testing_support::becomes_true_in_time(
+        [&] { return device.report().state == DeviceReport::State::hangs; }));
     EXPECT_EQ(device.report().reason, kFunction);
     EXPECT_NE(device.close().find(std::string(kFunction) + " does not return"), std::string::npos);
     EXPECT_EQ(device.close(), "");
   }
   // The detached thread ends once the call returns.
   hang.in = nullptr;
-  EXPECT_TRUE(testing_support::comes_true([&] { return hang.closed > closed; }));
+  EXPECT_TRUE(testing_support::becomes_true_in_time([&] { return hang.closed > closed; }));
 }
 
 TEST_F(ForceDimension, OpenedAgainItLeavesOffWhatItsOperatorSwitchedOff) {

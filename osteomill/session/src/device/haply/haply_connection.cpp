@@ -21,19 +21,19 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 
-constexpr const char* kUsualAddress = "127.0.0.1:10001";
+constexpr const char* kDefaultAddress = "127.0.0.1:10001";
 // The service uses m.
 constexpr double kMmPerM = 1000;
 // The first message lists every device with its settings; later ones are a few kB.
 constexpr std::size_t kMaxBytes = 1 << 18;
 constexpr auto kInventoryWithin = 100ms;
 constexpr auto kWait = 1500us;
-constexpr auto kBetweenReadings = 500us;
+constexpr auto kPollInterval = 500us;
 // Time without an answer after which the connection counts as lost and is reopened.
 constexpr auto kAnswersWithin = 1s;
 // Latency limit, applied to a running mean over about kLatencies answers: ConnectedDevice ignores older
 // poses.
-constexpr double kFeltWithin_ms = 5;
+constexpr double kMaxLatency_ms = 5;
 constexpr double kLatencies = 20;
 // Time constant, in answers, of the mean that detects forces other than those sent.
 constexpr double kAnswers = 200;
@@ -163,30 +163,30 @@ class HaplyConnection final : public Connection {
     capabilities_.limits = {10, 0};
     not_driven_ = why_not_driven(member(service_.inverse3, "status"));
     // Identifies this program in the Haply Hub; sent once.
-    ask(Vec3::Zero(), {{"session", {{"configure", {{"profile", {{"name", "osteomill"}}}}}}}});
+    send_force(Vec3::Zero(), {{"session", {{"configure", {{"profile", {{"name", "osteomill"}}}}}}}});
   }
-  ~HaplyConnection() override { ask(Vec3::Zero()); }
+  ~HaplyConnection() override { send_force(Vec3::Zero()); }
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
 
   ConnectionStatus read(DeviceInput& input) override {
     const auto text = service_.socket.receive(kWait);
     if (!text) {
-      if (is_asked_ && Clock::now() - asked_ > kAnswersWithin) return ConnectionStatus::lost;
+      if (is_answer_pending_ && Clock::now() - request_time_ > kAnswersWithin) return ConnectionStatus::lost;
       return or_lost(ConnectionStatus::silent);
     }
-    if (is_asked_) check_latency();
-    is_asked_ = false;
+    if (is_answer_pending_) check_latency();
+    is_answer_pending_ = false;
     // Limits the rate of requests to a service that answers immediately.
     std::this_thread::sleep_until(next_);
-    next_ = Clock::now() + kBetweenReadings;
+    next_ = Clock::now() + kPollInterval;
     return take_state(*text, input) ? ConnectionStatus::fresh : ConnectionStatus::silent;
   }
 
   ConnectionStatus write(const Wrench& wrench_B) override {
     // Only one message may be pending; otherwise a slow service would apply outdated wrenches.
-    if (is_asked_) return or_lost(ConnectionStatus::silent);
-    return or_lost(ask(wrench_B.force_N) ? ConnectionStatus::fresh : ConnectionStatus::silent);
+    if (is_answer_pending_) return or_lost(ConnectionStatus::silent);
+    return or_lost(send_force(wrench_B.force_N) ? ConnectionStatus::fresh : ConnectionStatus::silent);
   }
 
  private:
@@ -196,26 +196,26 @@ class HaplyConnection final : public Connection {
 
   // Sends the force; the service answers with the state of all devices. Returns false if the message is still
   // pending.
-  bool ask(const Vec3& force_N, Json message = Json::object()) {
+  bool send_force(const Vec3& force_N, Json message = Json::object()) {
     const Json force{{force_key_, {{"x", force_N.x()}, {"y", force_N.y()}, {"z", force_N.z()}}}};
     const Json device{{"device_id", id_}, {"commands", {{"set_cursor_force", force}}}};
     message["inverse3"] = Json::array({device});
     force_N_ = force_N;
-    is_asked_ = true;
-    asked_ = Clock::now();
+    is_answer_pending_ = true;
+    request_time_ = Clock::now();
     return service_.socket.send(message.dump());
   }
 
   // Keeps one message while the service is slow, because `remark` points to it.
   void check_latency() {
-    const double latency_ms = std::chrono::duration<double, std::milli>(Clock::now() - asked_).count();
+    const double latency_ms = std::chrono::duration<double, std::milli>(Clock::now() - request_time_).count();
     mean_latency_ms_ += (latency_ms - mean_latency_ms_) / kLatencies;
-    if (mean_latency_ms_ <= kFeltWithin_ms) {
-      is_slow_[0] = '\0';
-    } else if (is_slow_[0] == '\0') {
-      *fmt::format_to_n(is_slow_.data(), is_slow_.size() - 1,
+    if (mean_latency_ms_ <= kMaxLatency_ms) {
+      slow_remark_[0] = '\0';
+    } else if (slow_remark_[0] == '\0') {
+      *fmt::format_to_n(slow_remark_.data(), slow_remark_.size() - 1,
                         "answers after {:.0f} ms; above {:g} ms almost nothing can be felt", latency_ms,
-                        kFeltWithin_ms)
+                        kMaxLatency_ms)
            .out = '\0';
     }
   }
@@ -244,7 +244,7 @@ class HaplyConnection final : public Connection {
     if (const Json* const status = member(device, "status")) not_driven_ = why_not_driven(status);
     now.not_driven = not_driven_ != nullptr ? not_driven_ : why_grip_is_not_used(grip);
     if (gives_other_forces(state)) now.remark = kOtherForces;
-    if (is_slow_[0] != '\0') now.remark = is_slow_.data();
+    if (slow_remark_[0] != '\0') now.remark = slow_remark_.data();
     input = now;
     return true;
   }
@@ -260,14 +260,14 @@ class HaplyConnection final : public Connection {
   double mean_asked_N_ = 0;
   double mean_other_N_ = 0;
   double mean_latency_ms_ = 0;
-  std::array<char, 120> is_slow_{};
-  bool is_asked_ = false;
-  Clock::time_point asked_;
+  std::array<char, 120> slow_remark_{};
+  bool is_answer_pending_ = false;
+  Clock::time_point request_time_;
   Clock::time_point next_ = Clock::now();
 };
 
 HostAndPort place_of(const std::string& address) {
-  return host_and_port("haply", address.empty() ? kUsualAddress : address);
+  return resolve_address("haply", address.empty() ? kDefaultAddress : address);
 }
 
 }  // namespace

@@ -56,20 +56,20 @@ struct WebSocket::Impl {
   }
 
   bool take(const char* data, std::size_t length) {
-    if (coming.size() + length > max_bytes) return false;
-    coming.append(data, length);
+    if (partial_message.size() + length > max_bytes) return false;
+    partial_message.append(data, length);
     if (lws_is_final_fragment(socket) != 0 && lws_remaining_packet_payload(socket) == 0)
-      newest = std::exchange(coming, {});
+      newest = std::exchange(partial_message, {});
     return true;
   }
 
   bool write() {
-    if (!going) return true;
+    if (!outgoing) return true;
     // The library writes its header in front of the payload.
-    std::vector<unsigned char> packet(LWS_PRE + going->size());
-    std::copy(going->begin(), going->end(), packet.begin() + LWS_PRE);
-    const std::size_t length = going->size();
-    going.reset();
+    std::vector<unsigned char> packet(LWS_PRE + outgoing->size());
+    std::copy(outgoing->begin(), outgoing->end(), packet.begin() + LWS_PRE);
+    const std::size_t length = outgoing->size();
+    outgoing.reset();
     return lws_write(socket, packet.data() + LWS_PRE, length, LWS_WRITE_TEXT) >= static_cast<int>(length);
   }
 
@@ -90,9 +90,9 @@ struct WebSocket::Impl {
   lws_context* context = nullptr;
   lws* socket = nullptr;
   bool is_open = false;
-  std::string coming;
+  std::string partial_message;
   std::optional<std::string> newest;
-  std::optional<std::string> going;
+  std::optional<std::string> outgoing;
 };
 
 WebSocket::WebSocket(const std::string& device, const std::string& host, int port, std::size_t max_bytes)
@@ -132,10 +132,10 @@ std::optional<std::string> WebSocket::receive(std::chrono::microseconds wait) {
 
 bool WebSocket::send(std::string text) {
   if (!is_open()) return false;
-  impl_->going = std::move(text);
+  impl_->outgoing = std::move(text);
   lws_callback_on_writable(impl_->socket);
   impl_->serve({});
-  return !impl_->going;
+  return !impl_->outgoing;
 }
 
 }  // namespace osteomill

@@ -50,7 +50,7 @@ constexpr bool is_of_force(unsigned code) {
 
 // A wrench older than this is replaced by zero. Not a watchdog of the device: it runs in the library's
 // thread, which ends with the program.
-constexpr auto kLapse = 20ms;
+constexpr auto kWrenchTimeout = 20ms;
 constexpr auto kPollPeriod = 200us;
 constexpr double kFrame_s = 1e-3;
 
@@ -125,7 +125,7 @@ struct SentWrench {
 class TouchConnection final : public Connection {
  public:
   explicit TouchConnection(const std::string& address) : device_(address) {
-    ask();
+    read_capabilities();
     frames_ = hd_.schedule([](void* self) { return static_cast<TouchConnection*>(self)->frame(); }, this,
                            kDefaultPriority);
     {
@@ -180,7 +180,7 @@ class TouchConnection final : public Connection {
     return !zero || zero_of_.load(std::memory_order_acquire) == number_;
   }
 
-  void ask() {
+  void read_capabilities() {
     capabilities_.name = device_.name();
     capabilities_.sensed = device_.integer(kInputDof) >= 6 ? 6 : 3;
     capabilities_.driven = device_.integer(kOutputDof) >= 6 ? 6 : 3;
@@ -208,7 +208,7 @@ class TouchConnection final : public Connection {
     input.not_driven = why_not_driven();
 
     const SentWrench& sent = sent_.read();
-    const bool is_driven = input.not_driven == nullptr && Clock::now() - sent.time < kLapse;
+    const bool is_driven = input.not_driven == nullptr && Clock::now() - sent.time < kWrenchTimeout;
     driven_ = approach(driven_, is_driven ? sent.wrench : Wrench{}, kHandWrenchRates, kFrame_s);
     hd_.set_doubles(kCurrentForce, driven_.force_N.data());
     if (capabilities_.driven == 6) hd_.set_doubles(kCurrentTorque, driven_.torque_Nmm.data());

@@ -45,7 +45,7 @@ class Touch : public ::testing::Test {
   // Waits until a whole frame has run since the call.
   void await_frame() {
     const int before = device_->frames;
-    EXPECT_TRUE(testing_support::comes_true([&] { return device_->frames >= before + 2; }));
+    EXPECT_TRUE(testing_support::becomes_true_in_time([&] { return device_->frames >= before + 2; }));
   }
   Vec3 force() const { return {device_->force[0], device_->force[1], device_->force[2]}; }
   Vec3 torque() const { return {device_->torque[0], device_->torque[1], device_->torque[2]}; }

@@ -22,7 +22,7 @@ using namespace udp;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kUsualAddress = "127.0.0.1:47117";
+constexpr const char* kDefaultAddress = "127.0.0.1:47117";
 constexpr auto kWait = 2ms;
 constexpr int kQuestions = 10;
 constexpr auto kWaitForAnswer = 50ms;
@@ -35,7 +35,7 @@ constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
 constexpr int kMaxDatagrams = 64;
 
 struct Question {
-  static constexpr Kind kKind = Kind::question;
+  static constexpr Kind kKind = Kind::request;
   Head head;
 };
 
@@ -64,23 +64,23 @@ std::optional<Datagram> receive(Socket& socket) {
   return std::nullopt;
 }
 
-DeviceCapabilities capabilities_of(const Answer& answer, const std::string& device) {
+DeviceCapabilities capabilities_of(const Reply& reply, const std::string& device) {
   DeviceCapabilities can;
-  const auto end = std::find(answer.name.begin(), answer.name.end(), '\0');
-  can.name.assign(answer.name.begin(), end);
+  const auto end = std::find(reply.name.begin(), reply.name.end(), '\0');
+  can.name.assign(reply.name.begin(), end);
   const auto printable = [](unsigned char letter) { return letter >= 0x20 && letter != 0x7f; };
   if (can.name.empty() || !std::all_of(can.name.begin(), can.name.end(), printable))
     throw InputError(device, "the device reports no valid name");
   const auto is_dof = [](std::uint32_t dof) { return dof == 3 || dof == 6; };
-  if (!is_dof(answer.sensed) || !is_dof(answer.driven))
+  if (!is_dof(reply.sensed) || !is_dof(reply.driven))
     throw InputError(
         device,
         fmt::format("the device reports {} degrees of freedom sensed and {} driven; each must be 3 or 6",
-                    answer.sensed, answer.driven));
-  can.sensed = static_cast<int>(answer.sensed);
-  can.driven = static_cast<int>(answer.driven);
-  can.limits = {answer.max_force_N, answer.max_torque_Nmm};
-  can.watchdog_s = kLapse_s;
+                    reply.sensed, reply.driven));
+  can.sensed = static_cast<int>(reply.sensed);
+  can.driven = static_cast<int>(reply.driven);
+  can.limits = {reply.max_force_N, reply.max_torque_Nmm};
+  can.watchdog_s = kWatchdog_s;
   if (!is_not_negative(can.limits.force_N) || !is_not_negative(can.limits.torque_Nmm))
     throw InputError(device, "the device reports limits that are negative or not finite");
   return can;
@@ -89,32 +89,32 @@ DeviceCapabilities capabilities_of(const Answer& answer, const std::string& devi
 // A device that has answered at HOST:PORT.
 struct Partner {
   explicit Partner(const std::string& address)
-      : socket("udp:" + address, host_and_port("udp", address), Socket::Kind::datagrams) {
+      : socket("udp:" + address, resolve_address("udp", address), Socket::Kind::datagrams) {
     for (std::uint32_t n = 0; n < kQuestions && socket.is_open(); ++n) {
       send(socket, Question{}, n);
       socket.wait_to_receive(kWaitForAnswer);
-      if (const auto answer = receive<Answer>(socket)) {
-        capabilities = capabilities_of(*answer, "udp:" + address);
-        is_taken = answer->head.is_taken != 0;
-        if (!is_taken) return;
+      if (const auto reply = receive<Reply>(socket)) {
+        capabilities = capabilities_of(*reply, "udp:" + address);
+        is_busy = reply->head.is_busy != 0;
+        if (!is_busy) return;
         // A killed program keeps the device for another moment; ask again.
         std::this_thread::sleep_for(kWaitForAnswer);
       }
     }
-    if (is_taken) return;
+    if (is_busy) return;
     throw InputError("udp:" + address, socket.is_open() ? "nothing answers there" : "nothing listens there");
   }
 
   Socket socket;
   DeviceCapabilities capabilities;
   // In use by another program.
-  bool is_taken = false;
+  bool is_busy = false;
 };
 
 class UdpConnection final : public Connection {
  public:
   explicit UdpConnection(const std::string& address) : partner_(address) {
-    if (partner_.is_taken) throw InputError("udp:" + address, "another program has the device in use");
+    if (partner_.is_busy) throw InputError("udp:" + address, "another program has the device in use");
   }
   ~UdpConnection() override {
     // Datagrams may be lost; send zero three times.
@@ -149,12 +149,13 @@ class UdpConnection final : public Connection {
  private:
   // Sequence numbers wrap around.
   bool is_newer(std::uint32_t sequence) const {
-    return !heard_ || Clock::now() - *heard_ > kSilence || static_cast<std::int32_t>(sequence - newest_) > 0;
+    return !last_state_time_ || Clock::now() - *last_state_time_ > kSilence ||
+           static_cast<std::int32_t>(sequence - newest_) > 0;
   }
 
   void take(const State& state, DeviceInput& input) {
     newest_ = state.head.sequence;
-    heard_ = Clock::now();
+    last_state_time_ = Clock::now();
     input.X_BH.position_mm = Vec3::Map(state.position_mm.data());
     const auto& [w, x, y, z] = state.orientation_wxyz;
     input.X_BH.orientation = partner_.capabilities.sensed == 6 ? Quat(w, x, y, z) : Quat::Identity();
@@ -165,11 +166,11 @@ class UdpConnection final : public Connection {
   Partner partner_;
   std::uint32_t wrenches_ = 0;
   std::uint32_t newest_ = 0;
-  std::optional<Clock::time_point> heard_;
+  std::optional<Clock::time_point> last_state_time_;
 };
 
 std::string or_default(const std::string& address) {
-  return address.empty() ? kUsualAddress : address;
+  return address.empty() ? kDefaultAddress : address;
 }
 
 }  // namespace
@@ -182,7 +183,7 @@ std::string probe_udp(const std::string& address) {
   const std::string at = or_default(address);
   const Partner partner(at);
   return fmt::format("{} at {}{}", partner.capabilities.name, at,
-                     partner.is_taken ? ", in use by another program" : "");
+                     partner.is_busy ? ", in use by another program" : "");
 }
 
 }  // namespace osteomill

@@ -49,11 +49,11 @@ class StubDevice {
     address = "127.0.0.1:" + std::to_string(ntohs(here.sin_port));
     const timeval most{0, 500'000};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &most, sizeof(most));
-    answer.head.kind = Kind::answer;
-    std::strcpy(answer.name.data(), "Lab one");
-    answer.sensed = answer.driven = 6;
-    answer.max_force_N = 8;
-    answer.max_torque_Nmm = 90;
+    reply.head.kind = Kind::reply;
+    std::strcpy(reply.name.data(), "Lab one");
+    reply.sensed = reply.driven = 6;
+    reply.max_force_N = 8;
+    reply.max_torque_Nmm = 90;
   }
   ~StubDevice() { ::close(socket_); }
   StubDevice(const StubDevice&) = delete;
@@ -70,10 +70,10 @@ class StubDevice {
         fault = error.what();
       }
     });
-    Head question;
-    EXPECT_TRUE(receive(question));
-    EXPECT_EQ(question.kind, Kind::question);
-    send(answer);
+    Head request;
+    EXPECT_TRUE(receive(request));
+    EXPECT_EQ(request.kind, Kind::request);
+    send(reply);
     osteomill.join();
     if (!opened) throw InputError("", fault);
     return opened;
@@ -99,7 +99,7 @@ class StubDevice {
   }
 
   std::string address;
-  Answer answer;
+  Reply reply;
 
  private:
   int socket_;
@@ -111,7 +111,7 @@ TEST(UdpDevice, SaysWhatItIsTakesStatesAndSendsWrenches) {
   const auto connection = stub.open();
   EXPECT_EQ(connection->capabilities().name, "Lab one");
   EXPECT_EQ(connection->capabilities().limits.force_N, 8);
-  EXPECT_EQ(connection->capabilities().watchdog_s, kLapse_s);
+  EXPECT_EQ(connection->capabilities().watchdog_s, kWatchdog_s);
   stub.send_state(1, 7);
   DeviceInput input;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
@@ -197,16 +197,16 @@ std::string fault_of(const std::function<void()>& action) {
 }
 
 TEST(UdpDevice, AnAnswerThatCannotBeIsRefused) {
-  const std::vector<std::pair<std::function<void(Answer&)>, std::string>> faults{
-      {[](Answer& answer) { answer.name = {}; }, "reports no valid name"},
-      {[](Answer& answer) { answer.name[1] = '\n'; }, "reports no valid name"},
-      {[](Answer& answer) { answer.driven = 4; }, "6 degrees of freedom sensed and 4 driven"},
-      {[](Answer& answer) { answer.max_force_N = -1; }, "not numbers from 0"},
-      {[](Answer& answer) { answer.max_torque_Nmm = std::numeric_limits<double>::infinity(); },
+  const std::vector<std::pair<std::function<void(Reply&)>, std::string>> faults{
+      {[](Reply& reply) { reply.name = {}; }, "reports no valid name"},
+      {[](Reply& reply) { reply.name[1] = '\n'; }, "reports no valid name"},
+      {[](Reply& reply) { reply.driven = 4; }, "6 degrees of freedom sensed and 4 driven"},
+      {[](Reply& reply) { reply.max_force_N = -1; }, "not numbers from 0"},
+      {[](Reply& reply) { reply.max_torque_Nmm = std::numeric_limits<double>::infinity(); },
        "not numbers from 0"}};
   for (const auto& [spoil, reason] : faults) {
     StubDevice stub;
-    spoil(stub.answer);
+    spoil(stub.reply);
     const std::string fault = fault_of([&] { stub.open(); });
     EXPECT_NE(fault.find("udp:" + stub.address + ": "), std::string::npos) << fault;
     EXPECT_NE(fault.find(reason), std::string::npos) << fault;
@@ -215,14 +215,14 @@ TEST(UdpDevice, AnAnswerThatCannotBeIsRefused) {
 
 TEST(UdpDevice, OneThatAnotherProgramHasIsRefused) {
   StubDevice stub;
-  stub.answer.head.is_taken = 1;
+  stub.reply.head.is_busy = 1;
   EXPECT_EQ(fault_of([&] { stub.open(); }),
             ": udp:" + stub.address + ": another program has the device in use");
 }
 
 TEST(UdpDevice, ANameOfFullLengthNeedsNoEnd) {
   StubDevice stub;
-  stub.answer.name.fill('n');
+  stub.reply.name.fill('n');
   EXPECT_EQ(stub.open()->capabilities().name, std::string(64, 'n'));
 }
 

@@ -9,11 +9,11 @@ namespace osteomill::udp {
 // The datagrams of docs/udp-device.md, byte for byte: little-endian, IEEE 754, no padding.
 static_assert(std::endian::native == std::endian::little);
 
-enum class Kind : std::uint16_t { question = 1, answer = 2, state = 3, wrench = 4 };
+enum class Kind : std::uint16_t { request = 1, reply = 2, state = 3, wrench = 4 };
 
 constexpr std::array<char, 4> kMagic{'O', 'M', 'I', 'L'};
 constexpr std::uint16_t kVersion = 1;
-constexpr double kLapse_s = 5e-3;
+constexpr double kWatchdog_s = 5e-3;
 
 struct Head {
   std::array<char, 4> magic = kMagic;
@@ -21,12 +21,12 @@ struct Head {
   Kind kind{};
   std::uint32_t sequence = 0;
   /// In an answer: 1 if another partner drives the device, otherwise 0.
-  std::uint32_t is_taken = 0;
+  std::uint32_t is_busy = 0;
 };
 static_assert(sizeof(Head) == 16);
 
-struct Answer {
-  static constexpr Kind kKind = Kind::answer;
+struct Reply {
+  static constexpr Kind kKind = Kind::reply;
   Head head;
   std::array<char, 64> name{};
   std::uint32_t sensed = 0;
@@ -34,7 +34,7 @@ struct Answer {
   double max_force_N = 0;
   double max_torque_Nmm = 0;
 };
-static_assert(sizeof(Answer) == 104);
+static_assert(sizeof(Reply) == 104);
 
 struct State {
   static constexpr Kind kKind = Kind::state;

@@ -26,7 +26,7 @@ nlohmann::json packed(const std::vector<Number>& numbers) {
 nlohmann::json numbers_of(const Vec3& v);
 
 /// Appearance of a body in a page. Bodies of the same name are shown and hidden together.
-struct BodyLook {
+struct BodyStyle {
   std::string name;
   /// Kind of body, for the script: "bone", or one of an exercise's.
   std::string kind = "bone";
@@ -44,7 +44,7 @@ struct BodyLook {
 BrickMesh simplified(const BrickMesh& mesh, std::size_t max_vertices, double voxel_mm, const Sphere& near);
 
 /// Returns a body for a page's data. The mesh must have at most kMaxVertices.
-nlohmann::json body_of(const BodyLook& look, const BrickMesh& mesh);
+nlohmann::json body_of(const BodyStyle& look, const BrickMesh& mesh);
 
 /// Sets the initial view in a page's data: it orbits the ball, seen from the direction `up_W`.
 void put_view(nlohmann::json& data, const Sphere& ball, const Vec3& up_W);

@@ -22,7 +22,7 @@ struct ReportExtras {
 };
 
 /// Returns whether these recordings are of the test of section 8.2.
-bool are_of_comparison(const std::vector<Recording>& recordings);
+bool is_comparison(const std::vector<Recording>& recordings);
 
 /// Writes the report of any session (write_report) plus the parts of the test of section 8.2: first what was
 /// compared and the verdict, then the paper's findings tested on it, and a section on each of the extras.
@@ -30,11 +30,11 @@ bool are_of_comparison(const std::vector<Recording>& recordings);
 /// `measured`, reads these tables if they are next to the recordings and of the same comparison, so that the
 /// page is the same as the comparison's own. Draws no conclusions from recordings that differ in more than
 /// the algorithm (differences_table). Returns the page's path, and puts the tables of results at its top into
-/// `came_out`. Throws as write_report.
+/// `result_tables`. Throws as write_report.
 std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
                                               const std::filesystem::path& out_dir,
                                               const std::optional<ReportExtras>& measured = {},
-                                              std::vector<Table>* came_out = nullptr,
+                                              std::vector<Table>* result_tables = nullptr,
                                               const ScanOf& scan_of = {});
 
 }  // namespace osteomill

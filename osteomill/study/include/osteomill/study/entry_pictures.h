@@ -13,7 +13,7 @@ namespace osteomill {
 
 /// Returns the fraction of the surface exposed by milling, counted in voxels, that the camera sees; 1 if no
 /// bone was removed. `milled` must be `before` with bone removed. Not real-time safe.
-double share_seen(const Volume& before, const Volume& milled, const Camera& camera);
+double visible_fraction(const Volume& before, const Volume& milled, const Camera& camera);
 
 /// Renders PNGs of a bone from obliquely above an entry, before and after milling, from the same view, with
 /// direction letters if the bone is a patient's. Renders none, with a warning, if OpenGL is not available.
@@ -22,7 +22,7 @@ class EntryPictures {
   EntryPictures(const Volume& before, double reference_density, const MillingEntry& entry,
                 const RunEvents& events, bool of_patient = false);
 
-  bool can_be_had() const { return before_.has_value(); }
+  bool is_available() const { return before_.has_value(); }
   /// Returns a recording's picture of this name: before, after, or straight along the entry. The last exists
   /// only if the others show less than half of the milled surface, e.g. behind a ridge. Returns nothing if
   /// OpenGL has failed since construction.

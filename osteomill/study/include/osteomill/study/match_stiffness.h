@@ -19,6 +19,6 @@ double felt_stiffness_N_per_mm(const MillingSetup& setup, const Volume& wall);
 /// %, and returns it as a setting of that algorithm only. Searches from its value in `setup`, within 0.05 to
 /// 200 and the setting's range. Throws std::invalid_argument, naming the algorithm, if it has no such setting
 /// or no value is found: it may be too stiff or too soft, or its slope may jump if its force rises in steps.
-HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, const Volume& wall);
+HapticSettings::Named match_felt_stiffness(double felt_N_per_mm, MillingSetup setup, const Volume& wall);
 
 }  // namespace osteomill

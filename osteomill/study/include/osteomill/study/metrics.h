@@ -156,9 +156,9 @@ inline RunMetrics run_metrics(const Recording& recording) {
 }
 
 /// Flag of a field of RunMetrics: smaller is better (unrest in the hand, and time).
-inline constexpr unsigned kLessIsBetter = 1;
+inline constexpr unsigned kLowerIsBetter = 1;
 /// Flag of a field of RunMetrics: measured by the machine's clock, so that it differs between runs.
-inline constexpr unsigned kOfTheMachine = 2;
+inline constexpr unsigned kMachineDependent = 2;
 
 /// Returns every figure of a run: the columns of summary.csv, in order. A value is NaN if it could not be
 /// measured.
@@ -187,7 +187,7 @@ struct MeasuredRun {
   double other_tremor = 0;
 
   /// Returns whether this is the hand itself rather than an extra trial.
-  bool is_own() const { return grip == 1 && other_tremor == 0; }
+  bool is_study_hand() const { return grip == 1 && other_tremor == 0; }
 };
 
 /// Returns the numeric fields of a run's hand: the columns of study.csv after the seed.

@@ -9,21 +9,21 @@
 namespace osteomill {
 
 /// Style of a piece of a cell. In a table of numbers only `words` may wrap.
-enum class Look : unsigned char { plain, strong, agrees, differs, faint, words };
+enum class CellStyle : unsigned char { plain, strong, agrees, differs, faint, words };
 
 /// A cell of a table: plain text that keeps its line breaks, in pieces of different styles.
 struct Cell {
   /// Text in one style.
   struct Piece {
     std::string text;
-    Look look = Look::plain;
+    CellStyle look = CellStyle::plain;
     /// "#rrggbb"; empty for the page's own.
     std::string colour = {};
   };
   std::vector<Piece> pieces;
 
   Cell(std::vector<Piece> all) : pieces(std::move(all)) {}
-  Cell(std::string text = {}, Look look = Look::plain) : pieces{{std::move(text), look}} {}
+  Cell(std::string text = {}, CellStyle look = CellStyle::plain) : pieces{{std::move(text), look}} {}
   Cell(const char* text) : Cell(std::string(text)) {}
   std::string text() const;
 };

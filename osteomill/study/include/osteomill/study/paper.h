@@ -15,7 +15,7 @@ inline constexpr std::string_view kHolding = "holding";
 inline constexpr std::array<std::string_view, 2> kPhases{kMilling, kHolding};
 
 /// Returns the index of a phase in kPhases; kPhases.size() for any other phase.
-inline std::size_t phase_number(std::string_view phase) {
+inline std::size_t phase_index(std::string_view phase) {
   return static_cast<std::size_t>(std::ranges::find(kPhases, phase) - kPhases.begin());
 }
 

@@ -29,8 +29,8 @@ auto run_trials(const std::vector<Trial>& trials, const std::string& what, std::
   return results;
 }
 
-/// Result of a trial of a study (try_trial()).
-struct TriedTrial {
+/// Result of a trial of a study (run_single_trial()).
+struct TrialResult {
   /// A row for each part of the test; the trial number is not set.
   std::vector<TrialRow> rows;
   /// A sentence on faulty ticks; nothing if there were none.
@@ -39,7 +39,7 @@ struct TriedTrial {
 };
 /// Runs one trial of a study on the calling thread. With the test `wall`, uses only `plan.settings`, and
 /// `plan.bone` is the wall.
-TriedTrial try_trial(StudyTest test, const TrialPlan& plan);
+TrialResult run_single_trial(StudyTest test, const TrialPlan& plan);
 
 /// Returns the plan's trial with another seed, in the hand that this seed draws (random_hand). What the
 /// published ranges do not cover (push, tremor) is taken from the plan.
@@ -68,7 +68,7 @@ std::string new_comparison();
 
 /// Returns whether a comparison writes a file or folder of this name: a recording from `record_trial`, or a
 /// part of the report.
-bool is_of_a_comparison(const std::string& name);
+bool is_comparison_output(const std::string& name);
 
 /// Runs both phases of section 8.2 and then writes one recording per phase into `folder`. The first contains
 /// pictures of the bone before and after, or a setting with the reason why there are none. Returns the paths

@@ -33,7 +33,7 @@ class Study {
   /// Returns the rows by seed, in the order of first appearance; within a seed as in summary.csv.
   const std::vector<MeasuredRun>& rows() const { return rows_; }
   /// Returns the rows of hands in other grips and with other tremors.
-  const std::vector<MeasuredRun>& rows_beside() const { return beside_; }
+  const std::vector<MeasuredRun>& extra_rows() const { return extra_rows_; }
   const std::vector<std::uint64_t>& seeds() const { return seeds_; }
   /// Returns the rows of the n-th seed.
   std::span<const MeasuredRun> rows_of_seed(std::size_t n) const;
@@ -72,7 +72,7 @@ class Study {
 
  private:
   std::vector<MeasuredRun> rows_;
-  std::vector<MeasuredRun> beside_;
+  std::vector<MeasuredRun> extra_rows_;
   std::vector<std::uint64_t> seeds_;
 };
 

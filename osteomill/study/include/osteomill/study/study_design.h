@@ -67,7 +67,7 @@ struct StudyMap {
 };
 
 /// Returns the names in an expression of a map: one, or the two of a ratio.
-std::vector<std::string> names_in(std::string_view shown);
+std::vector<std::string> operands_of(std::string_view shown);
 
 /// The trials of a study: every combination of the hypercube's trials and the grid's axes, numbered from 0.
 /// The hypercube varies slowest, so that a consecutive part of the study is spread over its ranges, and the

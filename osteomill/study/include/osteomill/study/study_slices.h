@@ -60,7 +60,7 @@ struct Slice {
 
 /// Rethrows the exception being handled, in a catch clause, as an InputError that names the study's file and
 /// the trial and keeps the original message.
-[[noreturn]] void throw_of_trial(const std::filesystem::path& file, std::size_t trial);
+[[noreturn]] void rethrow_with_trial(const std::filesystem::path& file, std::size_t trial);
 
 /// Returns the path of a slice's file: FOLDER/slice-12.h5.
 std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_t number);

@@ -15,13 +15,13 @@ struct WallPress {
   double tick_s = 1e-3;
 };
 
-/// Behaviour of the handle's oscillation. `gives_way`: the wall is too soft to carry the force, so that no
+/// Behaviour of the handle's oscillation. `yields`: the wall is too soft to carry the force, so that no
 /// oscillation is measured.
-enum class WallMotion : unsigned char { dies_out, goes_on, gives_way };
+enum class WallMotion : unsigned char { decays, persists, yields };
 
 /// Result of a press on a wall (press_on_wall()).
 struct WallPressResult {
-  WallMotion motion = WallMotion::gives_way;
+  WallMotion motion = WallMotion::yields;
   /// Slope of the force over the depth at the pressing force, when pressed slowly: the stiffness that a hand
   /// feels, N/mm. 0 if the wall gives way.
   double felt_N_per_mm = 0;

@@ -34,7 +34,7 @@ struct BrickLevels {
 
 /// Builds the levels of a brick's mesh. `cells` are the brick's cells (SurfaceBricks::cells). Not real-time
 /// safe; any thread.
-BrickLevels levels_of(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells);
+BrickLevels build_levels(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells);
 /// Returns the mesh itself as every level.
 BrickLevels full_detail(BrickMesh mesh);
 

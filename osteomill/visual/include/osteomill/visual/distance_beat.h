@@ -26,8 +26,8 @@ class DistanceBeat {
 
  private:
   double sample_rate_hz_;
-  double turns_ = 0;
-  double beat_ = 0;
+  double phase_turns_ = 0;
+  double beat_phase_ = 0;
   double loudness_ = 0;
 };
 

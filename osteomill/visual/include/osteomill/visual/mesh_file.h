@@ -16,7 +16,7 @@ enum class MeshFormat : unsigned char { stl, ply, obj };
 MeshFormat mesh_format_of(const std::filesystem::path& path);
 
 /// Returns whether this format stores a colour per vertex.
-bool holds_colours(MeshFormat format);
+bool has_vertex_colours(MeshFormat format);
 
 /// Writes the mesh atomically. With the bone's `labels`, each vertex has the colour of the label under it, or
 /// else of bone: in PLY as red, green, blue, followed by the label's value in the map (0 for none); in OBJ as

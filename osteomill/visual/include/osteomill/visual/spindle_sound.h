@@ -47,7 +47,7 @@ class SpindleSound {
   double loudness_ = 0;
   double load_ = 0;
   double density_ = 1;
-  double turns_ = 0;
+  double phase_turns_ = 0;
   std::uint32_t noise_ = 1;
   float white_noise_ = 0;
   float smooth_noise_ = 0;

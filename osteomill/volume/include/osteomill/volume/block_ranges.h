@@ -28,7 +28,7 @@ class BlockRanges {
 
   const std::array<int, 3>& dims() const { return dims_; }
   /// Returns the voxels that a brick's range covers, clipped to the grid.
-  static VoxelBox counted_voxels(const VoxelIndex& brick, const GridGeometry& geometry);
+  static VoxelBox covered_voxels(const VoxelIndex& brick, const GridGeometry& geometry);
   /// Returns the range of the brick with these brick coordinates, from 0.
   const Range& at(int bi, int bj, int bk) const noexcept { return ranges_[row_major(dims_, bi, bj, bk)]; }
   const Range& at(const VoxelIndex& brick) const noexcept { return at(brick.i, brick.j, brick.k); }

@@ -30,8 +30,8 @@ const std::vector<Field<PieceChoice>>& fields_of<PieceChoice>();
 /// Long work (WorkProgress).
 std::vector<std::size_t> piece_sizes(const DensityGrid& grid, double isovalue);
 
-/// The result of leave_out_pieces.
-struct PiecesLeftOut {
+/// The result of discard_pieces.
+struct DiscardedPieces {
   std::size_t pieces = 0;
   std::size_t voxels = 0;
   /// Number of pieces kept.
@@ -40,7 +40,7 @@ struct PiecesLeftOut {
 
 /// Sets the voxels of all pieces that `choice` does not keep to the grid's lowest density. If several pieces
 /// are equally large, the one with the lowest voxel index counts as the largest. Long work (WorkProgress).
-PiecesLeftOut leave_out_pieces(DensityGrid& grid, double isovalue, const PieceChoice& choice);
+DiscardedPieces discard_pieces(DensityGrid& grid, double isovalue, const PieceChoice& choice);
 
 /// One piece of a bone, and the sizes of all pieces.
 struct BonePiece {
@@ -66,7 +66,7 @@ struct PieceRemoval {
 };
 
 /// Returns the bricks that the removal changes, in their state after it: removed voxels have the grid's
-/// lowest density, as after leave_out_pieces. Throws std::invalid_argument if the chosen voxel is not bone,
+/// lowest density, as after discard_pieces. Throws std::invalid_argument if the chosen voxel is not bone,
 /// and std::length_error for more bricks than `max_bricks`. Long work (WorkProgress).
 std::vector<DensityBlock> bricks_without(const DensityGrid& grid, double isovalue,
                                          const PieceRemoval& removal, std::size_t max_bricks);

@@ -34,7 +34,7 @@ double distance_mm(const SphereShape& sphere, const Vec3& point_W) noexcept;
 double distance_mm(const CylinderShape& cylinder, const Vec3& point_W) noexcept;
 
 /// Distance and its gradient.
-struct DistanceSlope {
+struct DistanceAndGradient {
   double distance_mm = 0;
   Vec3 gradient_W = Vec3::Zero();
 };
@@ -58,16 +58,16 @@ class StructureDistance {
   /// interpolated between their centres and exceeds the true distance d by at most `max_excess_mm(d)`.
   /// Farther than `kReach_mm` from the structure's bounding box it is the distance of the nearest point
   /// within that reach. Safe in the haptic tick.
-  DistanceSlope slope_from(const Vec3& point_W) const noexcept;
-  /// Returns the most by which `slope_from` may exceed the true distance `distance_mm`, mm. Safe in the
-  /// haptic tick.
+  DistanceAndGradient distance_and_gradient_from(const Vec3& point_W) const noexcept;
+  /// Returns the most by which `distance_and_gradient_from` may exceed the true distance `distance_mm`, mm.
+  /// Safe in the haptic tick.
   double max_excess_mm(double distance_mm) const noexcept;
 
  private:
   double from_voxels(const Vec3& point_W) const noexcept;
   double voxel_distance2_mm2(const Vec3& point, const VoxelIndex& near) const noexcept;
   VoxelIndex cell_corner(const Vec3& point) const noexcept;
-  DistanceSlope slope_from_voxels(const Vec3& point_W) const noexcept;
+  DistanceAndGradient slope_from_voxels(const Vec3& point_W) const noexcept;
 
   // Used only if `nearest_` holds no voxels.
   Solid solid_;
@@ -87,7 +87,7 @@ struct WatchedStructure {
 using NoGoDistances = std::vector<WatchedStructure>;
 
 /// Returns the number of structures with a guard.
-int guard_count(const NoGoDistances& structures);
+int count_guards(const NoGoDistances& structures);
 
 /// Returns the distance from a burr's surface to the nearest structure, mm: negative if the burr penetrates
 /// one, NaN if there are none or the burr's position is not finite. Safe in the haptic tick.
