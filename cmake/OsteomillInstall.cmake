@@ -1,10 +1,10 @@
-# The installed package: one component per room, with its public headers and library, and one pkg-config file.
+# The installed package: one component per module, with its public headers and library, and one pkg-config file.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/osteomill)
-foreach(room IN LISTS OSTEOMILL_ROOMS)
-  set_target_properties(osteomill_${room} PROPERTIES EXPORT_NAME ${room})
-  install(TARGETS osteomill_${room} EXPORT osteomill_${room} FILE_SET HEADERS)
-  install(EXPORT osteomill_${room} NAMESPACE osteomill:: DESTINATION ${package_dir} FILE ${room}.cmake)
+foreach(module IN LISTS OSTEOMILL_MODULES)
+  set_target_properties(osteomill_${module} PROPERTIES EXPORT_NAME ${module})
+  install(TARGETS osteomill_${module} EXPORT osteomill_${module} FILE_SET HEADERS)
+  install(EXPORT osteomill_${module} NAMESPACE osteomill:: DESTINATION ${package_dir} FILE ${module}.cmake)
 endforeach()
 configure_package_config_file(cmake/osteomillConfig.cmake.in osteomillConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(osteomillConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -1,7 +1,7 @@
 add_custom_target(tests)  # All test programs of OSTEOMILL_TESTS.
 
-# osteomill_test(NAME SOURCES ... LINK ... [INSIDES rooms...] [IN release] [THREADS filter]): a GoogleTest program, which may
-# include private headers of those rooms. ctest runs it in two shards, so that it reads its scans at most twice and not once per
+# osteomill_test(NAME SOURCES ... LINK ... [INSIDES modules...] [IN release] [THREADS filter]): a GoogleTest program, which may
+# include private headers of those modules. ctest runs it in two shards, so that it reads its scans at most twice and not once per
 # test. Each program belongs to one preset (OSTEOMILL_TESTS): the one with the address and undefined-behaviour sanitizers, or, with
 # IN release, the release preset, for tests of targets that the sanitizer presets do not build and for tests of exact bits. Tests
 # that match the THREADS filter also run under the thread sanitizer.
@@ -9,8 +9,8 @@ function(osteomill_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK;INSIDES;IN;THREADS" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  foreach(room IN LISTS TEST_INSIDES)
-    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/osteomill/${room}/src)
+  foreach(module IN LISTS TEST_INSIDES)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/osteomill/${module}/src)
   endforeach()
   target_link_libraries(${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE

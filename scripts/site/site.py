@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Steps of scripts/docs besides Doxygen and MkDocs.
 
-    site.py doxygen WORK     writes Doxygen's other inputs: rooms, examples
+    site.py doxygen WORK     writes Doxygen's other inputs: modules, examples
     site.py examples WORK    links public types to examples; fails for a type without one
     site.py pages WORK       prepares the documents for MkDocs, with links into the reference
     site.py finish WORK SITE adds the reference to the search; fails for broken links and for files loaded from other machines
@@ -25,9 +25,9 @@ LANGUAGES = {".c": "c", ".cpp": "cpp", ".py": "python", ".toml": "toml", ".cff":
 
 
 def headers():
-    """Returns the installed headers listed in the CMakeLists.txt of the rooms."""
-    return [room.parent / line for room in sorted(ROOT.glob("osteomill/*/CMakeLists.txt"))
-            for line in re.findall(r"^\s*(include/osteomill/\S+\.h)$", room.read_text(), re.M)]
+    """Returns the installed headers listed in the CMakeLists.txt of the modules."""
+    return [module.parent / line for module in sorted(ROOT.glob("osteomill/*/CMakeLists.txt"))
+            for line in re.findall(r"^\s*(include/osteomill/\S+\.h)$", module.read_text(), re.M)]
 
 
 def code_of_page(page):
@@ -35,18 +35,18 @@ def code_of_page(page):
 
 
 def doxygen(work):
-    """Writes WORK/rooms.dox, WORK/Doxyfile and the C++ code of the documents as examples."""
+    """Writes WORK/modules.dox, WORK/Doxyfile and the C++ code of the documents as examples."""
     architecture = (ROOT / "docs/architecture.md").read_text()
-    rooms = [(room, purpose[0].upper() + purpose[1:]) for room, purpose in
+    modules = [(module, purpose[0].upper() + purpose[1:]) for module, purpose in
              re.findall(r"^### `(\w+)`.*?\n- \*\*Purpose\*\*: (.*?)(?=\n- \*\*)", architecture, re.M | re.S)]
     text = ["@mainpage API reference",
-            "The public headers, by room ([architecture](../docs/architecture.html#the-rooms)); a room is a component of the",
+            "The public headers, by module ([architecture](../docs/architecture.html#the-modules)); a module is a component of the",
             "installed package ([how to link it](../docs/library.html#link)). Units, frames and errors follow the",
-            "[conventions](../docs/conventions.html).", "", "| room | purpose |", "|---|---|"]
-    text += [f"| @ref {room} | {' '.join(purpose.split())} |" for room, purpose in rooms]
+            "[conventions](../docs/conventions.html).", "", "| module | purpose |", "|---|---|"]
+    text += [f"| @ref {module} | {' '.join(purpose.split())} |" for module, purpose in modules]
     text += ["", "Members without a comment are explained by their name and unit. Complete programs: [examples](examples.html)."]
     blocks = [f"/**\n{chr(10).join(text)}\n*/"]
-    blocks += [f"/** @defgroup {room} {room}\n{purpose}\n*/" for room, purpose in rooms]
+    blocks += [f"/** @defgroup {module} {module}\n{purpose}\n*/" for module, purpose in modules]
     example_folder = work / "examples"
     example_folder.mkdir()
     for page in sorted(ROOT.glob("docs/*.md")):
@@ -54,13 +54,13 @@ def doxygen(work):
             (example_folder / f"{page.stem}.cpp").write_text(code)
             blocks.append(f"/** @example {page.stem}.cpp\nThe C++ of [{page.name}](../docs/{page.stem}.html). */")
     blocks += [f"/** @example {path.name} */" for path in EXAMPLES]
-    (work / "rooms.dox").write_text("\n".join(blocks))
-    settings = [(ROOT / "scripts/site/Doxyfile").read_text(), f"OUTPUT_DIRECTORY = {work}", f"INPUT = {work}/rooms.dox",
+    (work / "modules.dox").write_text("\n".join(blocks))
+    settings = [(ROOT / "scripts/site/Doxyfile").read_text(), f"OUTPUT_DIRECTORY = {work}", f"INPUT = {work}/modules.dox",
                 f"EXAMPLE_PATH = examples {example_folder} .", f"WARN_LOGFILE = {work}/doxygen.log",
-                'FILTER_PATTERNS = "*.h=awk -f scripts/site/room_of_header.awk"', f"HTML_HEADER = {work}/header.html", f"LAYOUT_FILE = {work}/layout.xml"]
+                'FILTER_PATTERNS = "*.h=awk -f scripts/site/module_of_header.awk"', f"HTML_HEADER = {work}/header.html", f"LAYOUT_FILE = {work}/layout.xml"]
     settings += [f"INPUT += {header.relative_to(ROOT)}" for header in headers()]
-    for room in sorted(ROOT.glob("osteomill/*/include")):
-        settings += [f"STRIP_FROM_PATH += {room}", f"STRIP_FROM_INC_PATH += {room}"]
+    for module in sorted(ROOT.glob("osteomill/*/include")):
+        settings += [f"STRIP_FROM_PATH += {module}", f"STRIP_FROM_INC_PATH += {module}"]
     (work / "Doxyfile").write_text("\n".join(settings) + "\n")
 
 
@@ -101,7 +101,7 @@ def reference(work):
 
 
 def examples(work):
-    """Adds to WORK/rooms.dox, for every type that no example uses, a link to compiled code that does: the test of its header, any
+    """Adds to WORK/modules.dox, for every type that no example uses, a link to compiled code that does: the test of its header, any
     test that names it, the test of an entity that its comment links to, that contains it, or that takes or returns it, or a
     source of the project. Nested types are covered by the enclosing type. Fails for a type without any."""
     entities, shown = reference(work)
@@ -140,7 +140,7 @@ def examples(work):
         used |= {source} - {None}
     blocks += [f"/** @page use_of_{path.stem} {path.name}\n`{path.relative_to(ROOT)}`, an example of types that no program in examples/ uses.\n"
                f"@include {path.relative_to(ROOT)} */" for path in sorted(used)]
-    with (work / "rooms.dox").open("a") as dox:
+    with (work / "modules.dox").open("a") as dox:
         dox.write("\n".join(blocks))
     return fine
 

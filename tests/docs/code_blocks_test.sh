@@ -19,7 +19,7 @@ for page in "${pages[@]}"; do
 done
 
 flags=(-std=c++20 -fsyntax-only -w -DEIGEN_MAX_ALIGN_BYTES=16 -isystem /usr/include/eigen3)
-for room in "$source"/osteomill/*/; do flags+=(-I "${room}include"); done
+for module in "$source"/osteomill/*/; do flags+=(-I "${module}include"); done
 shopt -s nullglob
 for block in "$folder"/*.cpp; do
   # Wraps a program fragment in a function that has the bone.

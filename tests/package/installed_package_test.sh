@@ -9,7 +9,7 @@ cmake --install "$1" --prefix "$folder/prefix" >/dev/null
 cd "$folder"
 config=$(find prefix -name osteomillConfig.cmake)
 packages() { sed -nE "s/^set\(osteomill_($1)_packages (.*)\)$/\2/p" "$config" | sed -E 's/"([^ "]*)[^"]*"/\1/g' | tr ' ' '\n' | sort -u; }
-IFS=';' read -ra components < <(sed -nE 's/^set\(osteomill_rooms "(.*)"\)$/\1/p' "$config")
+IFS=';' read -ra components < <(sed -nE 's/^set\(osteomill_modules "(.*)"\)$/\1/p' "$config")
 fail() { echo "$*" >&2; exit 1; }
 
 for file in doc/osteomill/{LICENSE,README.md,docs/architecture.md,examples/press_on_a_ball.cpp} man/man1/osteomill{,-compare}.1 \
