@@ -249,8 +249,10 @@ float draw_readings(ViewState& view, Simulation& simulation, double frames_per_s
   ui::tooltip("Present and set speed of the spindle");
   if (simulation.tool_source.hardware != nullptr) draw_device(view, *simulation.tool_source.hardware);
   if (view.open.laboratory) draw_plots(simulation, size);
-  if (const std::string& refused = simulation.milling.refused_real_time(); !refused.empty())
-    ui::warning(refused);
+  if (const std::string& refused = simulation.milling.refused_real_time(); !refused.empty()) {
+    ui::warning("no real-time priority");
+    ui::tooltip(refused);
+  }
   return ui::end_side_panel();
 }
 
@@ -260,14 +262,14 @@ float draw_labels(ViewState& view, const Simulation& simulation, const VerticalS
   const float line_px = ImGui::GetTextLineHeightWithSpacing();
   const float rows_px = span.bottom_px - span.top_px - ui::px(kHead_px) - (view.help ? ui::px(kHelp_px) : 0);
   const float rows = std::floor(std::min({static_cast<float>(count), kMaxRows, rows_px / line_px}));
-  // The rows fit once the help is closed.
-  if (view.help && rows < kMinRows) return span.top_px;
+  // They fit once help, the message or the readings are closed.
+  if (rows < std::min(kMinRows, static_cast<float>(count))) return span.top_px;
   ui::begin_side_panel("Labels", span.top_px, nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
   ui::checkbox(
       "label colours",
       "Shows the bone in the colours of its label map. The list shows the removed volume of each label",
       &view.labels);
-  ImGui::BeginChild("##labels", {0, std::max(rows, kMinRows) * line_px});
+  ImGui::BeginChild("##labels", {0, rows * line_px});
   for (std::size_t n = 0; n < count; ++n) draw_row(simulation, n);
   ImGui::EndChild();
   return ui::end_side_panel();

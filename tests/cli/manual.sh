@@ -2,6 +2,7 @@
 # Manual pages and completions have every command and option of --help, the pages have no warnings, and bash and fish complete.
 #   manual.sh OSTEOMILL MANUAL_FOLDER INSTALL_PACKAGES
 set -euo pipefail
+export LC_ALL=C.UTF-8
 osteomill=$1 manual=$2 install_packages=$3
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -19,7 +20,7 @@ options_of() { "$osteomill" "$@" --help | sed -nE 's/^  (-[^ ]+).*/\1/p' | tr ',
 # The pages.
 [ "$(ls "$manual/man1" | wc -l)" -eq $((${#commands[@]} + 1)) ] || fault "the pages are $(ls "$manual/man1")"
 for page in "$manual"/man1/*; do
-  LC_ALL=C.UTF-8 MANWIDTH=100 man --warnings=w -l "$page" 2>said | col -b >"${page##*/}.txt"
+  MANWIDTH=100 man --warnings=w -l "$page" 2>said | col -b >"${page##*/}.txt"
   [ ! -s said ] || { cat said; fault "man warns of ${page##*/}"; }
   mandoc -T lint -W warning "$page" >said || { cat said; fault "mandoc warns of ${page##*/}"; }
 done

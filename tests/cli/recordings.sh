@@ -5,6 +5,7 @@
 set -euo pipefail
 osteomill=$1
 kills=${2:-3}
+ball=$(cd "$(dirname "${BASH_SOURCE[0]}")/../window" && pwd)/ball.sh
 folder=$(mktemp -d)
 mounted=""
 trap '[ -z "$mounted" ] || umount "$folder/small"; rm -rf "$folder"' EXIT
@@ -53,16 +54,18 @@ for ((n = 0; n < kills; ++n)); do
   rm killed.part.h5
 done
 
-# A disk of 2 MB if the machine allows one, otherwise a file size limit.
+# A disk of 1 MB if the machine allows one, otherwise a file size limit. The limit also applies to the bone's memory, so the
+# scan is small.
 mkdir small
-if mount -t tmpfs -o size=2m none small 2>/dev/null; then mounted=yes; fi
-limited() { if [ -n "$mounted" ]; then "$@"; else (ulimit -f 2048; exec "$@"); fi; }
+bash "$ball" >ball.nrrd
+if mount -t tmpfs -o size=1m none small 2>/dev/null; then mounted=yes; fi
+limited() { if [ -n "$mounted" ]; then "$@"; else (ulimit -f 1024; exec "$@"); fi; }
 code=0
-limited "$osteomill" compare --seconds 10 --algorithm line-proxy --no-stability --quiet --out small/c >said.txt 2>said.err || code=$?
+limited "$osteomill" compare ball.nrrd --seconds 10 --algorithm line-proxy --no-stability --quiet --out small/c >said.txt 2>said.err || code=$?
 [ $code -eq 1 ] && [ "$(wc -l <said.err)" -eq 1 ] && grep -qE "No space left on device|File too large" said.err || fault "compare on a full disk ended with $code: $(cat said.err)"
 [ -z "$(find small -type f)" ] || fault "compare left $(find small -type f)"
 code=0
-limited "$osteomill" live --seconds 12 --algorithm line-proxy --record small/live.h5 --quiet >said.txt 2>said.err || code=$?
+limited "$osteomill" live ball.nrrd --seconds 12 --algorithm line-proxy --record small/live.h5 --quiet >said.txt 2>said.err || code=$?
 [ $code -eq 1 ] && [ "$(wc -l <said.err)" -eq 1 ] || fault "live on a full disk ended with $code: $(cat said.err)"
 grep -qE "small/live.part.h5: .*(No space left on device|File too large)" said.err || fault "live did not report the full disk: $(cat said.err)"
 grep -q "^removed " said.txt || fault "live did not continue"
