@@ -1,7 +1,7 @@
 #include "osteomill/ct/read_labels.h"
 
 #include "fuzz/targets.h"
-#include "tests/support/made_up_dicom.h"
+#include "tests/support/generated_dicom.h"
 
 namespace osteomill::fuzzing {
 

@@ -18,8 +18,8 @@
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/bone_densities.h"
 
-#include "tests/coming_down.h"
 #include "tests/count_allocations.h"
+#include "tests/descending_device.h"
 #include "tests/poses.h"
 #include "tests/shapes.h"
 

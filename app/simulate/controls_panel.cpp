@@ -12,7 +12,7 @@
 
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
-#include "app/simulate/seeing.h"
+#include "app/simulate/view_aids_panel.h"
 #include "app/simulate/widgets.h"
 
 namespace osteomill::app {

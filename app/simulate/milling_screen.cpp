@@ -13,7 +13,7 @@
 #include "app/simulate/exercise_panel.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
-#include "app/simulate/seeing.h"
+#include "app/simulate/view_aids_panel.h"
 
 namespace osteomill::app {
 

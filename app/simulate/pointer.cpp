@@ -11,8 +11,8 @@
 #include "osteomill/session/milling_entry.h"
 
 #include "app/simulate/panels.h"
-#include "app/simulate/seeing.h"
 #include "app/simulate/tool_control.h"
+#include "app/simulate/view_aids_panel.h"
 #include "app/simulate/widgets.h"
 
 namespace osteomill::app {

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "tests/support/folder_test.h"
-#include "tests/support/made_up_dicom.h"
+#include "tests/support/generated_dicom.h"
 
 namespace osteomill {
 namespace {

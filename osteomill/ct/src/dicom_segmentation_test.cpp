@@ -4,7 +4,7 @@
 
 #include "tests/shared_data.h"
 #include "tests/support/folder_test.h"
-#include "tests/support/made_up_dicom.h"
+#include "tests/support/generated_dicom.h"
 
 namespace osteomill {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/made_up_dicom.h"
+#include "tests/support/generated_dicom.h"
 
 namespace osteomill {
 namespace {

@@ -25,7 +25,7 @@
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/haptic_thread.h"
 
-#include "tests/coming_down.h"
+#include "tests/descending_device.h"
 #include "tests/shapes.h"
 
 namespace osteomill {

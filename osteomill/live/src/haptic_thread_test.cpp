@@ -12,7 +12,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 
-#include "tests/coming_down.h"
+#include "tests/descending_device.h"
 #include "tests/no_more_threads.h"
 #include "tests/own_memory.h"
 #include "tests/shapes.h"

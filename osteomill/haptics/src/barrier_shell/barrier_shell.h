@@ -7,8 +7,8 @@
 #include "osteomill/haptics/haptic_algorithm.h"
 
 #include "barrier_shell/coupling.h"
-#include "barrier_shell/guards.h"
 #include "barrier_shell/near_bone.h"
+#include "barrier_shell/no_go_barriers.h"
 #include "bone_points/bone_bricks.h"
 #include "tool_move.h"
 

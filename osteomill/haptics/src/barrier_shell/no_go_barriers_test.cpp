@@ -1,4 +1,4 @@
-#include "barrier_shell/guards.h"
+#include "barrier_shell/no_go_barriers.h"
 
 #include <algorithm>
 #include <cmath>

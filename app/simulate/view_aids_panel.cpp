@@ -1,4 +1,4 @@
-#include "app/simulate/seeing.h"
+#include "app/simulate/view_aids_panel.h"
 
 #include <algorithm>
 #include <array>
