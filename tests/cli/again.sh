@@ -38,7 +38,7 @@ mv c.h5 b.h5 elsewhere
 refused 1 "a.h5: has no tick at 99 s" replay --from a.h5 --at 99 --out x.csv
 refused 1 "a.h5: was made with another scan" live builtin:mastoid --from a.h5 --at 1
 refused 1 "nosuch.h5: no such file" live --from nosuch.h5 --at 1
-refused 1 "x.h5: has to lie beside a.h5" replay --from a.h5 --at 1 --record elsewhere/x.h5
+refused 1 "x.h5: .*folder of a.h5" replay --from a.h5 --at 1 --record elsewhere/x.h5
 refused 1 "b.h5: continues a.h5, which is missing" replay elsewhere/b.h5 --verify
 refused 2 "needs\|requires" live --from a.h5
 refused 2 "defined by the recording" live --from a.h5 --at 1 --burr-radius 2

@@ -135,7 +135,7 @@ y = "device-mass"
 colour = "rule_N_per_mm"
 TOML
 "$osteomill" study poor.toml --out d >/dev/null 2>err || fault "$(cat err)"
-[ "$(grep -c "warning" err)" -eq 1 ] && grep -q "poor.toml: trial 0: line-proxy: a stiffness of 0.01 N/mm is so soft .*; 2 trials have such warnings$" err || fault "$(cat err)"
+[ "$(grep -c "warning" err)" -eq 1 ] && grep -q "poor.toml: trial 0: line-proxy: a stiffness of 0.01 N/mm .* soft.*; 2 trials have such warnings$" err || fault "$(cat err)"
 "$osteomill" study d --report --quiet >/dev/null || fault "a map whose values nearly agree"
 [ -s d/report/figures/map_1.svg ] || fault "no map"
 
