@@ -123,6 +123,16 @@ void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t m
   }
 }
 
+// Returns the first names of files below a folder, in alphabetical order.
+std::string names_in(const fs::path& folder, std::vector<fs::path> files) {
+  constexpr std::size_t kMaxNames = 5;
+  std::ranges::sort(files);
+  std::string names;
+  for (std::size_t n = 0; n < std::min(kMaxNames, files.size()); ++n)
+    names += (n > 0 ? ", " : "") + files[n].lexically_relative(folder).string();
+  return names + (files.size() > kMaxNames ? ", ..." : "");
+}
+
 // Reads a folder: its DICOM files, or else its only volume file, or else its pictures.
 Scan read_folder(const fs::path& folder, const ReadOptions& options) {
   if (std::optional<Scan> scan = read_dicom(folder, options)) return std::move(*scan);
@@ -140,7 +150,8 @@ Scan read_folder(const fs::path& folder, const ReadOptions& options) {
                      "holds no scan: no DICOM slices and no NRRD, MetaImage, NIfTI, PNG or TIFF files");
   }
   if (volumes.size() > 1) {
-    throw InputError(folder.string(), fmt::format("holds {} scans; choose one of them", volumes.size()));
+    throw InputError(folder.string(), fmt::format("holds {} scans; choose one of them: {}", volumes.size(),
+                                                  names_in(folder, std::move(volumes))));
   }
   return read_volume_file(volumes.front(), *volume_format_of(volumes.front()), options);
 }

@@ -199,18 +199,16 @@ double millimetres_in(const std::string& subject, std::string_view unit) {
 }
 
 const VolumeFormat* volume_format_of(const fs::path& path) {
-  static const std::array<VolumeFormat, 3> kFormats{
-      {{"NRRD", {".nrrd", ".nhdr"}, read_nrrd_header},
-       {"MetaImage", {".mha", ".mhd"}, read_metaimage_header},
-       {"NIfTI", {".nii", ".nii.gz", ".hdr", ".hdr.gz"}, read_nifti_header}}};
+  static const VolumeFormat kNrrd{"NRRD", {".nrrd", ".nhdr"}, read_nrrd_header};
+  static const VolumeFormat kMetaImage{"MetaImage", {".mha", ".mhd"}, read_metaimage_header};
+  static const VolumeFormat kNifti{"NIfTI", {".nii", ".nii.gz", ".hdr", ".hdr.gz"}, read_nifti_header};
   const std::string name = lower(path.filename().string());
-  for (const VolumeFormat& format : kFormats) {
-    for (const std::string_view ending : format.endings) {
-      if (name.ends_with(ending)) return &format;
+  for (const VolumeFormat* format : {&kNrrd, &kMetaImage, &kNifti}) {
+    for (const std::string_view ending : format->endings) {
+      if (name.ends_with(ending)) return format;
     }
   }
-  if (header_of_voxels(path)) return &kFormats.back();
-  return nullptr;
+  return header_of_voxels(path) ? &kNifti : nullptr;
 }
 
 std::vector<float> read_volume(const std::string& subject, VolumeHeader& header, std::uint64_t max_bytes) {

@@ -27,6 +27,11 @@ const Vec3 kNotANumber = Vec3::Constant(std::numeric_limits<double>::quiet_NaN()
 const Wrench kNotFinite{kNotANumber, Vec3::Zero()};
 const Pose kNoPose{kNotANumber, Quat::Identity()};
 
+// Returns whether the tick has a pose of the tool: without a finite pose or wrench it does not compute one.
+bool has_tool(WrenchFault fault) {
+  return fault != WrenchFault::pose_not_finite && fault != WrenchFault::not_finite;
+}
+
 // Returns `bone` after checking that the guard's settings are valid, the tool can work in the bone, and the
 // algorithm supports the guards of its structures.
 std::shared_ptr<Volume> checked_bone(const MillingSetup& setup, std::shared_ptr<Volume> bone) {
@@ -174,6 +179,7 @@ void MillingSession::work(Device& device, TickRecord& record) {
   // Only the force that the hand delivers pays for removal.
   step.burr_force_W_N *= record.delivered_fraction;
   record.compute_us = microseconds_since(start);
+  record.fault = safe.fault;
   device.write_wrench(safe.wrench);
 
   const Clock::time_point milling_start = Clock::now();
@@ -183,7 +189,6 @@ void MillingSession::work(Device& device, TickRecord& record) {
 
   record.X_WT = step.X_WT;
   record.wrench = safe.wrench;
-  record.fault = safe.fault;
   record.cutting_torque_W_Nmm = cutting_torque_W_Nmm;
   record.contacts = step.contacts;
   record.pending_bricks = step.pending_bricks;
@@ -280,7 +285,8 @@ void MillingSession::mill(const HapticStep& step, const ShaftDrag& shaft_drag, T
   const Vec3 paying_W_N = paying_force_W_N(milling_, step.X_WT, force_W_N, record.spindle_on);
   const MillingStep cut =
       mill_.step(step.X_WT.position_mm, paying_W_N, dt_s, record.spindle_rpm / milling_.spindle_speed_rpm);
-  if (record.spindle_on) no_go_.tally_contacts(step.X_WT.position_mm, mill_.by_label());
+  if (record.spindle_on && has_tool(record.fault))
+    no_go_.tally_contacts(step.X_WT.position_mm, mill_.by_label());
   const double paid_share = cut.removed_mm3 > 0 ? cut.removed_mm3 / (cut.rate_mm3_s * dt_s) : 0;
   cutting_share_ += dt_s / (kCutting_s + dt_s) * (std::min(paid_share, 1.0) - cutting_share_);
   double holding_share = paid_share;

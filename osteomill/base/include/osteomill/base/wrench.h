@@ -7,7 +7,8 @@
 
 namespace osteomill {
 
-/// Force and torque on the hand, in the axes of the world frame W; the torque is about the burr's centre.
+/// Force and torque on the hand: in the axes of the world frame W, the torque about the burr's centre, unless
+/// a name states otherwise (`wrench_B`: in the device's base frame, about the origin of its handle).
 struct Wrench {
   Vec3 force_N = Vec3::Zero();
   Vec3 torque_Nmm = Vec3::Zero();
@@ -32,17 +33,17 @@ enum class WrenchFault : unsigned char {
   force_clamped = 1,
   torque_clamped = 2,
   force_and_torque_clamped = 3,
-  /// The algorithm's wrench was not finite; zero was sent.
+  /// The algorithm's wrench was not finite; the sent wrench falls to zero.
   not_finite = 4,
-  /// The device's pose was not finite; zero was sent.
+  /// The device's pose was not finite; the sent wrench falls to zero.
   pose_not_finite = 5,
-  /// The device moved further in one tick than a hand can; zero was sent.
+  /// The device moved further in one tick than a hand can; the sent wrench falls to zero.
   pose_jumped = 6,
-  /// The tick was late; zero was sent.
+  /// The tick was too long (GuardSettings::max_tick_s); the sent wrench falls to zero.
   tick_late = 7,
   /// The wrench was modified: faded in, limited in its rate of change, or damped.
   rate_limited = 8,
-  /// Zero was sent, because nothing that is sent reaches the hand (Device::is_driven), or because the tool
+  /// Zero was sent because no sent wrench reaches the hand (Device::is_driven), or because the tool
   /// was inside bone when driving began and has not left it yet.
   held_back = 9,
 };

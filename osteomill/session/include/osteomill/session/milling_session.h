@@ -47,15 +47,16 @@ struct SessionHandover {
 
 /// Time and mode of a tick.
 struct TickInput {
-  /// Start time, which is only recorded, and length: the time since the previous tick and until the next. A
-  /// length that is not a positive number is replaced by MillingSetup::tick_s.
+  /// Start of the tick; only recorded.
   double time_s = 0;
-  double dt_s = 1e-3;
+  /// Length of the tick: the time since the previous one, and until the next. Replaced by
+  /// MillingSetup::tick_s if it is not a positive number.
+  double dt_s = 0;
   /// Additional time since the previous tick because ticks were missed.
   double late_s = 0;
   /// Whether the spindle is on; if not given, Device::is_spindle_requested decides.
   std::optional<bool> spindle_on = {};
-  /// If true, the tick sends zero and computes nothing; contacts are kept.
+  /// If true, the tick computes nothing, and the sent wrench falls to zero; contacts are kept.
   bool paused = false;
 };
 
@@ -69,9 +70,9 @@ class MillingSession {
   /// structures of the bone have a guard that the algorithm does not support.
   MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
 
-  /// Runs one complete haptic tick: reads the device's pose, computes and sends the wrench, removes the bone
-  /// that the sent force pays for, and calls Device::tick_done. If the wrench or the pose is not finite, the
-  /// sent wrench falls to zero as fast as the guard allows (20 N in 5 ms; at once with
+  /// Runs one complete haptic tick: reads the device's pose, computes and sends the wrench, removes bone in
+  /// proportion to the sent force and the time, and calls Device::tick_done. If the wrench or the pose is not
+  /// finite, the sent wrench falls to zero as fast as the guard allows (20 N in 5 ms; at once with
   /// GuardSettings::for_simulation), and the record's fault gives the reason. Real-time safe: no allocation,
   /// lock, log or system call. Only the device may throw; zero is then written to it and the hand is held
   /// back (WrenchGuard::hold_back) before the exception propagates.
