@@ -67,7 +67,7 @@ class ExerciseFile : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ExerciseFile, HoldsWhatWasWritten) {
+TEST_F(ExerciseFile, ReadsEverySectionOfAFile) {
   const Exercise exercise = read(kWhole);
   EXPECT_EQ(exercise.title, "Access cavity");
   EXPECT_EQ(exercise.scan, "builtin:tooth");
@@ -97,7 +97,7 @@ TEST_F(ExerciseFile, HoldsWhatWasWritten) {
   EXPECT_EQ(exercise.items[1].weight, 2);
 }
 
-TEST_F(ExerciseFile, HoldsAnIntersectionOfShapesAndRecordings) {
+TEST_F(ExerciseFile, ReadsATargetOfSeveralShapes) {
   const Exercise exercise = read(
       "title = 'a'\nscan = 's.nrrd'\n[target]\nlabel = 'crown'\nshell = { of = 'bone', thickness = 1.5 }\n"
       "recordings = ['a.h5', 'b.h5']\nat_least = 2\n");
@@ -106,7 +106,7 @@ TEST_F(ExerciseFile, HoldsAnIntersectionOfShapesAndRecordings) {
   EXPECT_EQ(std::get<RecordedShape>(exercise.target.shapes[2]).at_least, 2);
 }
 
-TEST_F(ExerciseFile, NamesTheLineAndTheNearestKeyOfAFault) {
+TEST_F(ExerciseFile, ReportsTheLineOfAFaultAndTheNearestName) {
   EXPECT_EQ(fault("time_s", "times_s"), "line 6: an exercise has no times_s; did you mean time_s?");
   EXPECT_EQ(fault("margin_mm", "margin"), "line 11: keep has no margin; did you mean margin_mm?");
   EXPECT_EQ(fault("warn_mm = 2", "warn = 2"), "line 18: no_go has no warn; did you mean warn_mm?");

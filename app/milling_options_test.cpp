@@ -73,7 +73,7 @@ TEST(MillingOptions, RecordsEveryOptionOfATrial) {
   EXPECT_GT(walked, 25u);
 }
 
-TEST(MillingOptions, OptionsOfConstantEnergyChooseItUnlessTheLawIsNamed) {
+TEST(MillingOptions, ConstantEnergyOptionsImplyTheirLawAndRefuseAnother) {
   const auto law_after = [](const std::vector<std::string>& words) {
     CLI::App command;
     MillingOptions options;
@@ -90,7 +90,7 @@ TEST(MillingOptions, OptionsOfConstantEnergyChooseItUnlessTheLawIsNamed) {
   EXPECT_THROW(law_after({"--law", "chip"}), CLI::ValidationError);
 }
 
-TEST(MillingOptions, SizesOfTheCommandLineWinOverABurrOfTheConfiguration) {
+TEST(MillingOptions, CommandLineRadiusOverridesTheBurrOfAConfigFile) {
   const testing_support::TestFolder folder;
   const std::filesystem::path file = folder / "c.toml";
   std::ofstream(file) << "burr-name = \"diamond-2.5\"\n";

@@ -18,20 +18,20 @@ std::vector<std::string> lines_of(double seconds, double fraction_per_s) {
   return lines;
 }
 
-TEST(ProgressText, HasALineEachTenthOfQuickWork) {
+TEST(ProgressText, PrintsALinePerTenPercentOfQuickWork) {
   const std::vector<std::string> lines = lines_of(100, 0.01);
   ASSERT_EQ(lines.size(), 10u);
   EXPECT_EQ(lines[0], "compare  10 %, 1 min 30 s left");
   EXPECT_EQ(lines[9], "compare 100 %, 0 s left");
 }
 
-TEST(ProgressText, HasALineEachMinuteOfSlowWork) {
+TEST(ProgressText, PrintsALinePerMinuteOfSlowWork) {
   const std::vector<std::string> lines = lines_of(300, 1e-4);
   ASSERT_EQ(lines.size(), 5u);
   EXPECT_EQ(lines[0], "compare   1 %, 2 h 45 min left");
 }
 
-TEST(ProgressText, BeginsAgainWithOtherWorkAndIsSilentForASecond) {
+TEST(ProgressText, RestartsSilentlyForNewOrRepeatedWork) {
   ProgressText text;
   EXPECT_EQ(text.at("a", 0.5, 10), "");
   EXPECT_EQ(text.at("a", 0.5, 20), "a  50 %, 10 s left");

@@ -45,7 +45,7 @@ TEST(ScanOptions, GivenOptionsOverrideRecordedOnes) {
   EXPECT_TRUE(again.pieces.only_largest);
 }
 
-TEST(ScanOptions, UnsetLeaveNoSettings) {
+TEST(ScanOptions, UnsetOptionsAddNoSettings) {
   EXPECT_TRUE(scan_settings({}).empty());
   const ScanOptions again = scan_of(run_on({}));
   EXPECT_TRUE(again.scan.empty());

@@ -18,7 +18,7 @@
 namespace osteomill::app {
 namespace {
 
-TEST(StudyTrials, AnAxisSetsEveryField) {
+TEST(StudyTrials, SetsEveryFieldFromItsAxis) {
   std::set<std::string> options;
   for (const Field<TrialSpec>& field : trial_number_fields()) {
     EXPECT_TRUE(options.insert(field.option).second) << field.option << " is there twice";
@@ -73,7 +73,7 @@ class StudyOfScans : public ::testing::Test {
 };
 
 // Regardless of the other settings and of the order of the trials.
-TEST_F(StudyOfScans, EachTrialHasTheBoneThatItsAxesName) {
+TEST_F(StudyOfScans, GivesEachTrialTheBoneOfItsAxes) {
   const std::vector<std::uint64_t> bones = bones_of(
       "[grid]\niso = [500, 600]\npush = [1, 2]\nscan = [\"ball-4.nrrd\", \"ball-5.nrrd\", \"built-in\"]\n");
   ASSERT_EQ(bones.size(), 12u);
@@ -85,7 +85,7 @@ TEST_F(StudyOfScans, EachTrialHasTheBoneThatItsAxesName) {
   EXPECT_EQ(teeth[2], teeth[3]);
 }
 
-TEST_F(StudyOfScans, EveryFieldOfTheBoneTellsBonesApart) {
+TEST_F(StudyOfScans, BoneKeyDiffersForBoneFieldsOnly) {
   std::size_t reported = 0;
   for (const auto& field : trial_text_fields()) {
     const bool of_the_bone = field.has(kBoneField);

@@ -63,7 +63,7 @@ struct Goal {
 
 class CalmMilling : public ::testing::TestWithParam<Goal> {};
 
-TEST_P(CalmMilling, IsCalmUnderARealLoad) {
+TEST_P(CalmMilling, KeepsWrenchCalmUnderRealisticLoad) {
   OSTEOMILL_NEEDS_SHARED("tooth_dicom/series");
   const Goal& goal = GetParam();
   const Milling milling = mill(goal.push_N, 21, goal.tick_s);

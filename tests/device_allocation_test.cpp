@@ -12,7 +12,7 @@ namespace {
 
 using testing_support::allocations_of_this_thread;
 
-TEST(DeviceAllocation, NothingThatTheHapticThreadCallsAllocates) {
+TEST(DeviceAllocation, CallsOfTheHapticThreadDoNotAllocate) {
   testing_support::ScriptedDevice hardware;
   ConnectedDevice device(hardware.way(), hardware.clock());
   long allocations = 0;

@@ -35,7 +35,7 @@ ViewScene shaft_on_a_plane() {
   return scene;
 }
 
-TEST(DrawnIntersection, ThePictureIsRedWhereTheShaftMeetsThePlane) {
+TEST(DrawnIntersection, PictureIsRedWhereShaftMeetsBone) {
   const OffscreenContext context;
   constexpr PixelSize kSize{640, 480};
   ViewScene scene = shaft_on_a_plane();

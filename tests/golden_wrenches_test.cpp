@@ -36,7 +36,7 @@ std::uint64_t hashed(std::uint64_t hash, const Wrench& wrench) {
 
 class GoldenWrenches : public ::testing::TestWithParam<Golden> {};
 
-TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
+TEST_P(GoldenWrenches, AreBitIdenticalAtAnyOptimisationLevel) {
   constexpr double kBallRadius_mm = 6;
   constexpr int kTicks = 1500;
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),

@@ -12,7 +12,7 @@ namespace osteomill {
 namespace {
 
 // Includes the case that the drawing thread does not read and the queue overflows.
-TEST(TickAllocation, HandingChangesOverToTheFollowerAllocatesNothing) {
+TEST(TickAllocation, HandoverToFollowerDoesNotAllocate) {
   const auto bone = std::make_shared<Volume>(testing_support::shape_volume(
       testing_support::centred_cube(96, 0.25), testing_support::ball(Vec3::Zero(), 10)));
   BoneFollower follower(bone);

@@ -20,7 +20,7 @@ Volume scanned(const char* file, double isovalue) {
   return Volume(read_scan(testing_support::shared_data() / file).grid, isovalue);
 }
 
-TEST(SurfaceMesh, OfARealToothIsClosedAndOfItsSize) {
+TEST(SurfaceMesh, MeshOfRealToothIsClosedAndHasItsVolume) {
   OSTEOMILL_NEEDS_SHARED("tooth/tooth_103x94x161_u16.nrrd");
   const Volume tooth = scanned("tooth/tooth_103x94x161_u16.nrrd", 610);
   const BrickMesh whole = mesh_in_one_piece(DensityView(tooth));
@@ -31,7 +31,7 @@ TEST(SurfaceMesh, OfARealToothIsClosedAndOfItsSize) {
 }
 
 // The skull extends beyond the scan.
-TEST(SurfaceMesh, OfARealSkullIsClosedAtTheBorderOfTheScan) {
+TEST(SurfaceMesh, MeshOfRealSkullIsClosedAtScanBorder) {
   OSTEOMILL_NEEDS_SHARED("cranium/cranium_256x256x108_i16.nrrd");
   EXPECT_TRUE(is_sound(mesh_in_one_piece(DensityView(scanned("cranium/cranium_256x256x108_i16.nrrd", 300)))));
 }

@@ -28,7 +28,7 @@ namespace {
 
 using testing_support::allocations_of_this_thread;
 
-TEST(TickAllocation, TheCounterCounts) {
+TEST(TickAllocation, CounterSeesAllocations) {
   const long before = allocations_of_this_thread();
   auto something = std::make_unique<std::vector<int>>(100);
   EXPECT_GE(allocations_of_this_thread() - before, 2) << something->size();
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
                            return name;
                          });
 
-TEST(TickAllocation, AGuardThatHoldsTheBurrAllocatesNothing) {
+TEST(TickAllocation, GuardHoldingTheBurrDoesNotAllocate) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
                                                 testing_support::ball(Vec3::Zero(), 3));
   VoxelSet nerve(VoxelBox{{31, 0, 50}, {32, 63, 51}});
@@ -143,7 +143,7 @@ TEST(TickAllocation, AGuardThatHoldsTheBurrAllocatesNothing) {
 }
 
 // The whole loop of the haptic thread, with the queue to the follower, vibration, and incoming commands.
-TEST(TickAllocation, NoTickOfAHapticThreadAllocates) {
+TEST(TickAllocation, HapticThreadTickDoesNotAllocate) {
   constexpr double kBallRadius_mm = 6;
   const auto bone = std::make_shared<Volume>(testing_support::shape_volume(
       testing_support::centred_cube(64, 0.25), testing_support::ball(Vec3::Zero(), kBallRadius_mm)));

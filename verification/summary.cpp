@@ -26,7 +26,9 @@ findings.
 
 constexpr const char* kMore =
     R"(A row that misses is a known fault and stays here until it is corrected. Numbers are medians, with the worst in
-brackets, unless the section says otherwise. Hands are drawn by seed, so everything except times is the same on any machine.
+brackets, unless the section says otherwise. Hands are drawn by seed, so everything except times repeats to the bit
+([determinism.md](determinism.md) gives the machines). A *drawn hand* has a stiffness and a damping drawn by its seed from
+published ranges; otherwise the seed changes only the tremor.
 [algorithms.md](algorithms.md) describes each algorithm.
 
 )";
@@ -38,7 +40,7 @@ struct Question {
 
 const std::vector<Question>& questions() {
   static const std::vector<Question> all{
-      {"Are the force on a wall and the torque at a lever right?", {"planes", "levers", "ball", "turned"}},
+      {"Are force and torque on simple shapes right?", {"planes", "levers", "ball", "turned"}},
       {"Is it stable, and does it return no more energy than it received?",
        {"drops", "returned", "passivity"}},
       {"Does the tool stay out of bone?", {"pushes", "tools", "sheets", "spongy", "through"}},

@@ -21,7 +21,7 @@ std::vector<Dialogue> dialogues_of_the_window(int& acted) {
           {"Save the milled bone?", "Saving ...", {}, [] { return true; }, act}};
 }
 
-TEST(DialogueQueue, OfEveryPairOneIsSeenAfterTheOtherAndBothCanBeAnswered) {
+TEST(DialogueQueue, ShowsTwoDialoguesInTurnAndRunsEachAnswer) {
   int acted = 0;
   const std::vector<Dialogue> all = dialogues_of_the_window(acted);
   for (const Dialogue& first : all) {
@@ -48,7 +48,7 @@ TEST(DialogueQueue, OfEveryPairOneIsSeenAfterTheOtherAndBothCanBeAnswered) {
   }
 }
 
-TEST(DialogueQueue, WithoutAnAnswerItStays) {
+TEST(DialogueQueue, KeepsADialogueUntilItIsAnswered) {
   DialogueQueue queue;
   queue.add_error("no-such-scan: cannot be read");
   queue.proceed();
@@ -58,7 +58,7 @@ TEST(DialogueQueue, WithoutAnAnswerItStays) {
   EXPECT_TRUE(queue.errors().empty());
 }
 
-TEST(DialogueQueue, TheSameIsSaidOnce) {
+TEST(DialogueQueue, ShowsARepeatedErrorOnce) {
   DialogueQueue queue;
   queue.add_error("a");
   queue.add_error("b");
@@ -66,7 +66,7 @@ TEST(DialogueQueue, TheSameIsSaidOnce) {
   EXPECT_EQ(queue.errors(), (std::vector<std::string>{"a", "b"}));
 }
 
-TEST(DialogueQueue, WhatIsSettledMeanwhileIsNotAskedAnyMore) {
+TEST(DialogueQueue, ProceedsWithoutAskingOnceAQuestionIsSettled) {
   bool saved = false;
   int went_on = 0;
   DialogueQueue queue;
@@ -86,7 +86,7 @@ TEST(DialogueQueue, WhatIsSettledMeanwhileIsNotAskedAnyMore) {
 }
 
 // A dialogue added by an action comes after those already waiting.
-TEST(DialogueQueue, AnActionMayAddAnother) {
+TEST(DialogueQueue, AppendsADialogueThatAnActionAdds) {
   DialogueQueue queue;
   queue.add(report_question([&] { queue.add_error("disk full"); }, {}));
   queue.add_error("before");

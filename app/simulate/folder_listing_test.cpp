@@ -18,7 +18,7 @@ class ListFolder : public testing_support::FolderTest {
   }
 };
 
-TEST_F(ListFolder, GivesFoldersFirstAndOnlyFilesThatMayBeOpened) {
+TEST_F(ListFolder, ListsFoldersFirstAndOnlyFilesThatCanBeOpened) {
   std::filesystem::create_directory(folder_ / "b");
   std::filesystem::create_directory(folder_ / ".git");
   const std::string dicom = std::string(128, '\0') + "DICM";
@@ -35,19 +35,19 @@ TEST_F(ListFolder, GivesFoldersFirstAndOnlyFilesThatMayBeOpened) {
   EXPECT_FALSE(listing.has_more);
 }
 
-TEST_F(ListFolder, NamesAFolderThatCannotBeReadInOneLine) {
+TEST_F(ListFolder, ReportsAMissingFolderInOneLine) {
   const FolderListing listing = list_folder(folder_ / "gone", false);
   EXPECT_EQ(listing.complaint, (folder_ / "gone").string() + ": cannot be read: No such file or directory");
 }
 
-TEST_F(ListFolder, SaysWhetherItIsAFile) {
+TEST_F(ListFolder, ReportsWhetherThePathIsAFile) {
   touch("a.nrrd");
   EXPECT_TRUE(list_folder(folder_ / "a.nrrd", false).is_file);
   EXPECT_EQ(list_folder(folder_ / "a.nrrd", false).complaint, "");
   EXPECT_FALSE(list_folder(folder_, false).is_file);
 }
 
-TEST_F(ListFolder, EndsAtItsLimitAndWhenStopped) {
+TEST_F(ListFolder, EndsAtTheEntryLimitOrWhenStopped) {
   for (std::size_t n = 0; n <= kMaxListed; ++n) touch(std::to_string(n) + ".mha");
   const FolderListing listing = list_folder(folder_, false);
   EXPECT_EQ(listing.entries.size(), kMaxListed);

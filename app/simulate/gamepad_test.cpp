@@ -31,13 +31,13 @@ TEST(GamepadInput, PushesAndTwistsAlongTheViewersAxes) {
   EXPECT_EQ(gamepad_input(state, {}).motion.twist, Vec3(1, -1, -0.5));
 }
 
-TEST(GamepadInput, GrowsSlowlyFromTheDeadZone) {
+TEST(GamepadInput, IsAQuarterAtHalfTravelBeyondTheDeadZone) {
   GamepadState state;
   state.left_stick = {0.15 + 0.85 / 2, 0};
   EXPECT_DOUBLE_EQ(gamepad_input(state, {}).motion.push.x(), 0.25);
 }
 
-TEST(GamepadInput, GivesAButtonOnceForEachPress) {
+TEST(GamepadInput, ReportsEachButtonPressOnce) {
   GamepadState down;
   down.a = down.b = down.x = true;
   const GamepadInput pressed = gamepad_input(down, {});

@@ -9,7 +9,7 @@ constexpr PixelSize kSize{1280, 800};
 const Camera kCamera = camera_on({Vec3(1, 2, 3), 10}, {0.2, 1, -0.6}, Vec3::UnitZ());
 const Pose kStart{{2, 1, 4}, quaternion_from_rotation_vector({0.1, 0, 0.2})};
 
-TEST(ToolControl, FollowsThePointerInThePicture) {
+TEST(ToolControl, FollowsThePointerAtConstantDepthAndOrientation) {
   ToolInput input;
   input.moved_px = {40, -25};
   const Pose moved = moved_target(kStart, kStart, kCamera, kSize, input);
@@ -20,14 +20,14 @@ TEST(ToolControl, FollowsThePointerInThePicture) {
   EXPECT_TRUE(moved.orientation.isApprox(kStart.orientation));
 }
 
-TEST(ToolControl, TheWheelPressesAwayFromTheViewer) {
+TEST(ToolControl, WheelMovesTheToolAwayFromTheViewer) {
   ToolInput input;
   input.wheel = 3;
   const Pose moved = moved_target(kStart, kStart, kCamera, kSize, input);
   EXPECT_GT(depth_of(kCamera, moved.position_mm), depth_of(kCamera, kStart.position_mm) + 0.3);
 }
 
-TEST(ToolControl, TurningKeepsTheBurrAndGoesWithThePointer) {
+TEST(ToolControl, TurnsAboutTheBurrWithThePointer) {
   ToolInput input;
   input.turning = true;
   input.moved_px = {30, 0};
@@ -38,7 +38,7 @@ TEST(ToolControl, TurningKeepsTheBurrAndGoesWithThePointer) {
   EXPECT_GT((turned.orientation * front_T).dot(kCamera.right_W()), 0.1);
 }
 
-TEST(ToolControl, AgainstBoneTheTargetStaysNearTheDevice) {
+TEST(ToolControl, LimitsTargetDistanceAndAngleWhileTouchingBone) {
   ToolInput input;
   input.wheel = 1000;
   input.touching = true;
@@ -52,7 +52,7 @@ TEST(ToolControl, AgainstBoneTheTargetStaysNearTheDevice) {
       0.36);
 }
 
-TEST(ToolControl, ASpaceMouseMovesAlongTheViewersAxesAndWithTime) {
+TEST(ToolControl, SpaceMousePushMovesRightInProportionToTime) {
   ToolInput input;
   input.space_mouse.push = {0.5, 0, 0};
   input.passed_s = 0.1;

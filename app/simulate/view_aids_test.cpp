@@ -18,7 +18,7 @@ TEST(DraggedGrey, WidensToTheRightAndLightensDownwards) {
   EXPECT_NEAR(0.5 * (light.white + light.black), 0, 1e-9);
 }
 
-TEST(LoupeCamera, ShowsTheBurrInTheMiddleAndByItsPowerLarger) {
+TEST(LoupeCamera, CentresTheBurrAndMagnifiesByItsPower) {
   Camera camera;
   camera.focus_W = {1, 2, 3};
   camera.orientation = quaternion_from_rotation_vector({0.3, -0.5, 0.2});
@@ -30,7 +30,7 @@ TEST(LoupeCamera, ShowsTheBurrInTheMiddleAndByItsPowerLarger) {
               mm_per_pixel(camera, size, depth_of(camera, burr_W)), 1e-12);
 }
 
-TEST(MarkupsText, HoldsNamesAndPlacesThatCanBeReadBack) {
+TEST(MarkupsText, IsValidJsonWithNamesAndPositions) {
   const auto read =
       nlohmann::json::parse(markups_text({{"a \"quoted\" ü", {1.5, -2, 3}}, {"P2", {0, 0, 4}}}));
   const auto& markups = read.at("markups").at(0);

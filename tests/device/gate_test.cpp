@@ -265,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(EveryBackEnd, Gate,
                          });
 
 // Happens when a Falcon is calibrated by hand.
-TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
+TEST_P(Gate, RendersContactOnlyFromOutsideWhenOpenedInsideBone) {
   if (std::get<0>(GetParam()) == "dhd_watchdog") GTEST_SKIP() << "it opens by itself before the hand sinks";
   rig_->set_gate(false);
   device_.put_at({{0, 0, 3}, Quat::Identity()});
@@ -285,7 +285,7 @@ TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
 }
 
 // Happens when the force button is pressed twice, or the watchdog triggers.
-TEST_P(Gate, ClosesWhileItPressesAndTheHandSinks) {
+TEST_P(Gate, RendersContactOnlyFromOutsideWhenReopenedInsideBone) {
   rig_->set_gate(true);
   ASSERT_TRUE(becomes_true_in_time([&] { return is_finite(record_.X_WD) && record_.driven; }));
   press_until_it_is_felt();

@@ -38,7 +38,7 @@ class DicomSeries : public testing_support::FolderTest {
   }
 };
 
-TEST_F(DicomSeries, IsReadFromItsFolderAndFromAnyOfItsFiles) {
+TEST_F(DicomSeries, IsReadFromItsFolderOrOneOfItsFiles) {
   write_series();
   expect_series(read_scan(folder_));
   expect_series(read_scan(folder_ / "f7"));
@@ -46,7 +46,7 @@ TEST_F(DicomSeries, IsReadFromItsFolderAndFromAnyOfItsFiles) {
   EXPECT_EQ(read_scan(folder_).format, "DICOM");
 }
 
-TEST_F(DicomSeries, SeriesAreOfferedBeforeAnyPixelIsRead) {
+TEST_F(DicomSeries, OffersSeveralSeriesUnlessOneIsSelected) {
   write_series();
   for (int k = 0; k < 2; ++k)
     write_slice({.file = "m" + std::to_string(k), .k = k, .series = "1.2.5", .modality = "MR"});
@@ -75,7 +75,7 @@ TEST_F(DicomSeries, SeriesAreOfferedBeforeAnyPixelIsRead) {
   expect_series(read_scan(folder_, options));
 }
 
-TEST_F(DicomSeries, EveryEncodingGivesTheSame) {
+TEST_F(DicomSeries, EveryEncodingYieldsTheSameVoxels) {
   for (const auto syntax : {EXS_LittleEndianImplicit, EXS_BigEndianExplicit, EXS_DeflatedLittleEndianExplicit,
                             EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {
     SCOPED_TRACE(DcmXfer(syntax).getXferName());
@@ -117,7 +117,7 @@ void split_fragments(const fs::path& path, bool with_table = true) {
   ASSERT_TRUE(file.saveFile(path.c_str(), syntax).good());
 }
 
-TEST_F(DicomSeries, AFrameMayLieInSeveralFragments) {
+TEST_F(DicomSeries, ReadsAFrameSplitIntoFragments) {
   for (const auto syntax : {EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {
     SCOPED_TRACE(DcmXfer(syntax).getXferName());
     write_series(syntax);
@@ -127,7 +127,7 @@ TEST_F(DicomSeries, AFrameMayLieInSeveralFragments) {
 }
 
 // The decoder continues with damaged data and would return its result.
-TEST_F(DicomSeries, CompressedPixelsThatAreDamagedAreRefused) {
+TEST_F(DicomSeries, RefusesDamagedCompressedPixels) {
   write_series(EXS_JPEGProcess14SV1);
   std::ifstream in(folder_ / "f7", std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), {});
@@ -164,26 +164,26 @@ std::string nested(int depth) {
   return bytes;
 }
 
-TEST_F(DicomSeries, SequencesNestedHoweverDeepAreRefused) {
+TEST_F(DicomSeries, RefusesUnterminatedSequencesOfAnyDepth) {
   for (const int depth : {10, 1000, 100'000, 500'000}) {
     const fs::path path = write("deep", nested(depth));
     EXPECT_TRUE(contains(refusal(path), "damaged")) << depth;
   }
 }
 
-TEST_F(DicomSeries, AFileOfPixelsThatAreCutShortIsRefused) {
+TEST_F(DicomSeries, RefusesAFileOfOnlyTruncatedPixels) {
   const std::string pixels("\xE0\x7F\x10\0OB\0\0\x1C\x51\0\0", 12);
   const fs::path path = write("short", std::string(128, '\0') + "DICM" + pixels + std::string(100, '\0'));
   EXPECT_TRUE(contains(refusal(path), "cut short or damaged"));
 }
 
-TEST_F(DicomSeries, ASliceThatIsMissingIsNoticed) {
+TEST_F(DicomSeries, RefusesASeriesWithAMissingSlice) {
   write_series();
   fs::remove(folder_ / "f7");
   EXPECT_TRUE(contains(refusal(folder_), "a slice is missing"));
 }
 
-TEST_F(DicomSeries, EveryLengthToWhichASliceCanBeCutIsNoticed) {
+TEST_F(DicomSeries, RefusesOrWarnsOfASliceTruncatedToAnyLength) {
   for (const auto syntax : {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_RLELossless}) {
     write_series(syntax);
     const auto size = fs::file_size(folder_ / "f9");
@@ -197,7 +197,7 @@ TEST_F(DicomSeries, EveryLengthToWhichASliceCanBeCutIsNoticed) {
   }
 }
 
-TEST_F(DicomSeries, OtherFilesAndLocalizersAreLeftOutWithAWarning) {
+TEST_F(DicomSeries, SkipsOtherFilesAndLocalizersWithAWarning) {
   write_series();
   write("notes.txt", "hello");
   write("DICOMDIR", std::string(128, '\0') + "DICM");
@@ -214,7 +214,7 @@ Scan read_series(const fs::path& path, const std::string& series) {
   return read_scan(path, {.series = series});
 }
 
-TEST_F(DicomSeries, TheLargestCtOfSeveralSeriesIsReadAndAnyCanBeChosen) {
+TEST_F(DicomSeries, ReadsTheLargestCtUnlessASeriesIsChosen) {
   write_series();
   fs::create_directories(folder_ / "more" / "deep");
   for (int k = 0; k < 3; ++k)
@@ -244,7 +244,7 @@ TEST_F(DicomSeries, TheLargestCtOfSeveralSeriesIsReadAndAnyCanBeChosen) {
   EXPECT_THROW(read_series(folder_ / "more/deep/a1", "1.2.5"), InputError);
 }
 
-TEST_F(DicomSeries, TwoTimePointsOfASeriesAreTwoToChooseFrom) {
+TEST_F(DicomSeries, OffersTimePointsOfASeriesSeparately) {
   write_series();
   for (int k = 0; k < 4; ++k) {
     const auto slice = made_up_slice({.k = k, .instance = "1.2.9." + std::to_string(k)});
@@ -273,7 +273,7 @@ TEST_F(DicomSeries, TwoTimePointsOfASeriesAreTwoToChooseFrom) {
   expect_series(read_scan(folder_));
 }
 
-TEST_F(DicomSeries, AnOddPictureIsLeftOutByNameAndAWarning) {
+TEST_F(DicomSeries, SkipsAnOddPictureAndNamesItInAWarning) {
   write_series();
   write_slice({.file = "turned", .k = 9, .instance = "1.2.9.1"});
   DcmFileFormat file;
@@ -301,7 +301,7 @@ TEST_F(DicomSeries, AnOddPictureIsLeftOutByNameAndAWarning) {
 }
 
 // Folder of a disc: upper-case names, nested directory records.
-TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
+TEST_F(DicomSeries, ReadsTheFilesThatADicomdirLists) {
   fs::create_directories(folder_ / "IMAGES" / "S1");
   fs::create_directories(folder_ / "images2");
   DcmFileFormat directory;
@@ -336,7 +336,7 @@ TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
 }
 
 // Enhanced CT: all frames in one file, each with its own position and rescaling.
-TEST_F(DicomSeries, FramesOfAnEnhancedFileLieWhereTheirGroupsSay) {
+TEST_F(DicomSeries, PlacesEnhancedFramesByTheirFunctionalGroups) {
   DcmFileFormat file;
   DcmDataset& data = *file.getDataset();
   write_slice({.file = "one"});
@@ -396,7 +396,7 @@ TEST_F(DicomSeries, FramesOfAnEnhancedFileLieWhereTheirGroupsSay) {
   EXPECT_FALSE(read_scan(folder_ / "many").in_hounsfield_units);
 }
 
-TEST_F(DicomSeries, MoreMemoryThanAllowedIsRefusedBeforeItIsTaken) {
+TEST_F(DicomSeries, RefusesAScanAboveTheMemoryLimit) {
   write_series();
   EXPECT_NO_THROW(read_scan(folder_, {.series = "", .max_memory_bytes = 4 * kColumns * kRows * 4}));
   try {
@@ -415,7 +415,7 @@ TEST_F(DicomSeries, MoreMemoryThanAllowedIsRefusedBeforeItIsTaken) {
   }
 }
 
-TEST_F(DicomSeries, TwoImagesAtOnePlaceAreRefusedAndACopyIsNot) {
+TEST_F(DicomSeries, RefusesTwoImagesAtOnePositionButNotACopy) {
   write_series();
   fs::copy_file(folder_ / "f7", folder_ / "copy");
   expect_series(read_scan(folder_));
@@ -427,7 +427,7 @@ TEST_F(DicomSeries, TwoImagesAtOnePlaceAreRefusedAndACopyIsNot) {
   EXPECT_TRUE(contains(refusal(folder_), "one position"));
 }
 
-TEST_F(DicomSeries, ATiltedGantryIsPutStraight) {
+TEST_F(DicomSeries, CorrectsAGantryTilt) {
   for (int k = 0; k < 4; ++k) {
     const std::string position = "1\\" + std::to_string(2 + 0.25 * k) + "\\" + std::to_string(10 + 0.75 * k);
     write_slice({.file = "f" + std::to_string(k), .k = k, .position = position});
@@ -440,7 +440,7 @@ TEST_F(DicomSeries, ATiltedGantryIsPutStraight) {
   EXPECT_NEAR(static_cast<double>(scan.grid[moved]), 2 * stored_value(3, 1, 2) - 100, 1e-3);
 }
 
-TEST_F(DicomSeries, PaddingIsNoDensity) {
+TEST_F(DicomSeries, PaddingVoxelsHaveNoDensity) {
   struct Case {
     int is_signed;
     int bits;
@@ -485,7 +485,7 @@ std::vector<Float64> stored_floats(int k) {
   return {values.begin(), values.end()};
 }
 
-TEST_F(DicomSeries, PixelsMayBeFloats) {
+TEST_F(DicomSeries, ReadsFloatAndDoublePixels) {
   for (const bool is_double : {false, true}) {
     for (int k = 0; k < 4; ++k) {
       std::vector<Float64> values = stored_floats(k);
@@ -521,7 +521,7 @@ void say_syntax(const fs::path& path, const std::string& said) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-TEST_F(DicomSeries, AnotherPlainSyntaxThanIsSaidIsNoticed) {
+TEST_F(DicomSeries, ReadsUncompressedSlicesThatStateAWrongSyntax) {
   for (const auto& [has, said] : {std::pair{EXS_LittleEndianImplicit, UID_LittleEndianImplicitTransferSyntax},
                                   {EXS_LittleEndianExplicit, UID_LittleEndianImplicitTransferSyntax},
                                   {EXS_BigEndianExplicit, UID_LittleEndianExplicitTransferSyntax}}) {
@@ -566,7 +566,7 @@ void make_implicit(const fs::path& path, int k) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-TEST_F(DicomSeries, CompressedPixelsAreReadInAnImplicitDataSet) {
+TEST_F(DicomSeries, ReadsCompressedPixelsInAnImplicitDataSet) {
   for (const auto syntax : {EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {
     SCOPED_TRACE(DcmXfer(syntax).getXferName());
     write_series(syntax);
@@ -575,7 +575,7 @@ TEST_F(DicomSeries, CompressedPixelsAreReadInAnImplicitDataSet) {
   }
 }
 
-TEST_F(DicomSeries, ASyntaxThatIsNotDecodedIsNamed) {
+TEST_F(DicomSeries, RefusesAnUnsupportedTransferSyntaxByName) {
   // None is longer than the UID in the file.
   for (const auto& [uid, name] :
        {std::pair{"1.2.840.10008.1.2.4.92", "(1.2.840.10008.1.2.4.92), which is not"},
@@ -590,7 +590,7 @@ TEST_F(DicomSeries, ASyntaxThatIsNotDecodedIsNamed) {
   }
 }
 
-TEST_F(DicomSeries, ASignedStreamUnderAnUnsignedHeaderIsReadAsItSays) {
+TEST_F(DicomSeries, ReadsASignedStreamDespiteAnUnsignedHeader) {
   for (const bool is_signed : {true, false}) {
     for (int k = 0; k < 4; ++k) {
       const auto slice = made_up_slice({.k = k, .bits = 16});
@@ -611,7 +611,7 @@ TEST_F(DicomSeries, ASignedStreamUnderAnUnsignedHeaderIsReadAsItSays) {
   }
 }
 
-TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
+TEST_F(DicomSeries, PlacesFramesWithoutPositionsAlongTheNormal) {
   bool with_groups = false;
   const auto write = [&](const DcmTagKey& tag, const std::string& text, const std::string& orientation) {
     const auto file = made_up_slice({});
@@ -654,7 +654,7 @@ TEST_F(DicomSeries, FramesWithoutPlacesLieAlongTheNormal) {
   EXPECT_TRUE(contains(refusal(folder_ / "many"), "several frames ordered by FrameTime"));
 }
 
-TEST_F(DicomSeries, WhatFollowsThePixelsIsNotRead) {
+TEST_F(DicomSeries, IgnoresDataAfterThePixels) {
   write_series();
   // Sparse file: only reading all of it would take long.
   fs::resize_file(folder_ / "f7", 1'000'000'000);
@@ -671,7 +671,7 @@ std::uint64_t bytes_read() {
   return bytes;
 }
 
-TEST_F(DicomSeries, WhatFollowsFloatPixelsIsNotRead) {
+TEST_F(DicomSeries, DoesNotReadDataAfterFloatPixels) {
   for (const bool is_double : {false, true}) {
     for (int k = 0; k < 4; ++k) {
       const auto slice = made_up_float_slice(k, stored_floats(k), is_double);
@@ -689,7 +689,7 @@ TEST_F(DicomSeries, WhatFollowsFloatPixelsIsNotRead) {
   }
 }
 
-TEST_F(DicomSeries, DensitiesThatNoCtHasAreWarnedOf) {
+TEST_F(DicomSeries, WarnsOfDensitiesOutsideTheRangeOfCt) {
   const auto warnings = [&](int value, int is_signed, const std::string& modality) {
     for (int k = 0; k < 4; ++k) {
       const auto slice = made_up_slice({.k = k, .slope = "1", .modality = modality, .bits = 16});
@@ -709,7 +709,7 @@ TEST_F(DicomSeries, DensitiesThatNoCtHasAreWarnedOf) {
   EXPECT_EQ(warnings(64'536, 0, "MR").size(), 1U);
 }
 
-TEST_F(DicomSeries, SlicesOutOfTheOrderOfTheirNumbersAreWarnedOf) {
+TEST_F(DicomSeries, WarnsOfSlicesOutOfNumericalOrder) {
   const auto warnings = [&](const std::array<const char*, 4>& numbers) {
     for (int k = 0; k < 4; ++k) {
       const auto slice = made_up_slice({.k = k});
@@ -728,7 +728,7 @@ TEST_F(DicomSeries, SlicesOutOfTheOrderOfTheirNumbersAreWarnedOf) {
   EXPECT_TRUE(contains(warnings({"1", "1", "2", "2"}).at(0), "order of their numbers, 1, 1, 2"));
 }
 
-TEST_F(DicomSeries, DescriptionsAreShownInUtf8) {
+TEST_F(DicomSeries, ConvertsDescriptionsToUtf8) {
   for (const auto& [set, text, shown] :
        {std::array{"ISO_IR 100",
                    "Sch\xE4"
@@ -768,7 +768,7 @@ TEST_F(DicomSeries, DescriptionsAreShownInUtf8) {
   }
 }
 
-TEST_F(DicomSeries, AFolderWithoutAScanIsRefused) {
+TEST_F(DicomSeries, RefusesAFolderWithoutAScan) {
   EXPECT_TRUE(contains(refusal(folder_), "holds no scan: no DICOM slices and no NRRD"));
   write("notes.txt", "hello");
   EXPECT_TRUE(contains(refusal(folder_), "holds no scan: no DICOM slices and no NRRD"));
@@ -779,7 +779,7 @@ TEST_F(DicomSeries, AFolderWithoutAScanIsRefused) {
   EXPECT_TRUE(contains(refusal(folder_ / "one"), "only one slice"));
 }
 
-TEST_F(DicomSeries, WhatIsNoImageIsRefusedByItsModality) {
+TEST_F(DicomSeries, RefusesANonImageAndNamesItsModality) {
   const auto file = made_up_slice({.modality = "RTSTRUCT"});
   for (const DcmTagKey& tag : {DCM_PixelData, DCM_Columns, DCM_Rows})
     file->getDataset()->findAndDeleteElement(tag);
@@ -787,7 +787,7 @@ TEST_F(DicomSeries, WhatIsNoImageIsRefusedByItsModality) {
   EXPECT_TRUE(contains(refusal(folder_ / "plan"), "plan: is DICOM, but not an image: RTSTRUCT"));
 }
 
-TEST_F(DicomSeries, ASlopeOfZeroIsRefused) {
+TEST_F(DicomSeries, RefusesARescaleSlopeOfZero) {
   write_series();
   write_slice({.file = "f8", .k = 1, .slope = "0"});
   EXPECT_TRUE(contains(refusal(folder_), "f8: has a RescaleSlope of 0"));

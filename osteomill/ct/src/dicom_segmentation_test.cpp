@@ -21,7 +21,7 @@ class DicomSegmentation : public testing_support::FolderTest {
   }
 };
 
-TEST_F(DicomSegmentation, IsALabelMapWithItsNames) {
+TEST_F(DicomSegmentation, IsReadAsALabelMapWithNames) {
   ASSERT_TRUE(save(*made_up_segmentation(), folder_ / "seg", EXS_LittleEndianExplicit));
   const Scan scan = read_scan(folder_ / "seg");
   EXPECT_TRUE(scan.is_labels);
@@ -42,7 +42,7 @@ TEST_F(DicomSegmentation, IsALabelMapWithItsNames) {
   EXPECT_EQ(scan.labels[1].colour, (std::array<std::uint8_t, 3>{255, 255, 255}));
 }
 
-TEST_F(DicomSegmentation, BesideItsScanItIsLeftToLabels) {
+TEST_F(DicomSegmentation, IsSkippedInAScanFolderButReadAsLabels) {
   write_scan();
   ASSERT_TRUE(save(*made_up_segmentation(), folder_ / "seg", EXS_LittleEndianExplicit));
   const Scan scan = read_scan(folder_);
@@ -59,7 +59,7 @@ TEST_F(DicomSegmentation, BesideItsScanItIsLeftToLabels) {
   EXPECT_THROW(read_labels({folder_ / "f1", "", {}}, scan.grid.geometry()), InputError);
 }
 
-TEST_F(DicomSegmentation, WhatLiesOnNoGridOrIsCutShortIsRefused) {
+TEST_F(DicomSegmentation, RefusesFramesOffTheGridAndTruncatedFiles) {
   for (const char* height : {"10.3", "1e9"}) {
     const auto file = made_up_segmentation(height);
     ASSERT_TRUE(save(*file, folder_ / "seg", EXS_LittleEndianExplicit));
@@ -70,7 +70,7 @@ TEST_F(DicomSegmentation, WhatLiesOnNoGridOrIsCutShortIsRefused) {
   EXPECT_TRUE(contains(refusal(folder_ / "seg"), "cut short"));
 }
 
-TEST_F(DicomSegmentation, FoundIsTheMandible) {
+TEST_F(DicomSegmentation, ReadsTheMandibleOfASharedFile) {
   OSTEOMILL_NEEDS_SHARED("found4/28-dicom-seg/input.zip");
   const Scan scan = read_scan(shared_data() / "found4/28-dicom-seg/input.zip");
   EXPECT_EQ(scan.grid.geometry().dims, (std::array<int, 3>{40, 36, 24}));

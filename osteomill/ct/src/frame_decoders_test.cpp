@@ -49,7 +49,7 @@ bool decodes_rle(const Bytes& stream, std::vector<char>& values) {
   return decode_rle(stream, kSize, values);
 }
 
-TEST(FrameDecoders, RleGivesTheValues) {
+TEST(FrameDecoders, RleYieldsTheEncodedValues) {
   std::vector<char> values;
   ASSERT_TRUE(decodes_rle(rle_stream(), values));
   expect_values(values);
@@ -71,7 +71,7 @@ TEST(FrameDecoders, RleUnpacksRunsAndLiterals) {
   EXPECT_FALSE(decode_rle(stream, {.columns = 9, .rows = 1, .bytes_a_value = 1}, values));
 }
 
-TEST(FrameDecoders, RleThatIsDamagedIsRefused) {
+TEST(FrameDecoders, RefusesDamagedRle) {
   std::vector<char> values;
   for (const std::uint32_t bad : {0U, 1U, 3U, 14U, 0x7FFFFFFFU, 0xFFFFFFFFU}) {
     Bytes stream = rle_stream();
@@ -97,13 +97,13 @@ Bytes jpeg2000_of_values() {
   return testing_support::jpeg2000_stream(values, kSize.columns, kSize.rows, 16, true);
 }
 
-TEST(FrameDecoders, Jpeg2000GivesTheValues) {
+TEST(FrameDecoders, Jpeg2000YieldsTheEncodedValues) {
   std::vector<char> values(kSize.bytes());
   ASSERT_TRUE(decode_jpeg2000(jpeg2000_of_values(), kSize, values));
   expect_values(values);
 }
 
-TEST(FrameDecoders, Jpeg2000OfAnotherSizeOrCutShortIsRefused) {
+TEST(FrameDecoders, RefusesJpeg2000OfAnotherSizeOrTruncated) {
   const Bytes whole = jpeg2000_of_values();
   for (const FrameSize& size : {FrameSize{5, 7, 2}, {7, 6, 2}, {7, 5, 1}}) {
     std::vector<char> values(size.bytes());
@@ -116,7 +116,7 @@ TEST(FrameDecoders, Jpeg2000OfAnotherSizeOrCutShortIsRefused) {
   }
 }
 
-TEST(FrameDecoders, AJpegHeaderOfAnotherSizeDoesNotFit) {
+TEST(FrameDecoders, RefusesMismatchedOrDamagedJpegHeaders) {
   // SOI, a comment, SOF3 (lossless): 16 bits, 5 rows, 7 columns, one component.
   const Bytes jpeg{0xFF, 0xD8, 0xFF, 0xFE, 0x00, 0x04, 0x20, 0x20, 0xFF, 0xC3, 0x00,
                    0x0B, 0x10, 0x00, 0x05, 0x00, 0x07, 0x01, 0x01, 0x11, 0x00};

@@ -112,7 +112,7 @@ class PictureStack : public testing_support::FolderTest {
   }
 };
 
-TEST_F(PictureStack, PngsAreSlicesInTheOrderOfTheirNumbers) {
+TEST_F(PictureStack, OrdersPngSlicesByNumber) {
   write_grey_pngs();
   const Scan scan = read(folder_);
   expect_values(scan);
@@ -123,7 +123,7 @@ TEST_F(PictureStack, PngsAreSlicesInTheOrderOfTheirNumbers) {
   EXPECT_TRUE(contains(refusal_of(folder_), "slice12.png: is a picture of 6 x 4 pixels"));
 }
 
-TEST_F(PictureStack, NamesSayWhetherASliceIsMissingOrOfAnotherStack) {
+TEST_F(PictureStack, DetectsMissingAndForeignSlicesByName) {
   write_grey_pngs();
   const auto path = [&](const std::string& name) { return folder_ / name; };
   std::filesystem::rename(path("slice7.png"), path("slice27.png"));
@@ -142,7 +142,7 @@ TEST_F(PictureStack, NamesSayWhetherASliceIsMissingOrOfAnotherStack) {
   EXPECT_TRUE(contains(read(folder_).warnings.at(0), "grow unevenly (z2_112_.png follows z2_105_.png)"));
 }
 
-TEST_F(PictureStack, PagesOfOneBitAreMasks) {
+TEST_F(PictureStack, ReadsOneBitPagesAsZeroAndOne) {
   for (const int photometric : {PHOTOMETRIC_MINISBLACK, PHOTOMETRIC_MINISWHITE}) {
     TIFF* const file = TIFFOpen((folder_ / "a.tif").c_str(), "w");
     for (int page = 0; page < 2; ++page) {
@@ -167,7 +167,7 @@ TEST_F(PictureStack, PagesOfOneBitAreMasks) {
   }
 }
 
-TEST_F(PictureStack, PagesOfATiffAreSlices) {
+TEST_F(PictureStack, ReadsTiffPagesAsSlices) {
   for (const bool tiled : {false, true}) {
     for (const int photometric : {PHOTOMETRIC_MINISBLACK, PHOTOMETRIC_MINISWHITE}) {
       const Scan scan = read(write_pages("a.tif", tiled, static_cast<std::uint16_t>(photometric)));
@@ -183,7 +183,7 @@ TEST_F(PictureStack, PagesOfATiffAreSlices) {
   }
 }
 
-TEST_F(PictureStack, ColoursAreLabelsUnlessAllAreGrey) {
+TEST_F(PictureStack, ReadsColoursAsLabelsUnlessAllAreGrey) {
   const std::array<std::array<std::uint8_t, 4>, 3> colours{
       {{9, 9, 9, 0}, {200, 10, 10, 255}, {10, 10, 200, 255}}};
   for (int k = 0; k < 3; ++k) {
@@ -208,7 +208,7 @@ TEST_F(PictureStack, ColoursAreLabelsUnlessAllAreGrey) {
   EXPECT_EQ(grey.grid[third], 80);
 }
 
-TEST_F(PictureStack, WhatIsNoStackIsRefusedByName) {
+TEST_F(PictureStack, RefusesAnInvalidStackWithAReason) {
   write_grey_pngs();
   EXPECT_TRUE(contains(refusal_of(folder_ / "slice3.png"), "is a single picture; choose the folder"));
   std::filesystem::resize_file(folder_ / "slice3.png", 60);

@@ -28,7 +28,7 @@ struct Found {
 
 class FoundScan : public ::testing::TestWithParam<Found> {};
 
-TEST_P(FoundScan, IsThePhantom) {
+TEST_P(FoundScan, MatchesThePhantom) {
   const Found& found = GetParam();
   const std::string path = std::string("found4/") + found.file;
   OSTEOMILL_NEEDS_SHARED(path);
@@ -72,7 +72,7 @@ struct Refused {
 };
 class FoundRefusal : public ::testing::TestWithParam<Refused> {};
 
-TEST_P(FoundRefusal, SaysWhy) {
+TEST_P(FoundRefusal, StatesTheReason) {
   const auto& [file, reason] = GetParam();
   const std::string path = std::string("found4/") + file;
   OSTEOMILL_NEEDS_SHARED(path);
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(ReadFound, FoundRefusal,
                          ::testing::Values(Refused{"27-only-localizers/all.zip", "only 2 localizers"},
                                            Refused{"10-syntax/jpegxl.zip", "JPEG XL lossless (1.2.840"}));
 
-TEST(ReadFound, HighThroughputJpeg2000IsReadToTheBit) {
+TEST(ReadFound, HighThroughputJpeg2000HasItsMinMaxAndMean) {
   OSTEOMILL_NEEDS_SHARED("found4/10-syntax/htj2k");
   const Scan scan = read_scan(shared_data() / "found4/10-syntax/htj2k");
   struct Slice {

@@ -13,7 +13,7 @@ namespace {
 
 using testing_support::shared_data;
 
-TEST(ReadLabelsReal, TheJawsLabelsAreTheSameFromBothItsFiles) {
+TEST(ReadLabelsReal, JawLabelCountsMatchInNrrdAndNifti) {
   OSTEOMILL_NEEDS_SHARED("jaw_labels");
   const auto nrrd = shared_data() / "jaw_labels/jaw_360x360x330_labels.nrrd";
   const GridGeometry scan = read_scan(nrrd).grid.geometry();
@@ -28,7 +28,7 @@ TEST(ReadLabelsReal, TheJawsLabelsAreTheSameFromBothItsFiles) {
   EXPECT_EQ(other.map->voxel_counts(), read.map->voxel_counts());
 }
 
-TEST(ReadLabelsReal, NamesComeFromAnExtensionAndFromItkSnapsFile) {
+TEST(ReadLabelsReal, ReadsNamesOfAnExtensionOrAnItkSnapFile) {
   OSTEOMILL_NEEDS_SHARED("found4/23-nifti-kinds");
   const auto folder = shared_data() / "found4/23-nifti-kinds";
   const GridGeometry scan = read_scan(folder / "totalseg.nii.gz").grid.geometry();
@@ -41,7 +41,7 @@ TEST(ReadLabelsReal, NamesComeFromAnExtensionAndFromItkSnapsFile) {
   EXPECT_EQ(given.map->labels()[1].name, "canal");
 }
 
-TEST(ReadLabelsReal, TheTemporalBonesLabelsAreCountedAsTheirReadmeDoes) {
+TEST(ReadLabelsReal, TemporalBoneLabelCountsMatchTheFactsFile) {
   OSTEOMILL_NEEDS_SHARED("temporal_bone");
   const auto file = shared_data() / "temporal_bone/ear3_256_labels.nrrd";
   const auto facts = nlohmann::json::parse(std::ifstream(shared_data() / "temporal_bone/facts.json"));

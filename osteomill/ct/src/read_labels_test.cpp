@@ -38,7 +38,7 @@ class ReadLabels : public testing_support::FolderTest {
   }
 };
 
-TEST_F(ReadLabels, TakesNamesAndColoursOfSlicersSegmentations) {
+TEST_F(ReadLabels, ReadsNamesAndColoursOfSlicerSegmentations) {
   const auto file = write("jaw.seg.nrrd", map_of("0 4 4 7 0 0 -2 7",
                                                  "Segment0_Name:=Lower jaw\nSegment0_LabelValue:=4\n"
                                                  "Segment0_Color:=1 0.5 0\nSegment1_Name:=Nerve\n"
@@ -55,7 +55,7 @@ TEST_F(ReadLabels, TakesNamesAndColoursOfSlicersSegmentations) {
 }
 
 // Two layers of 2 x 2 x 2 voxels as 3D Slicer writes them, with the values of a voxel adjacent.
-TEST_F(ReadLabels, PutsLayersThatDoNotOverlapIntoOne) {
+TEST_F(ReadLabels, MergesLayersThatDoNotOverlap) {
   const auto layered = [&](const std::string& values, const std::string& fields, const std::string& first,
                            const std::string& second) {
     return write(
@@ -92,7 +92,7 @@ TEST_F(ReadLabels, PutsLayersThatDoNotOverlapIntoOne) {
                        "overlapping segments, in 2 layers; save it as a label map of one layer"));
 }
 
-TEST_F(ReadLabels, TakesNamesAndColoursOfATableBeforeTheFilesOwn) {
+TEST_F(ReadLabels, TableOverridesNamesAndColoursOfTheFile) {
   const auto file = write("a.seg.nrrd", map_of("0 1 2 3 0 0 0 0",
                                                "Segment0_Name:=Old\nSegment0_LabelValue:=1\n"
                                                "Segment1_Name:=Kept\nSegment1_LabelValue:=2\n"));
@@ -107,7 +107,7 @@ TEST_F(ReadLabels, TakesNamesAndColoursOfATableBeforeTheFilesOwn) {
   EXPECT_TRUE(contains(read.warnings[0], "a.ctbl: has no entry for label 3")) << read.warnings[0];
 }
 
-TEST_F(ReadLabels, TakesNamesAndColoursOfItkSnapsLabelFiles) {
+TEST_F(ReadLabels, ReadsNamesAndColoursOfItkSnapLabelFiles) {
   const auto file = write("a.nrrd", map_of("0 26 93 26 0 0 0 0"));
   const auto table = write("snap.txt",
                            "################\n# ITK-SnAP Label Description File\n"
@@ -123,7 +123,7 @@ TEST_F(ReadLabels, TakesNamesAndColoursOfItkSnapsLabelFiles) {
     EXPECT_TRUE(contains(refusal_of({file, write("bad.txt", line), {}}), "line 1 is neither")) << line;
 }
 
-TEST_F(ReadLabels, NamesOfSegmentsMayHaveAnyNumbers) {
+TEST_F(ReadLabels, ReadsSegmentNamesWithAnyNumbering) {
   for (const auto& [first, second] : {std::pair{"0", "1"}, {"1", "2"}, {"0", "12"}}) {
     const auto file = write("a.seg.nrrd", map_of("0 4 4 7 0 0 0 7", fmt::format("Segment{0}_Name:=Jaw\n"
                                                                                 "Segment{0}_LabelValue:=4\n"
@@ -136,7 +136,7 @@ TEST_F(ReadLabels, NamesOfSegmentsMayHaveAnyNumbers) {
   }
 }
 
-TEST_F(ReadLabels, NamesAreUtf8WhateverTheTableIsWrittenIn) {
+TEST_F(ReadLabels, ConvertsNamesOfATableToUtf8) {
   const auto file = write("a.nrrd", map_of("0 26 26 26 0 0 0 0"));
   const std::string a = "\xC3\xA4";
   const auto name_of = [&](const std::string& said) {
@@ -172,7 +172,7 @@ std::string nifti_with(std::string text) {
   return bytes + std::string(4, '\0') + text + std::string("\0\x1a\x5d\0\0\0\0\0", 8);
 }
 
-TEST_F(ReadLabels, TakesNamesOfAnExtensionOfNifti) {
+TEST_F(ReadLabels, ReadsNamesOfANiftiExtension) {
   const std::string head = "<?xml version=\"1.0\"?><CaretExtension><VolumeInformation><LabelTable>";
   const std::string tail = "</LabelTable></VolumeInformation></CaretExtension>\n";
   for (const std::string& text :
@@ -211,7 +211,7 @@ TEST_F(ReadLabels, TakesNamesOfAnExtensionOfNifti) {
   }
 }
 
-TEST_F(ReadLabels, RefusesWhatIsNoLabelMapInOneLine) {
+TEST_F(ReadLabels, RefusesAnInvalidLabelMapInOneLine) {
   const auto refused = [&](const std::string& values, const std::string& fields = "") {
     return refusal_of({write("m.nrrd", map_of(values, fields)), {}, {}});
   };
@@ -236,7 +236,7 @@ TEST_F(ReadLabels, RefusesWhatIsNoLabelMapInOneLine) {
   EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "# nothing\n"), {}}), "t.ctbl: has no labels"));
 }
 
-TEST_F(ReadLabels, RefusesMoreLabelsThanItKeeps) {
+TEST_F(ReadLabels, RefusesMoreThan255Labels) {
   std::string values;
   for (int n = 0; n < 343; ++n) values += std::to_string(n) + " ";
   std::string map = map_of(values);
@@ -244,7 +244,7 @@ TEST_F(ReadLabels, RefusesMoreLabelsThanItKeeps) {
   EXPECT_TRUE(contains(refusal_of({write("many.nrrd", map), {}, {}}), "has more than 255 labels"));
 }
 
-TEST_F(ReadLabels, SaysWhereAMapReachesBeyondTheScan) {
+TEST_F(ReadLabels, WarnsIfAMapReachesBeyondTheScan) {
   GridGeometry half = scan();
   half.dims = {1, 2, 2};
   const LabelsRead read = read_labels({write("m.nrrd", map_of("1 1 1 1 1 1 1 1")), {}, {}}, half);

@@ -123,24 +123,24 @@ void expect_facts(const fs::path& folder) {
   }
 }
 
-TEST(ReadRealScan, DicomFoldersGoodOddAndBroken) {
+TEST(ReadRealScan, DicomFoldersHaveTheirExpectedOutcomes) {
   OSTEOMILL_NEEDS_SHARED("tooth_dicom_cases/expect.json");
   expect_outcomes(shared_data() / "tooth_dicom_cases");
 }
 
-TEST(ReadRealScan, VolumeFilesGoodOddAndBroken) {
+TEST(ReadRealScan, VolumeFilesHaveTheirExpectedOutcomes) {
   OSTEOMILL_NEEDS_SHARED("volumes_odd/expect.json");
   expect_outcomes(shared_data() / "volumes_odd");
 }
 
 class RealScanFacts : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(RealScanFacts, AreMet) {
+TEST_P(RealScanFacts, MatchTheScans) {
   OSTEOMILL_NEEDS_SHARED(GetParam());
   expect_facts(shared_data() / GetParam());
 }
 
-TEST(ReadRealScan, AnUnevenStackOfATiltedGantryIsPutStraight) {
+TEST(ReadRealScan, CorrectsTheTiltOfAnUnevenStack) {
   OSTEOMILL_NEEDS_SHARED("head_tilt_dicom/facts.json");
   const json facts = read_json(shared_data() / "head_tilt_dicom/facts.json")["series/"];
   const Scan scan = read_scan(shared_data() / "head_tilt_dicom/series");
@@ -158,7 +158,7 @@ TEST(ReadRealScan, AnUnevenStackOfATiltedGantryIsPutStraight) {
   EXPECT_LE(*max, facts["hu_max"].get<float>());
 }
 
-TEST(ReadRealScan, OddDicomFilesEndInAVolumeOrAClearRefusal) {
+TEST(ReadRealScan, OddDicomFilesAreReadOrRefusedInOneLine) {
   OSTEOMILL_NEEDS_SHARED("dicom_odd/facts.json");
   for (const fs::directory_entry& entry : fs::directory_iterator(shared_data() / "dicom_odd")) {
     SCOPED_TRACE(entry.path().string());
@@ -185,7 +185,7 @@ bool is_on_boundary(const DensityGrid& grid, double isovalue) {
 }
 
 // The suggested isovalue must be in the range that experts give for bone in each scan.
-TEST_P(RealScanIsovalue, SuggestedIsBone) {
+TEST_P(RealScanIsovalue, SuggestionIsWithin15PercentOfBone) {
   const auto& [path, known] = GetParam();
   OSTEOMILL_NEEDS_SHARED(path);
   const Scan scan = read_scan(shared_data() / path);
@@ -196,7 +196,7 @@ TEST_P(RealScanIsovalue, SuggestedIsBone) {
 }
 
 // Densities in eight bits, as programs save pictures: the whole range, or a display window.
-TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
+TEST(ReadRealScan, FindsTheBoneBoundaryInEightBits) {
   struct Window {
     const char* scan;
     double known;
@@ -229,13 +229,13 @@ TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
 }
 
 // Its densities form thick steps, so that few voxels lie between a lower and a higher neighbour.
-TEST(ReadRealScan, ABlockOfStepsLooksLikeNoLabels) {
+TEST(ReadRealScan, SteppedDensitiesAreNotTakenForLabels) {
   OSTEOMILL_NEEDS_SHARED("attacks4/stderr-closed/b6.nrrd");
   EXPECT_NE(LabelGuess::labels,
             guess_labels(read_scan(shared_data() / "attacks4/stderr-closed/b6.nrrd").grid));
 }
 
-TEST(ReadRealScan, LabelMapsLookLikeLabels) {
+TEST(ReadRealScan, LabelMapsAreTakenForLabels) {
   for (const char* path : {"jaw_labels/jaw_360x360x330_labels.nrrd", "temporal_bone/ear3_256_labels.nrrd",
                            "temporal_bone/RT138_256_labels.nrrd", "found4/labels/two-labels.nrrd",
                            "found4/labels/three-labels.nrrd"}) {
@@ -256,7 +256,7 @@ struct OddPhantom {
 };
 class RealOddPhantom : public ::testing::TestWithParam<OddPhantom> {};
 
-TEST_P(RealOddPhantom, IsRead) {
+TEST_P(RealOddPhantom, MatchesThePhantom) {
   const auto& [path, slice_mm, has_place, warning] = GetParam();
   OSTEOMILL_NEEDS_SHARED(path);
   const Scan scan = read_scan(shared_data() / path);

@@ -20,7 +20,7 @@ Scan some_scan() {
           {"one \xFF thing"}};
 }
 
-TEST(ScanSummary, JsonHasTheContractsKeys) {
+TEST(ScanSummary, JsonHasTheExpectedKeysAndValues) {
   const nlohmann::json json =
       nlohmann::json::parse(to_json(summarise(some_scan(), {10.0, "halfway", {{12, 3, 25}}}, 20.0)));
   EXPECT_EQ(json["dims"], nlohmann::json({3, 1, 2}));
@@ -38,7 +38,7 @@ TEST(ScanSummary, JsonHasTheContractsKeys) {
   EXPECT_EQ(json.size(), 12U);
 }
 
-TEST(ScanSummary, VoxelsWithoutADensityAreCountedAndEnterNothingElse) {
+TEST(ScanSummary, CountsVoxelsWithoutDensityButIgnoresThemOtherwise) {
   Scan scan = some_scan();
   const float none = std::numeric_limits<float>::quiet_NaN();
   scan.grid = DensityGrid(scan.grid.geometry(), {-5, none, 10, none, 30, 35});
@@ -50,7 +50,7 @@ TEST(ScanSummary, VoxelsWithoutADensityAreCountedAndEnterNothingElse) {
   EXPECT_NE(to_text(summary).find("no density  2 voxels"), std::string::npos);
 }
 
-TEST(ScanSummary, TextSaysTheSame) {
+TEST(ScanSummary, TextStatesTheSummaryValues) {
   const std::string text =
       to_text(summarise(some_scan(), {10.0, "halfway", {{12, 3, 25, true}, {30, 25, 35}}}, 20.0));
   for (const char* part :

@@ -51,7 +51,7 @@ struct Series {
 
 using Sizes = std::vector<std::size_t>;
 
-TEST(SeriesParts, AcquisitionsWhoseRangesOverlapOrCoincideAreTwo) {
+TEST(SeriesParts, SplitsAcquisitionsOfOverlappingRanges) {
   for (const double off_mm : {0.0, 0.25, 0.1, 3.0}) {
     Series series;
     for (int k = 0; k < 12; ++k) {
@@ -69,7 +69,7 @@ TEST(SeriesParts, AcquisitionsWhoseRangesOverlapOrCoincideAreTwo) {
   }
 }
 
-TEST(SeriesParts, AcquisitionsThatFollowEachOtherAreOne) {
+TEST(SeriesParts, KeepsConsecutiveAcquisitionsTogether) {
   // Every slice, or every rotation of four slices, has its own number; every other slice was acquired first.
   for (const int rotation : {1, 4}) {
     Series series;
@@ -84,7 +84,7 @@ TEST(SeriesParts, AcquisitionsThatFollowEachOtherAreOne) {
   EXPECT_EQ(interleaved.sizes(), Sizes{24});
 }
 
-TEST(SeriesParts, RepeatedRotationsMakeAVolumeEachTime) {
+TEST(SeriesParts, SplitsRepeatedRotationsIntoVolumes) {
   for (const int rotation : {1, 4}) {
     Series series;
     for (int n = 0; n < 72; ++n) series.add(0.5 * (n % 24), "acquisition", std::to_string(n / rotation));
@@ -94,7 +94,7 @@ TEST(SeriesParts, RepeatedRotationsMakeAVolumeEachTime) {
   }
 }
 
-TEST(SeriesParts, EveryMarkTellsTimePointsApart) {
+TEST(SeriesParts, SplitsTimePointsByAnyMark) {
   for (const MarkKind& kind : kMarkKinds) {
     if (kind.is_of_slices) continue;
     Series series;
@@ -108,7 +108,7 @@ TEST(SeriesParts, EveryMarkTellsTimePointsApart) {
   }
 }
 
-TEST(SeriesParts, TwoMarksTogetherGiveEveryPart) {
+TEST(SeriesParts, SplitsByTwoMarksTogether) {
   Series series;
   for (int n = 0; n < 48; ++n) {
     series.add(n / 4, "acquisition", std::to_string(n % 2));
@@ -118,7 +118,7 @@ TEST(SeriesParts, TwoMarksTogetherGiveEveryPart) {
   EXPECT_EQ(series.parts()[0].distinguishing_marks, "acquisition 0, kernel bone");
 }
 
-TEST(SeriesParts, OriginalsComeBeforeDerivedImagesAndMarksInTheOrderOfTheirNumbers) {
+TEST(SeriesParts, SortsOriginalsFirstAndMarksByNumber) {
   for (const auto& [mark, first, second] :
        {std::array{"image type", "ORIGINAL\\PRIMARY", "DERIVED\\SECONDARY"}, {"acquisition", "9", "10"}}) {
     Series series;
@@ -132,7 +132,7 @@ TEST(SeriesParts, OriginalsComeBeforeDerivedImagesAndMarksInTheOrderOfTheirNumbe
   }
 }
 
-TEST(SeriesParts, ASingleSliceThatMakesOthersUnevenIsAPart) {
+TEST(SeriesParts, SplitsOffASliceThatMakesOthersUneven) {
   Series series;
   for (int k = 0; k < 24; ++k) series.add(0.5 * k, "acquisition", "1");
   series.add(2.25, "acquisition", "2");
@@ -142,7 +142,7 @@ TEST(SeriesParts, ASingleSliceThatMakesOthersUnevenIsAPart) {
   EXPECT_EQ(even.sizes(), Sizes{24});
 }
 
-TEST(SeriesParts, SlicesOfOneVolumeStayTogetherWhateverTheirMarks) {
+TEST(SeriesParts, KeepsSlicesOfOneVolumeTogetherDespiteTheirMarks) {
   Series series;
   for (int k = 0; k < 24; ++k) series.add(0.5 * k, "image type", k == 5 || k == 11 ? "DERIVED" : "ORIGINAL");
   EXPECT_EQ(series.sizes(), Sizes{24});
@@ -155,14 +155,14 @@ TEST(SeriesParts, SlicesOfOneVolumeStayTogetherWhateverTheirMarks) {
   EXPECT_EQ(copied.sizes(), Sizes{27});
 }
 
-TEST(SeriesParts, NothingTellsApartWhatDiffersByItsTimeAlone) {
+TEST(SeriesParts, DoesNotSplitByTimeAlone) {
   Series series;
   for (int k = 0; k < 12; ++k) series.add(0.5 * k, "content time", std::to_string(k));
   series.add(2.0, "content time", "99");
   EXPECT_EQ(series.sizes(), Sizes{13});
 }
 
-TEST(SeriesParts, SizeSpacingAndOrientationPartToo) {
+TEST(SeriesParts, SplitsBySizeSpacingAndOrientation) {
   Series series;
   for (int k = 0; k < 12; ++k) {
     series.add(0.5 * k);

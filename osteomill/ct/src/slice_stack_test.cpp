@@ -49,7 +49,7 @@ Mat3 some_rotation() {
   return Quat(0.8, 0.2, -0.4, 0.4).normalized().toRotationMatrix();
 }
 
-TEST(SliceStack, LiesWhereThePositionsSayWhateverTheOrderOfTheFiles) {
+TEST(SliceStack, OrdersSlicesByPositionInAnyFileOrder) {
   const Mat3 axes = some_rotation();
   std::vector<SlicePlane> slices = series(12, 0.75, axes);
   std::shuffle(slices.begin(), slices.end(), std::mt19937(7));
@@ -66,7 +66,7 @@ TEST(SliceStack, LiesWhereThePositionsSayWhateverTheOrderOfTheFiles) {
   EXPECT_EQ(stack.drift_j_mm, 0);
 }
 
-TEST(SliceStack, RoundedPositionsAreNoGap) {
+TEST(SliceStack, AcceptsEvenSlicesWithRoundedPositions) {
   std::vector<SlicePlane> slices = series(200, 0.625);
   for (SlicePlane& slice : slices) slice.position_mm.z() = std::round(100 * slice.position_mm.z()) / 100;
   EXPECT_NEAR(stack_slices("folder", slices).geometry.spacing_mm.z(), 0.625, 1e-3);
@@ -84,7 +84,7 @@ std::vector<SlicePlane> rounded_series(double distance_mm, int decimals) {
   return slices;
 }
 
-TEST(SliceStack, PositionsThatAreRoundedLieInTheOrderOfTheirNumbers) {
+TEST(SliceStack, OrdersCoarselyRoundedPositionsByNumber) {
   for (const auto& [distance_mm, decimals] :
        {std::pair{0.15, 1}, {0.25, 1}, {0.33, 1}, {0.4, 0}, {0.625, 0}}) {
     std::vector<SlicePlane> slices = rounded_series(distance_mm, decimals);
@@ -99,7 +99,7 @@ TEST(SliceStack, PositionsThatAreRoundedLieInTheOrderOfTheirNumbers) {
   }
 }
 
-TEST(SliceStack, RoundingIsNoExcuseForASliceThatIsMissingOrRepeated) {
+TEST(SliceStack, RefusesMissingOrRepeatedSlicesDespiteRounding) {
   std::vector<SlicePlane> missing = rounded_series(0.25, 1);
   missing.erase(missing.begin() + 9);
   EXPECT_TRUE(contains(refusal(missing), "a slice is missing"));
@@ -115,7 +115,7 @@ TEST(SliceStack, RoundingIsNoExcuseForASliceThatIsMissingOrRepeated) {
   EXPECT_TRUE(contains(refusal(repeated), "different images at one position"));
 }
 
-TEST(SliceStack, ACopyIsKnownByItsPixels) {
+TEST(SliceStack, RecognisesACopyByItsPixels) {
   std::vector<SlicePlane> slices = series(6, 0.5);
   slices.push_back(slices[3]);
   slices.back().instance = "another";
@@ -126,7 +126,7 @@ TEST(SliceStack, ACopyIsKnownByItsPixels) {
   EXPECT_TRUE(contains(stack.warnings.at(0), "1 copy of other slices"));
 }
 
-TEST(SliceStack, CopiesOfSlicesWithRoundedPositionsAreLeftOut) {
+TEST(SliceStack, SkipsCopiesOfSlicesWithRoundedPositions) {
   for (const auto& [distance_mm, decimals] : {std::pair{0.15, 1}, {0.4, 0}}) {
     std::vector<SlicePlane> slices = rounded_series(distance_mm, decimals);
     for (const std::size_t k : {3U, 4U, 20U}) {
@@ -144,7 +144,7 @@ TEST(SliceStack, CopiesOfSlicesWithRoundedPositionsAreLeftOut) {
   }
 }
 
-TEST(SliceStack, AMissingSliceIsNamedByItsNeighbours) {
+TEST(SliceStack, ReportsBetweenWhichSlicesOneIsMissing) {
   for (const int missing : {1, 6, 10}) {
     std::vector<SlicePlane> slices = series(12, 0.25);
     slices.erase(slices.begin() + missing);
@@ -172,7 +172,7 @@ std::vector<float> pixels_of(const std::vector<SlicePlane>& slices, const SliceS
   return densities;
 }
 
-TEST(SliceStack, UnevenDistancesAreEvenedOutAndNamed) {
+TEST(SliceStack, InterpolatesUnevenSlicesWithAWarning) {
   const auto density = [](const Vec3& p) { return 1000 + 3 * p.x() - 5 * p.y() + 7 * p.z(); };
   // Slices with a change of the table feed, overlapping at the change.
   std::vector<SlicePlane> slices = series(11, 0);
@@ -202,7 +202,7 @@ TEST(SliceStack, UnevenDistancesAreEvenedOutAndNamed) {
   EXPECT_TRUE(stack.heights_mm.empty());
 }
 
-TEST(SliceStack, DistancesThatGrowAreNoticedHoweverSlowly) {
+TEST(SliceStack, WarnsOfSlowlyGrowingDistances) {
   std::vector<SlicePlane> slices = series(60, 1.0);
   for (std::size_t k = 0; k < slices.size(); ++k) {
     const auto n = static_cast<double>(k);
@@ -211,7 +211,7 @@ TEST(SliceStack, DistancesThatGrowAreNoticedHoweverSlowly) {
   EXPECT_TRUE(contains(stack_slices("folder", slices).warnings.front(), "uneven"));
 }
 
-TEST(SliceStack, WhatHasNoDensitySpreadsNoFurtherThanItIsUsed) {
+TEST(SliceStack, NanSpreadsOnlyToSlicesInterpolatedFromIt) {
   std::vector<SlicePlane> slices = series(5, 1);
   slices[4].position_mm.z() += 0.25;
   SliceStack stack = stack_slices("folder", slices);
@@ -227,20 +227,20 @@ TEST(SliceStack, WhatHasNoDensitySpreadsNoFurtherThanItIsUsed) {
   EXPECT_EQ(std::count(densities.begin(), densities.end(), 5.0F), 5 * 48 - 2);
 }
 
-TEST(SliceStack, ANegativePixelSpacingIsNoDifferenceBetweenSlices) {
+TEST(SliceStack, RefusesANegativePixelSpacing) {
   std::vector<SlicePlane> slices = series(4, 0.5);
   for (SlicePlane& slice : slices) slice.column_distance_mm = -0.125;
   EXPECT_TRUE(contains(refusal(slices), "voxels -0.125 mm apart"));
 }
 
-TEST(SliceStack, UnevenDistancesThatAreTooLargeAreRefused) {
+TEST(SliceStack, RefusesUnevenDistancesTooWideToInterpolate) {
   std::vector<SlicePlane> slices = series(12, 8);
   for (std::size_t k = 6; k < slices.size(); ++k)
     slices[k].position_mm.z() += 3 * (static_cast<double>(k) - 5);
   EXPECT_TRUE(contains(refusal(slices), "too wide to interpolate: 11 mm between slice5 and slice6"));
 }
 
-TEST(SliceStack, ACopyIsLeftOutAndAnotherImageAtItsPlaceIsNot) {
+TEST(SliceStack, SkipsACopyButRefusesAnotherImageAtItsPosition) {
   std::vector<SlicePlane> slices = series(5, 1.0);
   slices.push_back(slices[2]);
   slices.back().name = "again";
@@ -251,7 +251,7 @@ TEST(SliceStack, ACopyIsLeftOutAndAnotherImageAtItsPlaceIsNot) {
   EXPECT_TRUE(contains(refusal(slices), "different images at one position"));
 }
 
-TEST(SliceStack, WhatMakesNoGridIsRefused) {
+TEST(SliceStack, RefusesSlicesWithoutAGrid) {
   const auto changed = [](auto&& change) {
     std::vector<SlicePlane> slices = series(5, 1.0);
     change(slices[3]);
@@ -269,7 +269,7 @@ TEST(SliceStack, WhatMakesNoGridIsRefused) {
 }
 
 // Linear interpolation preserves a linear density exactly, so the result is known at every voxel.
-TEST(GantryTilt, EveryVoxelOfATiltedStackComesToItsPlace) {
+TEST(GantryTilt, CorrectionPreservesALinearDensity) {
   const auto density = [](const Vec3& p) { return 1000 + 3 * p.x() - 5 * p.y() + 7 * p.z(); };
   for (const Vec3& drift_mm : {Vec3(0.11, -0.2, 0), Vec3(-0.3, 0.07, 0), Vec3(0, 0.25, 0)}) {
     const Mat3 axes = some_rotation();
@@ -313,7 +313,7 @@ TEST(GantryTilt, EveryVoxelOfATiltedStackComesToItsPlace) {
   }
 }
 
-TEST(GantryTilt, AStraightStackIsLeftAlone) {
+TEST(GantryTilt, KeepsTheGridOfAStraightStack) {
   SliceStack stack = stack_slices("folder", series(3, 1.0));
   std::vector<float> densities(3 * 6 * 8, 5.0F);
   correct_gantry_tilt("folder", stack, densities);
@@ -321,7 +321,7 @@ TEST(GantryTilt, AStraightStackIsLeftAlone) {
   EXPECT_TRUE(stack.warnings.empty());
 }
 
-TEST(GantryTilt, MoreThanAGantryCanTiltIsRefused) {
+TEST(GantryTilt, RefusesATiltBeyondTheGantryLimit) {
   std::vector<SlicePlane> slices = series(4, 0.5);
   for (std::size_t k = 0; k < slices.size(); ++k) slices[k].position_mm.x() += 0.6 * static_cast<double>(k);
   SliceStack stack = stack_slices("folder", slices);

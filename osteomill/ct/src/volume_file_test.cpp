@@ -131,14 +131,14 @@ TEST_F(VolumeFile, NrrdIsPlacedByItsSpaceDirections) {
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(1 + 6, -2 + 0.5, 3 + 0.5)));
 }
 
-TEST_F(VolumeFile, RasIsTurnedToLps) {
+TEST_F(VolumeFile, ConvertsRasToLps) {
   std::string fields = "encoding: raw\n" + kPlaced;
   fields.replace(fields.find("LPS"), 3, "RAS");
   const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
 }
 
-TEST_F(VolumeFile, DetachedAndCompressedNrrdGiveTheSame) {
+TEST_F(VolumeFile, DetachedAndCompressedNrrdYieldTheSameVoxels) {
   write("a.raw", "skip" + voxels<std::int16_t>());
   expect_voxels(
       read_scan(write("a.nhdr", nrrd("encoding: raw\nbyte skip: 4\ndata file: a.raw\n" + kPlaced, ""))).grid);
@@ -149,14 +149,14 @@ TEST_F(VolumeFile, DetachedAndCompressedNrrdGiveTheSame) {
   expect_voxels(read_scan(write("c.nhdr", nrrd("encoding: gzip\ndata file: a.gz\n" + kPlaced, ""))).grid);
 }
 
-TEST_F(VolumeFile, LasIsTurnedToLps) {
+TEST_F(VolumeFile, ConvertsLasToLps) {
   std::string fields = "encoding: raw\n" + kPlaced;
   fields.replace(fields.find("LPS"), 3, "LAS");
   const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(7, 1.5, 3.5)));
 }
 
-TEST_F(VolumeFile, EveryTypeAndOrderOfBytesGivesTheSame) {
+TEST_F(VolumeFile, EveryTypeAndByteOrderYieldsTheSameVoxels) {
   for (const auto& [type, bytes, met, code] : {std::tuple{"short", voxels<std::int16_t>(), "MET_SHORT", 4},
                                                {"int", voxels<std::int32_t>(), "MET_INT", 8},
                                                {"int64", voxels<std::int64_t>(), "MET_LONG_LONG", 1024},
@@ -181,7 +181,7 @@ TEST_F(VolumeFile, EveryTypeAndOrderOfBytesGivesTheSame) {
   }
 }
 
-TEST_F(VolumeFile, TextIsReadAndChecked) {
+TEST_F(VolumeFile, ReadsTextVoxelsAndRefusesInvalidNumbers) {
   const std::string fields = "encoding: ascii\n" + kPlaced;
   std::string text;
   for (int k = 0; k < kDims[2]; ++k) {
@@ -201,7 +201,7 @@ TEST_F(VolumeFile, TextIsReadAndChecked) {
   EXPECT_LT(refusal(write("d.nrrd", nrrd(fields, text.substr(0, 60) + long_line))).size(), 200U);
 }
 
-TEST_F(VolumeFile, CompressedDataMayHaveBytesBeforeTheVoxels) {
+TEST_F(VolumeFile, SkipsBytesBeforeCompressedVoxels) {
   const std::string bytes = "skip" + voxels<std::int16_t>();
   write_gzip("a.gz", bytes);
   for (const char* skip : {"4", "-1"}) {
@@ -211,7 +211,7 @@ TEST_F(VolumeFile, CompressedDataMayHaveBytesBeforeTheVoxels) {
   }
 }
 
-TEST_F(VolumeFile, AFieldOrSpaceWithASlipIsRefused) {
+TEST_F(VolumeFile, RefusesUnknownFieldsSpacesAndKinds) {
   const std::string data = voxels<std::int16_t>();
   EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd("encoding: raw\nspace drections: 1\n", data))),
                        "unknown field \"spacedrections\""));
@@ -224,19 +224,19 @@ TEST_F(VolumeFile, AFieldOrSpaceWithASlipIsRefused) {
 }
 
 // Reading a pipe would block.
-TEST_F(VolumeFile, APipeIsNoDataFile) {
+TEST_F(VolumeFile, RefusesAPipeAsDataFile) {
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   EXPECT_TRUE(contains(refusal(write("a.nhdr", nrrd("encoding: raw\nline skip: 1\ndata file: pipe\n", ""))),
                        "pipe is not a regular file"));
 }
 
-TEST_F(VolumeFile, UnitsOfLengthAreTurnedToMillimetres) {
+TEST_F(VolumeFile, ConvertsUnitsOfLengthToMillimetres) {
   const std::string fields = "encoding: raw\nspacings: 20 20 40\nunits: \"um\" \"um\" \"um\"\n";
   const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
   EXPECT_TRUE(scan.grid.geometry().spacing_mm.isApprox(Vec3(0.02, 0.02, 0.04)));
 }
 
-TEST_F(VolumeFile, EveryAxisHasItsOwnUnit) {
+TEST_F(VolumeFile, AppliesTheUnitOfEachAxis) {
   const auto spacing_of = [&](const std::string& fields) {
     return Vec3(read_scan(write("a.nrrd", nrrd("encoding: raw\n" + fields, voxels<std::int16_t>())))
                     .grid.geometry()
@@ -257,7 +257,7 @@ TEST_F(VolumeFile, EveryAxisHasItsOwnUnit) {
 }
 
 // Voxels in three files of 8 and in two of 12.
-TEST_F(VolumeFile, VoxelsInSeveralFilesFollowEachOther) {
+TEST_F(VolumeFile, JoinsVoxelsOfSeveralFilesInOrder) {
   const std::string bytes = voxels<std::int16_t>();
   for (std::size_t n = 0; n < 3; ++n)
     write("s0" + std::to_string(8 + n) + ".raw", "x\n1234" + bytes.substr(16 * n, 16));
@@ -287,7 +287,7 @@ TEST_F(VolumeFile, VoxelsInSeveralFilesFollowEachOther) {
   EXPECT_TRUE(contains(refused("LIST\nz0.gz\n"), "cut short"));
 }
 
-TEST_F(VolumeFile, PatternsCountDownAndFillUp) {
+TEST_F(VolumeFile, FilePatternsCountDownAndPadWithZeros) {
   const std::string bytes = voxels<std::int16_t>();
   std::size_t first = 0;
   for (const char* name : {"s100.raw", "s055.raw", "s010.raw"}) {
@@ -299,7 +299,7 @@ TEST_F(VolumeFile, PatternsCountDownAndFillUp) {
           .grid);
 }
 
-TEST_F(VolumeFile, FourDimensionsOfOneVolumeAreRead) {
+TEST_F(VolumeFile, ReadsFourDimensionsThatHoldOneVolume) {
   const auto of = [&](const std::string& sizes, const std::string& fields) {
     std::string bytes = nrrd("encoding: raw\n" + fields, voxels<std::int16_t>());
     bytes.replace(bytes.find("dimension: 3\nsizes: 4 3 2"), 25, "dimension: 4\nsizes: " + sizes);
@@ -350,7 +350,7 @@ TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
 }
 
 // ITK's rules: fields may be in any order, and unknown ones are ignored.
-TEST_F(VolumeFile, OddHeadersOfMetaImageAreRead) {
+TEST_F(VolumeFile, ReadsUnusualMetaImageHeaders) {
   const std::string data = voxels<std::int16_t>();
   const std::string odd =
       "\n  \r\n# a comment\nComment = x = y\nElementType = met_short\nelementspacing = 0.5 0.25 2\r\n"
@@ -367,7 +367,7 @@ TEST_F(VolumeFile, OddHeadersOfMetaImageAreRead) {
   expect_voxels(read_scan(write("b.mha", mha("BinaryData = False\n", text))).grid);
 }
 
-TEST_F(VolumeFile, CompressedDataSizeOfMetaImageIsCheckedWhereItIsThere) {
+TEST_F(VolumeFile, ChecksCompressedDataSizeOfMetaImageIfPresent) {
   const std::string packed = zipped(voxels<std::int16_t>());
   const std::string fields = "CompressedData = True\n";
   expect_voxels(read_scan(write("a.mha", mha(fields, packed))).grid);
@@ -379,7 +379,7 @@ TEST_F(VolumeFile, CompressedDataSizeOfMetaImageIsCheckedWhereItIsThere) {
       contains(refusal(write("d.mha", mha(fields, voxels<std::int16_t>()))), "cannot be decompressed"));
 }
 
-TEST_F(VolumeFile, NiftiIsTurnedFromRasToLps) {
+TEST_F(VolumeFile, ConvertsNiftiFromRasToLps) {
   const Scan scan = read_scan(write("a.nii", Nifti().with(voxels<std::int16_t>())));
   expect_voxels(scan.grid);
   EXPECT_EQ(scan.format, "NIfTI");
@@ -387,14 +387,14 @@ TEST_F(VolumeFile, NiftiIsTurnedFromRasToLps) {
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
 }
 
-TEST_F(VolumeFile, SignsOfNiftiVoxelSizesArePassedOver) {
+TEST_F(VolumeFile, IgnoresSignsOfNiftiVoxelSizes) {
   const Scan scan = read_scan(
       write("a.nii", Nifti().set<float>(80, -0.5F).set<float>(88, -2.0F).with(voxels<std::int16_t>())));
   expect_voxels(scan.grid);
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
 }
 
-TEST_F(VolumeFile, DetachedMetaImageGivesTheSame) {
+TEST_F(VolumeFile, DetachedMetaImageYieldsTheSameVoxels) {
   const std::string packed = zipped(voxels<std::int16_t>());
   write("a.raw", voxels<std::int16_t>());
   write("b.raw", "skip" + voxels<std::int16_t>());
@@ -409,7 +409,7 @@ TEST_F(VolumeFile, DetachedMetaImageGivesTheSame) {
   }
 }
 
-TEST_F(VolumeFile, CompressedNiftiGivesTheSameAndIsCheckedToItsEnd) {
+TEST_F(VolumeFile, ReadsCompressedNiftiAndRefusesAnyTruncation) {
   const std::string bytes = Nifti().with(voxels<std::int16_t>());
   const std::filesystem::path path = write_gzip("a.nii.gz", bytes);
   expect_voxels(read_scan(path).grid);
@@ -420,7 +420,7 @@ TEST_F(VolumeFile, CompressedNiftiGivesTheSameAndIsCheckedToItsEnd) {
   }
 }
 
-TEST_F(VolumeFile, NiftiSlopeZeroMeansValuesAsStored) {
+TEST_F(VolumeFile, NiftiSlopeOfZeroKeepsStoredValues) {
   expect_voxels(read_scan(write("a.nii", Nifti().set<float>(116, 5.0F).with(voxels<std::int16_t>()))).grid);
   const Scan scan = read_scan(
       write("b.nii", Nifti().set<float>(112, 2.0F).set<float>(116, 5.0F).with(voxels<std::int16_t>())));
@@ -428,7 +428,7 @@ TEST_F(VolumeFile, NiftiSlopeZeroMeansValuesAsStored) {
   EXPECT_EQ(scan.grid[second], 2 * -49 + 5);
 }
 
-TEST_F(VolumeFile, NiftiWithoutAScalingHasItsValuesAsStored) {
+TEST_F(VolumeFile, NiftiSlopeOfNanKeepsStoredValuesWithAWarning) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const float intercept : {nan, 5.0F, std::numeric_limits<float>::infinity()}) {
     const Scan scan = read_scan(
@@ -446,7 +446,7 @@ Nifti with_qform() {
   return Nifti().set<std::int16_t>(252, 1).set<float>(268, 9).set<float>(272, 8).set<float>(276, 7);
 }
 
-TEST_F(VolumeFile, AQformStandsInForAnSformThatCannotBeUsed) {
+TEST_F(VolumeFile, UsesTheQformIfTheSformIsUnusable) {
   const auto expect_qform = [&](const Nifti& nifti, const std::string& warning) {
     const Scan scan = read_scan(write("a.nii", nifti.with(voxels<std::int16_t>())));
     expect_voxels(scan.grid);
@@ -485,7 +485,7 @@ TEST_F(VolumeFile, AQformStandsInForAnSformThatCannotBeUsed) {
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
 }
 
-TEST_F(VolumeFile, AShearOfATenthOfADegreeIsPutStraight) {
+TEST_F(VolumeFile, CorrectsAShearOfATenthOfADegree) {
   const std::string data = voxels<std::int16_t>();
   const std::string directions =
       "encoding: raw\nspace: LPS\nspace directions: (0.5,0,0) (0.00175,1,0) (0,0,2)\n";
@@ -531,7 +531,7 @@ std::string nifti2(const std::string& magic) {
   return bytes;
 }
 
-TEST_F(VolumeFile, Nifti2AndPairsOfFilesGiveTheSame) {
+TEST_F(VolumeFile, Nifti2AndFilePairsYieldTheSameScan) {
   const std::string data = voxels<std::int16_t>();
   const auto expect_scan = [&](const std::filesystem::path& path) {
     const Scan scan = read_scan(path);
@@ -562,7 +562,7 @@ TEST_F(VolumeFile, Nifti2AndPairsOfFilesGiveTheSame) {
   EXPECT_TRUE(contains(refusal(write("e.nii", nifti2("n+2").substr(0, 400))), "cut short in its header"));
 }
 
-TEST_F(VolumeFile, CutShortByOneByteIsRefused) {
+TEST_F(VolumeFile, RefusesDataTruncatedByOneByte) {
   const std::string data = voxels<std::int16_t>();
   const std::string shorter = data.substr(0, data.size() - 1);
   const std::string packed = zipped(data);
@@ -575,7 +575,7 @@ TEST_F(VolumeFile, CutShortByOneByteIsRefused) {
   EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().with(shorter))), "48 bytes, it has 47"));
 }
 
-TEST_F(VolumeFile, HugeSizesAreRefusedBeforeAnythingIsAllocated) {
+TEST_F(VolumeFile, RefusesHugeSizes) {
   std::string bytes = nrrd("encoding: raw\n" + kPlaced, voxels<std::int16_t>());
   bytes.replace(bytes.find("4 3 2"), 5, "9000 9000 9000");
   EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "cut short"));
@@ -584,7 +584,7 @@ TEST_F(VolumeFile, HugeSizesAreRefusedBeforeAnythingIsAllocated) {
   EXPECT_TRUE(contains(refusal(write("a.mha", bytes)), "impossible size"));
 }
 
-TEST_F(VolumeFile, AxesThatAreNotOrthogonalAreRefused) {
+TEST_F(VolumeFile, RefusesNonOrthogonalAxes) {
   const std::string sheared = "encoding: raw\nspace: LPS\nspace directions: (1,0,0) (0.2,1,0) (0,0,1)\n";
   EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(sheared, voxels<std::int16_t>()))), "right angles"));
   EXPECT_TRUE(contains(
@@ -594,7 +594,7 @@ TEST_F(VolumeFile, AxesThatAreNotOrthogonalAreRefused) {
                        "right angles"));
 }
 
-TEST_F(VolumeFile, DirectionsThatAreNoUnitVectorsAreRefused) {
+TEST_F(VolumeFile, RefusesDirectionsThatAreNotUnitVectors) {
   for (const char* length : {"0", "1e-200", "0.5", "2", "1e200", "1e308", "nan"}) {
     const std::string field = std::string("TransformMatrix = ") + length + " 0 0 0 1 0 0 0 1\n";
     EXPECT_TRUE(contains(refusal(write("a.mha", mha(field, voxels<std::int16_t>()))), "not of length 1"))
@@ -604,7 +604,7 @@ TEST_F(VolumeFile, DirectionsThatAreNoUnitVectorsAreRefused) {
   EXPECT_TRUE(contains(refusal(write("a.nii", by_qform.with(voxels<std::int16_t>()))), "not a rotation"));
 }
 
-TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
+TEST_F(VolumeFile, RefusesInvalidSpacings) {
   for (const char* spacing : {"0 1 1", "-1 1 1", "nan 1 1", "inf 1 1"}) {
     const std::string fields = std::string("spacings: ") + spacing + "\nencoding: raw\n";
     EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(fields, voxels<std::int16_t>()))), "mm apart"))
@@ -621,7 +621,7 @@ TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
                        "different voxel sizes"));
 }
 
-TEST_F(VolumeFile, PlacesThatNoBoneCanHaveAreRefused) {
+TEST_F(VolumeFile, RefusesImplausibleSpacingsAndOrigins) {
   const auto of = [&](const std::string& spacings, const std::string& origin) {
     const std::string fields = "space: LPS\nspace directions: (" + spacings + ",0,0) (0,1,0) (0,0,1)\n" +
                                "space origin: (0," + origin + ",0)\nencoding: raw\n";
@@ -647,7 +647,7 @@ std::string floats_with(float odd, std::string data = voxels<float>()) {
   return bytes.replace(bytes.find("short"), 5, "float");
 }
 
-TEST_F(VolumeFile, VoxelsBeyondAllDensityAreRefused) {
+TEST_F(VolumeFile, RefusesInvalidOrEntirelyMissingDensities) {
   for (const float bad : {std::numeric_limits<float>::infinity(), -1e30f})
     EXPECT_TRUE(contains(refusal(write("a.nrrd", floats_with(bad))), "1 voxels have no valid density"));
   std::string none;
@@ -656,7 +656,7 @@ TEST_F(VolumeFile, VoxelsBeyondAllDensityAreRefused) {
   EXPECT_TRUE(contains(refusal(write("a.nrrd", floats_with(nan, none))), "no density at all"));
 }
 
-TEST_F(VolumeFile, AVoxelThatIsNoNumberCountsInNothing) {
+TEST_F(VolumeFile, NanVoxelHasNoDensityAndCausesAWarning) {
   const Scan scan = read_scan(write("a.nrrd", floats_with(std::numeric_limits<float>::quiet_NaN())));
   EXPECT_EQ(scan.grid.voxels_without_density(), 1U);
   EXPECT_FALSE(scan.grid.has_density(7));
@@ -665,7 +665,7 @@ TEST_F(VolumeFile, AVoxelThatIsNoNumberCountsInNothing) {
   EXPECT_TRUE(contains(scan.warnings[0], "1 voxels have no density (NaN)"));
 }
 
-TEST_F(VolumeFile, WhatIsNoGreyVolumeIsRefused) {
+TEST_F(VolumeFile, RefusesDataOtherThanASingleGreyVolume) {
   std::string bytes = nrrd("encoding: raw\n" + kPlaced, voxels<std::int16_t>());
   bytes.replace(bytes.find("dimension: 3\nsizes: 4 3 2"), 25, "dimension: 2\nsizes: 4 6");
   EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "2 dimensions"));
@@ -678,7 +678,7 @@ TEST_F(VolumeFile, WhatIsNoGreyVolumeIsRefused) {
                        "type 128"));
 }
 
-TEST_F(VolumeFile, WhatIsNoScanIsRefusedByName) {
+TEST_F(VolumeFile, RefusesAFileThatIsNotAScan) {
   EXPECT_TRUE(contains(refusal(folder_ / "none.nrrd"), "none.nrrd: no such file"));
   EXPECT_TRUE(contains(refusal(write("empty.nrrd", "")), "empty.nrrd: is empty"));
   EXPECT_TRUE(contains(refusal(write("text.nrrd", "hello\n")), "is not NRRD"));

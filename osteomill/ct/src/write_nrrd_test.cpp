@@ -45,7 +45,7 @@ std::string type_in(const std::filesystem::path& path) {
   return line.substr(6);
 }
 
-TEST_F(WriteNrrd, ComesBackInItsFrameInTheSmallestTypeThatHoldsIt) {
+TEST_F(WriteNrrd, RoundTripsFrameAndValuesInTheSmallestType) {
   const std::filesystem::path path = folder_ / "out.nrrd";
   for (const bool mirrored : {false, true}) {
     const GridGeometry frame = oblique_frame(mirrored);
@@ -64,7 +64,7 @@ TEST_F(WriteNrrd, ComesBackInItsFrameInTheSmallestTypeThatHoldsIt) {
 }
 
 // More data than the writer compresses at once.
-TEST_F(WriteNrrd, ComesBackHoweverLong) {
+TEST_F(WriteNrrd, RoundTripsALargeGrid) {
   GridGeometry geometry;
   geometry.dims = {101, 67, 53};
   std::vector<float> densities(geometry.voxel_count());
@@ -78,7 +78,7 @@ TEST_F(WriteNrrd, ComesBackHoweverLong) {
   expect_same(read_scan(folder_ / "out.nrrd").grid, grid);
 }
 
-TEST_F(WriteNrrd, OfOddScansComesBackAsTheyWereRead) {
+TEST_F(WriteNrrd, RoundTripsScansOfUnusualOrientation) {
   OSTEOMILL_NEEDS_SHARED("volumes_odd/nrrd");
   for (const char* name : {"rotated.nrrd", "flipped_axis.nrrd", "permuted_axes.nrrd", "space_ras.nrrd"}) {
     const Scan scan = read_scan(testing_support::shared_data() / "volumes_odd/nrrd" / name);

@@ -33,7 +33,7 @@ class ZipArchive : public testing_support::FolderTest {
   }
 };
 
-TEST_F(ZipArchive, HoldsAScanAndNamesItself) {
+TEST_F(ZipArchive, ReadsItsOnlyScanAndRefusesNoneOrSeveral) {
   const Scan scan =
       read_scan(write_zip({{"case/", ""}, {"case\\a.nrrd", kNrrd}, {"__MACOSX/case/._a.nrrd", "x"}}));
   EXPECT_EQ(scan.grid[(VoxelIndex{1, 1, 1})], 8);
@@ -45,13 +45,13 @@ TEST_F(ZipArchive, HoldsAScanAndNamesItself) {
   EXPECT_TRUE(contains(refusal(write_zip({{"readme", "hello"}})), "scan.zip: holds no scan"));
 }
 
-TEST_F(ZipArchive, WritesNowhereElse) {
+TEST_F(ZipArchive, RefusesMemberPathsThatLeadOutOfTheArchive) {
   for (const char* name : {"../a.nrrd", "case/../../a.nrrd", "/tmp/osteomill_a.nrrd", "..\\a.nrrd"}) {
     EXPECT_TRUE(contains(refusal(write_zip({{name, kNrrd}})), "leads out of the archive")) << name;
   }
 }
 
-TEST_F(ZipArchive, ThatUnpacksToMoreThanAllowedIsRefused) {
+TEST_F(ZipArchive, RefusesToUnpackMoreThanTheMemoryLimit) {
   const fs::path bomb =
       write_zip({{"a", std::string(10'000'000, '\0')}, {"b", std::string(10'000'000, '\0')}});
   EXPECT_LT(fs::file_size(bomb), 100'000U);
@@ -64,7 +64,7 @@ TEST_F(ZipArchive, ThatUnpacksToMoreThanAllowedIsRefused) {
   }
 }
 
-TEST_F(ZipArchive, WhereverItIsCutOrDamagedThatIsNoticed) {
+TEST_F(ZipArchive, RefusesATruncatedOrCorruptedArchive) {
   const fs::path path = write_zip({{"a.nrrd", kNrrd}});
   std::ifstream in(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), {});

@@ -32,9 +32,9 @@ Attempt attempt_removing(const PlacedExercise& placed, const Volume& scan, const
   return {&placed, &scan, std::move(after), std::move(removed), {}, {}, std::move(left), {}, {}};
 }
 
-class MeasuresOfABox : public ::testing::Test {
+class BoxMeasures : public ::testing::Test {
  protected:
-  MeasuresOfABox() {
+  BoxMeasures() {
     exercise_.no_go.push_back({"nerve", region_of({BoxShape{{-7, -2, -7}, {7, 2, -6}}}), 3});
     exercise_.keep = region_of({BoxShape{{3, -3, -2}, {5, 3, 0}}});
     placed_ = place_exercise(exercise_, scan_);
@@ -54,7 +54,7 @@ class MeasuresOfABox : public ::testing::Test {
   PlacedExercise placed_;
 };
 
-TEST_F(MeasuresOfABox, CountHowMuchOfTheTargetAndOfWhatIsOutsideWasRemoved) {
+TEST_F(BoxMeasures, CountBoneRemovedInsideAndOutsideTheTarget) {
   // The target is 4 x 4 x 4 mm; this removes its upper half, and half as much next to it.
   const Attempt attempt = removing({{-2, -2, -2}, {4, 2, 0}});
   EXPECT_DOUBLE_EQ(measured("target_removed_percent", attempt), 50);
@@ -66,7 +66,7 @@ TEST_F(MeasuresOfABox, CountHowMuchOfTheTargetAndOfWhatIsOutsideWasRemoved) {
   EXPECT_DOUBLE_EQ(measured("no_go_removed_mm3", attempt), 0);
 }
 
-TEST_F(MeasuresOfABox, FindTheBoneLeftOverAStructure) {
+TEST_F(BoxMeasures, ReportTheThicknessOfBoneLeftAboveAStructure) {
   // From z = -4.5 to the structure's top at -6.
   const Attempt attempt = removing({{-2, -2, -4.5}, {2, 2, 0}});
   EXPECT_NEAR(measured("thickness_left_min_mm", attempt), 1.5, 0.01);
@@ -74,7 +74,7 @@ TEST_F(MeasuresOfABox, FindTheBoneLeftOverAStructure) {
   EXPECT_TRUE(std::isnan(measured("thickness_left_min_mm", removing({{-1, -1, 5}, {1, 1, 6}}))));
 }
 
-TEST_F(MeasuresOfABox, TimeContactsFromTheTickInWhichTheBurrReachesTheStructure) {
+TEST_F(BoxMeasures, CountAndTimeContactsOfASpinningBurrWithAStructure) {
   // Moves down at 1 mm/s from z = -3: a burr of 1 mm reaches z = -6 after 2 s; then up again; twice.
   std::vector<AttemptTick> ticks;
   for (int pass = 0; pass < 2; ++pass) {
@@ -103,7 +103,7 @@ TEST_F(MeasuresOfABox, TimeContactsFromTheTickInWhichTheBurrReachesTheStructure)
   EXPECT_TRUE(std::isnan(measured("no_go_first_contact_s", with_ticks(ticks))));
 }
 
-TEST_F(MeasuresOfABox, TellForceAndSpeedApartByTheDistanceFromStructures) {
+TEST_F(BoxMeasures, GroupForceAndRemovalRateByDistanceFromStructures) {
   std::vector<AttemptTick> ticks;
   const auto cut = [&](double z, double force_N, double removed_mm3, double radius_mm, int count) {
     for (int n = 0; n < count; ++n)
@@ -129,7 +129,7 @@ TEST_F(MeasuresOfABox, TellForceAndSpeedApartByTheDistanceFromStructures) {
   EXPECT_NEAR(measured("cutting_s", attempt), 0.1, 1e-12);
 }
 
-TEST_F(MeasuresOfABox, AreEmptyIfTheyCannotBeMeasured) {
+TEST_F(BoxMeasures, AreNaNIfTheirInputIsMissing) {
   for (const char* name : {"hidden_cutting_percent", "view_changes", "step_s", "dice_peak_percent",
                            "taper_deg", "undercut_mm3", "reduction_median_mm"})
     EXPECT_TRUE(std::isnan(measured(name, with_ticks({})))) << name;
@@ -143,7 +143,7 @@ TEST_F(MeasuresOfABox, AreEmptyIfTheyCannotBeMeasured) {
     EXPECT_TRUE(std::isnan(measured(name, attempt))) << name;
 }
 
-TEST_F(MeasuresOfABox, BecomeARowForEachItemAndStructure) {
+TEST_F(BoxMeasures, ReportARowPerItemAndPerStructure) {
   exercise_.items.push_back({"target_removed_percent", "", 40.0, std::nullopt, "a book, page 3", {}, 1});
   exercise_.items.push_back({"target_removed_percent", "", std::nullopt, 45.0, "", {}, 2});
   exercise_.items.push_back({"thickness_left_min_mm", "nerve", 1.0, std::nullopt, "", {}, 3});
@@ -165,7 +165,7 @@ TEST_F(MeasuresOfABox, BecomeARowForEachItemAndStructure) {
   EXPECT_EQ(of_nerve, 9u);
 }
 
-TEST_F(MeasuresOfABox, TimeEachStepFromWhenThoseBeforeItWereDone) {
+TEST_F(BoxMeasures, TimeEachStepFromTheEndOfThePreviousOne) {
   exercise_.steps = {{"upper", region_of({BoxShape{{-2, -2, -2}, {2, 2, 0}}}), 50},
                      {"lower", region_of({BoxShape{{-2, -2, -4}, {2, 2, -2}}}), 100}};
   placed_ = place_exercise(exercise_, scan_);
@@ -191,7 +191,7 @@ TEST_F(MeasuresOfABox, TimeEachStepFromWhenThoseBeforeItWereDone) {
   EXPECT_DOUBLE_EQ(way.back().removed_outside_mm3, 16);
 }
 
-TEST(Perforation, IsAWayThroughAStructureAndNotAHoleInIt) {
+TEST(Perforation, IsReportedForAThroughHoleButNotForABlindHole) {
   Volume scan = bone_below_zero(0.25);
   const auto hollow = [&](const BoxShape& box) {
     region_voxels(region_of({box}), scan, "task.toml").for_each([&](const VoxelIndex& v) {
@@ -221,7 +221,7 @@ ViewSample view_from(const Vec3& eye_W, const Vec3& towards_viewer_W) {
   return view;
 }
 
-TEST(IsHidden, ByBoneUnlessItIsCutAwayOrByThePicturesEdge) {
+TEST(IsHidden, ReturnsTrueForOccludedClippedOrOffscreenPoints) {
   Volume bone = bone_below_zero(0.25);
   region_voxels(region_of({BoxShape{{-2, -2, -5}, {2, 2, -4}}}), bone, "task.toml")
       .for_each([&](const VoxelIndex& v) { bone.lower_density(v, 0); });
@@ -267,7 +267,7 @@ TEST(ViewChanges, CountMotionsThatBeginAfterARest) {
   EXPECT_EQ(view_changes(views), 2);
 }
 
-TEST(SeenContacts, AreThoseOfTheSessionsViews) {
+TEST(HiddenCutting, IsMeasuredFromTheRecordedViews) {
   const Volume bone = bone_below_zero(0.25, 10);
   std::vector<Vec3> places = way({0.03, 0.05, 1.6}, {0.03, 0.05, 0.4}, 0.004);
   places.resize(places.size() + 300, places.back());
@@ -296,7 +296,7 @@ TEST(SeenContacts, AreThoseOfTheSessionsViews) {
   EXPECT_EQ(attempt.removal_times_s.size(), attempt.removed.count());
 }
 
-TEST(Strokes, EndWhereTheirDirectionTurns) {
+TEST(Strokes, EndWhereTheirDirectionReverses) {
   // Five strokes of 6 mm back and forth at 20 mm/s, with a shake of 0.05 mm.
   std::vector<AttemptTick> ticks;
   for (int stroke = 0; stroke < 5; ++stroke) {
@@ -313,7 +313,7 @@ TEST(Strokes, EndWhereTheirDirectionTurns) {
   }
 }
 
-TEST(Strokes, EndAfterATimeWithoutCutting) {
+TEST(Strokes, EndAtALongPauseButNotAtAShortOne) {
   std::vector<AttemptTick> ticks;
   for (int n = 0; n < 900; ++n) {
     const bool pauses = (n >= 200 && n < 250) || (n >= 500 && n < 700);
@@ -339,7 +339,7 @@ class CutVolume : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(AtSpacings, CutVolume, ::testing::Values(0.125, 0.25),
                          [](const auto& of) { return of.param < 0.2 ? "EighthOfAMm" : "QuarterOfAMm"; });
 
-TEST_P(CutVolume, OfASphereIsWithinTwoPercent) {
+TEST_P(CutVolume, MatchesASphereWithinTwoPercent) {
   const Volume bone = bone_below_zero(GetParam(), 8);
   const SphereShape sphere{{0.03, 0.05, -1.9}, 1.5};
   const PlacedExercise placed = place_exercise(exercise_with_target(region_of({sphere})), bone);
@@ -350,7 +350,7 @@ TEST_P(CutVolume, OfASphereIsWithinTwoPercent) {
   EXPECT_GT(measured("dice_percent", attempt), 98);
 }
 
-TEST_P(CutVolume, OfASlotIsWithinTwoPercent) {
+TEST_P(CutVolume, MatchesASlotWithinTwoPercent) {
   const Volume bone = bone_below_zero(GetParam(), 10);
   const Vec3 from(-2, 0.05, -1.4), to(2, 0.05, -1.4);
   const PlacedExercise placed =
@@ -363,7 +363,7 @@ TEST_P(CutVolume, OfASlotIsWithinTwoPercent) {
   EXPECT_NEAR(measured("removed_mm3", attempt), expected_mm3, 0.02 * expected_mm3);
 }
 
-TEST_P(CutVolume, OfASessionIsThatWhichItsMillCounted) {
+TEST_P(CutVolume, MatchesTheMillsCountWithinTwoPercent) {
   const Volume bone = bone_below_zero(GetParam(), 8);
   std::vector<Vec3> places = way({0.03, 0.05, 2.2}, {0.03, 0.05, 0.2}, 0.005);
   places.resize(places.size() + 3000, places.back());
@@ -402,7 +402,7 @@ double swept_mm3(const Recording& recording, double radius_mm) {
 
 // A resting burr would widen its hole: the margin of the haptic algorithm then holds it off by up to 0.1 mm,
 // which milling bridges.
-TEST_P(CutVolume, OfAPlungeAndOfASlotIsThatSweptByTheToolWithinTwoPercent) {
+TEST_P(CutVolume, MatchesTheToolsSweptVolumeWithinTwoPercent) {
   const Volume bone = bone_below_zero(GetParam(), 10);
   const PlacedExercise placed =
       place_exercise(exercise_with_target(region_of({SphereShape{{0.03, 0.05, 0.2}, 1.5}})), bone);
@@ -425,7 +425,7 @@ TEST_P(CutVolume, OfAPlungeAndOfASlotIsThatSweptByTheToolWithinTwoPercent) {
 }
 
 // A conical frustum within a cylinder of 4 mm; its sides lean by 4 degrees.
-TEST(Crown, HasTheReductionAndTaperOfItsShapes) {
+TEST(Crown, MeasuresReductionTaperAndUndercutOfKnownShapes) {
   const double lean = 4 * std::numbers::pi / 180;
   GridGeometry grid = centred_cube(56, 0.2);
   const auto cylinder = [](const Vec3& p) { return std::max(p.head<2>().norm() - 4, p.z() - 4); };

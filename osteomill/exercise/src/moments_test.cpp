@@ -17,9 +17,9 @@ namespace {
 using namespace testing_support;
 
 /// A session in the target, and then in a groove 9 mm long next to it.
-class MomentsOfAGroove : public ::testing::Test {
+class GrooveMoments : public ::testing::Test {
  protected:
-  MomentsOfAGroove() {
+  GrooveMoments() {
     std::vector<Vec3> places = way({0, 0, 2}, {0, 0, -0.4}, 0.004);
     for (const auto& [from, to] : {std::pair{Vec3(0, 0, 2), Vec3(-5, 5, 2)},
                                    {Vec3(-5, 5, 2), Vec3(-5, 5, 0.2)},
@@ -36,7 +36,7 @@ class MomentsOfAGroove : public ::testing::Test {
   Recording recording_;
 };
 
-TEST_F(MomentsOfAGroove, BeginInTheTickAndAtThePlaceInWhichBoneOutsideWentFirst) {
+TEST_F(GrooveMoments, BeginAtTheTickThatFirstRemovesBoneOutsideTheTarget) {
   // Checks all voxels after every tick.
   std::vector<std::size_t> gone;
   Volume bone = scan_;
@@ -71,7 +71,7 @@ TEST_F(MomentsOfAGroove, BeginInTheTickAndAtThePlaceInWhichBoneOutsideWentFirst)
   EXPECT_NEAR(removed_mm3, 0.125 * static_cast<double>(gone.back()), 1e-9);
 }
 
-TEST(Spread, IsThePredictionIntervalOfStudentsT) {
+TEST(Spread, MatchesStudentsTPredictionIntervalFromFourValuesUp) {
   // The 97.5th percentiles of Student's t for 3, 4 and 9 degrees of freedom are 3.182, 2.776 and 2.262.
   EXPECT_TRUE(std::isnan(spread_of({1, 2, 3}).width));
   const Spread of_four = spread_of({1, 2, 3, 4}), of_five = spread_of({10, 12, 14, 16, 18});

@@ -28,14 +28,14 @@ std::string refusal(const Exercise& exercise, const Volume& bone) {
   return "";
 }
 
-TEST(PlaceExercise, TakesTheBoneOfTheTargetAndNotTheAirAboveIt) {
+TEST(PlaceExercise, TargetContainsBoneButNotTheAirAboveIt) {
   const Volume bone = bone_below_zero(0.25);
   const CylinderShape cylinder{{0.1, 0.2, 3}, {0.1, 0.2, -3}, 2};
   const PlacedExercise placed = place_exercise(exercise_with_target(region_of({cylinder})), bone);
   EXPECT_NEAR(volume_mm3(bone, placed.target), std::numbers::pi * 4 * 3, 0.02 * std::numbers::pi * 12);
 }
 
-TEST(PlaceExercise, FacesUpFromAFissureOfWhichItHasOneWall) {
+TEST(PlaceExercise, FacesOutOfTheSurfaceNotIntoAnAdjacentFissure) {
   // A slit of 1 mm, 6 mm deep, next to which the target has much more wall than surface.
   const auto below = plane(Vec3::Zero(), Vec3::UnitZ());
   const Volume bone = shape_volume(centred_cube(64, 0.25), [&](const Vec3& p) {
@@ -46,7 +46,7 @@ TEST(PlaceExercise, FacesUpFromAFissureOfWhichItHasOneWall) {
   EXPECT_EQ(placed.outward_W, Vec3::UnitZ());
 }
 
-TEST(PlaceExercise, FacesOutOfTheBoneAndColoursWhatTheTraineeIsShown) {
+TEST(PlaceExercise, FacesOutOfTheBoneAndLabelsTargetAndStructures) {
   const Volume bone = bone_below_zero(0.25);
   Exercise exercise = exercise_with_target(region_of({BoxShape{{-2, -2, -2}, {2, 2, 0}}}));
   exercise.no_go.push_back({"nerve", region_of({BoxShape{{-2, -2, -6}, {2, 2, -5}}}), 3});
@@ -62,7 +62,7 @@ TEST(PlaceExercise, FacesOutOfTheBoneAndColoursWhatTheTraineeIsShown) {
   EXPECT_EQ(name_at({0, 0, -3}), "");
 }
 
-TEST(PlaceExercise, GivesGuardsToTheBoneWithoutWhichARecordingDoesNotReplay) {
+TEST(PlaceExercise, GuardsStructuresAndReplayFailsWithoutThem) {
   Volume bone = bone_below_zero(0.25);
   const Volume plain = bone;
   Exercise exercise = exercise_with_target(region_of({BoxShape{{3, 3, -2}, {5, 5, 0}}}));
@@ -104,7 +104,7 @@ TEST(PlaceExercise, IntersectsTheShapesOfARegion) {
   EXPECT_EQ(placed.target.count(), 16u * 16u * 6u);
 }
 
-TEST(PlaceExercise, FindsNoShellAboutAHollowThatTheBoneEncloses) {
+TEST(PlaceExercise, ShellRegionIgnoresAnEnclosedCavity) {
   const Volume bone = shape_volume(centred_cube(60, 0.25),
                                    [](const Vec3& p) { return std::max(p.norm() - 6, 2 - p.norm()); });
   const Region layer = region_of({ShellShape{1}});
@@ -112,7 +112,7 @@ TEST(PlaceExercise, FindsNoShellAboutAHollowThatTheBoneEncloses) {
   EXPECT_NEAR(volume_mm3(bone, region_voxels(layer, bone, "task.toml")), expected_mm3, 0.03 * expected_mm3);
 }
 
-TEST(PlaceExercise, MeasuresHowFarAStructureLiesFromTheTarget) {
+TEST(PlaceExercise, MeasuresTheDistanceFromTargetToStructure) {
   const Volume bone = bone_below_zero(0.25);
   Exercise exercise = exercise_with_target(region_of({BoxShape{{-2, -2, -2}, {2, 2, 0}}}));
   exercise.no_go.push_back({"nerve", region_of({SphereShape{{0, 0, -6}, 1}}), 3});
@@ -121,7 +121,7 @@ TEST(PlaceExercise, MeasuresHowFarAStructureLiesFromTheTarget) {
   EXPECT_NEAR(no_go_distance_mm(*placed.distances, {0, 0, -2}, 0.5), 2.5, 1e-12);
 }
 
-TEST(PlaceExercise, RefusesWhatDoesNotFitTheScanAndNamesTheLine) {
+TEST(PlaceExercise, RefusesRegionsThatDoNotFitTheScanAndNamesTheLine) {
   Volume bone = bone_below_zero(0.5);
   const auto with_target = [](Shape shape) { return exercise_with_target(region_of({std::move(shape)})); };
   EXPECT_EQ(refusal(with_target(BoxShape{{-1, -1, 2}, {1, 1, 3}}), bone),

@@ -20,7 +20,7 @@ double setting(std::string_view algorithm, const HapticSettings& settings, const
   return -1;
 }
 
-TEST(Algorithms, OneNameStandsOnceWhateverItsLabels) {
+TEST(Algorithms, SortedUniqueKeepsOneEntryPerName) {
   const std::vector<AlgorithmId> once =
       sorted_unique({{"a", "1 a", ""}, {"b", "2 b", ""}, {"a", "3 a", ""}, {"b", "2 b", ""}});
   ASSERT_EQ(once.size(), 2u);
@@ -28,7 +28,7 @@ TEST(Algorithms, OneNameStandsOnceWhateverItsLabels) {
   EXPECT_EQ(once[1], "b");
 }
 
-TEST(MakeAlgorithm, DefaultsAreThePapers) {
+TEST(MakeAlgorithm, DefaultsToThePublishedSettings) {
   const HapticSettings paper;
   EXPECT_EQ(setting("line-proxy", paper, "vertices"), 51);
   EXPECT_EQ(setting("line-proxy", paper, "stiffness"), 5);
@@ -39,7 +39,7 @@ TEST(MakeAlgorithm, DefaultsAreThePapers) {
   EXPECT_EQ(setting("point-shell", paper, "torsional-stiffness"), 2500);
 }
 
-TEST(MakeAlgorithm, WhatTheUserSaysWins) {
+TEST(MakeAlgorithm, UserOptionsOverrideTheDefaults) {
   HapticSettings settings;
   settings.set_option("stiffness", 3);
   settings.set_option("shell-scale", 2);
@@ -54,7 +54,7 @@ TEST(MakeAlgorithm, WhatTheUserSaysWins) {
 }
 
 // Pushes the shaft's end first against a sheet two voxels thick; the device moves 5 mm past it.
-TEST(BarrierShell, HoldsTheShaftsEndAtAnySpeed) {
+TEST(BarrierShell, KeepsTheShaftFromPiercingASheetUpTo300mmPerSecond) {
   constexpr double kTick_s = 1e-3;
   constexpr double kSheetTop_mm = 0.25;
   const Volume bone = testing_support::shape_volume(
@@ -77,7 +77,7 @@ TEST(BarrierShell, HoldsTheShaftsEndAtAnySpeed) {
   }
 }
 
-TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
+TEST(MakeAlgorithm, RefusesInvalidSettings) {
   const auto refused = [](std::string_view algorithm, const HapticSettings& settings) {
     EXPECT_THROW(make_algorithm(algorithm_named(algorithm), settings), std::invalid_argument);
   };
@@ -96,14 +96,14 @@ TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
   refused_value("point-shell", "torsional-stiffness", std::nan(""));
 }
 
-TEST(MakeAlgorithm, NoneTakesInputsWithoutAVolume) {
+TEST(MakeAlgorithm, PrepareRefusesInputsWithoutAVolume) {
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     EXPECT_THROW(make_algorithm(algorithm, {})->prepare({nullptr, MillingTool{}}), std::invalid_argument)
         << algorithm.id.name;
   }
 }
 
-TEST(MakeAlgorithm, EachCountsItsSamplePoints) {
+TEST(MakeAlgorithm, PublishedAlgorithmsReportTheirSamplePointCounts) {
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(24, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 2.0));
   const auto count = [&](std::string_view algorithm) {

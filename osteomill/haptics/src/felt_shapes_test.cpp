@@ -64,7 +64,7 @@ HapticStep pressed(const Volume& bone, const Vec3& normal, double offset_mm) {
 }
 
 // Densities rise from air to bone within two voxels, within one, or, as in a label map, in one step.
-TEST(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
+TEST(FeltShape, ForceIsIndependentOfVoxelAlignmentWithinTolerance) {
   const auto force_N = [&](const Shape& shape, const Vec3& normal, double offset_mm, double edge_voxels) {
     const Volume bone = shape_volume(
         centred_cube(37, kVoxel_mm), [&](const Vec3& p) { return shape.distance_mm(p, normal, offset_mm); },
@@ -89,7 +89,7 @@ TEST(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
 }
 
 // The bone around the tool has more points than a tick can build, and the hand does not wait: the tool does.
-TEST(FeltShape, AToolThatBeginsInAFineHoleNeverLeavesIt) {
+TEST(FeltShape, ToolStartedInAHoleOfAFineScanStaysInside) {
   constexpr double kHole_mm = 1.6;
   const MillingTool tool;
   const Volume bone = shape_volume(centred_cube(160, 0.08),

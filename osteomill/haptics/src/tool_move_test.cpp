@@ -11,7 +11,7 @@ namespace {
 constexpr Release kNone{1e9, 0, 0};
 constexpr double kTick_s = 1e-3;
 
-TEST(ToolMove, AMoveBetweenPosesLeadsFromOneToTheOther) {
+TEST(ToolMove, MoveBetweenPosesReachesTheSecondPose) {
   const Pose from{{1, 2, 3}, quaternion_from_rotation_vector({0.1, 0.2, 0.3})};
   const Pose to{{4, 1, 3}, quaternion_from_rotation_vector({-0.7, 0.2, 0.9})};
   const Pose after = moved(from, move_between(from, to));
@@ -19,7 +19,7 @@ TEST(ToolMove, AMoveBetweenPosesLeadsFromOneToTheOther) {
   EXPECT_LT(rotation_vector(after.orientation * to.orientation.conjugate()).norm(), 1e-12);
 }
 
-TEST(ToolMove, AMoveIsCutShortByOneFactor) {
+TEST(ToolMove, LimitsTranslationAndRotationByTheSameFactor) {
   const Pose start{{1, 2, 3}, quaternion_from_rotation_vector({0.1, 0.2, 0.3})};
   const Pose target = moved(start, {{3, 0, 4}, {0, 0.1, 0}});
   const ToolMove by_length = move_between(start, moved_within({{}, 0.5, 0.05}, start, target));
@@ -33,7 +33,7 @@ TEST(ToolMove, AMoveIsCutShortByOneFactor) {
 
 // A point of the tool on a frictionless surface, at a lever arm, with the device pressing further: the two
 // springs let the tool follow a known part of the device's move, which needs no release.
-TEST(ToolMove, TheBoundContainsTheMotionOfAToolGuidedByASurface) {
+TEST(ToolMove, BoundContainsTheMotionOfAToolGuidedByASurface) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vector = [&] { return Vec3(unit(random), unit(random), unit(random)); };
@@ -59,7 +59,7 @@ TEST(ToolMove, TheBoundContainsTheMotionOfAToolGuidedByASurface) {
   EXPECT_GT(pressed, 5000);
 }
 
-TEST(ToolMove, ADeviceThatStandsReleasesAtASpeedAndAShareHoweverItMovedBefore) {
+TEST(ToolMove, StationaryDeviceReleasesAtALimitedSpeedAndShare) {
   const Pose device;
   const Pose tool{{3, 0, 0}, quaternion_from_rotation_vector({0, 0.4, 0})};
   const MoveBound bound = move_bound(tool, device, device, 20, Release{}, kTick_s);
@@ -74,7 +74,7 @@ TEST(ToolMove, ADeviceThatStandsReleasesAtASpeedAndAShareHoweverItMovedBefore) {
 }
 
 // Standing still is always within the bound, and so is moving with the device.
-TEST(ToolMove, TheToolMayStandStillAndGoAlong) {
+TEST(ToolMove, BoundAllowsStandingStillAndMovingWithTheDevice) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vector = [&] { return Vec3(unit(random), unit(random), unit(random)); };
@@ -87,7 +87,7 @@ TEST(ToolMove, TheToolMayStandStillAndGoAlong) {
   }
 }
 
-TEST(ToolMove, AChangeIsCutWhereItLeavesTheBall) {
+TEST(ToolMove, ShareEndsWhereTheChangeLeavesTheBall) {
   const Vec3 middle(1, 0, 0);
   const double share = share_within(middle, 2, {0, 1, 0}, {3, 4, -5});
   EXPECT_GT(share, 0);

@@ -120,7 +120,7 @@ class BoneFollowerTest : public ::testing::Test {
   Collected collected_{follower_.layout()};
 };
 
-TEST_F(BoneFollowerTest, IsTheBoneOnceCaughtUp) {
+TEST_F(BoneFollowerTest, EqualsTheBoneOnceCaughtUp) {
   const std::uint64_t version = follower_.version();
   mill(400);
   catch_up();
@@ -131,7 +131,7 @@ TEST_F(BoneFollowerTest, IsTheBoneOnceCaughtUp) {
   EXPECT_TRUE(settles(follower_, collected_, *bone_, 500));
 }
 
-TEST_F(BoneFollowerTest, LosesNothingThatFindsNoRoom) {
+TEST_F(BoneFollowerTest, LosesNoChangesWhenItsQueueIsFull) {
   const Volume before = *bone_;
   // More bricks than the queue holds, repeatedly, while the reader blocks the follower.
   follower_.read([&](const Volume&) {
@@ -148,7 +148,7 @@ TEST_F(BoneFollowerTest, LosesNothingThatFindsNoRoom) {
   EXPECT_NE(now(), before.grid().densities());
 }
 
-TEST_F(BoneFollowerTest, TakesCutsBackInBothCopies) {
+TEST_F(BoneFollowerTest, UndoesCutsInBothCopies) {
   const CopyOnWriteFloats untouched = now();
   follower_.begin_cut(0);
   mill(300);
@@ -181,7 +181,7 @@ TEST_F(BoneFollowerTest, TakesCutsBackInBothCopies) {
   EXPECT_TRUE(settles(follower_, collected_, *bone_, 500));
 }
 
-TEST_F(BoneFollowerTest, WhatIsGivenUpIsAsItWas) {
+TEST_F(BoneFollowerTest, DiscardNextRestoresDensitiesAndCuts) {
   follower_.begin_cut(0);
   mill(300);
   catch_up();
@@ -203,7 +203,7 @@ TEST_F(BoneFollowerTest, WhatIsGivenUpIsAsItWas) {
   EXPECT_TRUE(settles(follower_, collected_, *bone_, 500));
 }
 
-TEST_F(BoneFollowerTest, AnotherIsovalueIsThatOfBothCopies) {
+TEST_F(BoneFollowerTest, ChangesTheIsovalueOfBothCopies) {
   mill(300);
   catch_up();
   const CopyOnWriteFloats milled = now();
@@ -217,7 +217,7 @@ TEST_F(BoneFollowerTest, AnotherIsovalueIsThatOfBothCopies) {
 
 // Ticks at full speed on one thread, drawing on another, meshing on a third; also run under the thread
 // sanitizer.
-TEST(BoneFollower, KeepsUpWithMillingAtFullSpeed) {
+TEST(BoneFollower, MatchesTheBoneAfterMillingAtFullSpeed) {
   const auto bone = std::make_shared<Volume>(ball_of_bone());
   Volume& volume = *bone;
   BoneFollower live(bone);
@@ -252,7 +252,7 @@ TEST(BoneFollower, FollowsTheIsovalueWhileMilling) {
   EXPECT_TRUE(settles(live, collected, volume, 860));
 }
 
-TEST(BoneFollower, StopsInTheMiddleOfItsWork) {
+TEST(BoneFollower, StopsPendingWorkOnDestruction) {
   const auto bone = std::make_shared<Volume>(ball_of_bone());
   for (int n = 0; n < 5; ++n) {
     {

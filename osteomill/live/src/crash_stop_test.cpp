@@ -164,7 +164,7 @@ class CrashStopTest : public ::testing::Test {
   SharedWrench* sent_ = nullptr;
 };
 
-TEST_F(CrashStopTest, WhateverSignalEndsItTheWrenchIsLeftAtZero) {
+TEST_F(CrashStopTest, AnyFatalSignalLeavesTheWrenchAtZero) {
   const std::vector<Ending> ends{{SIGSEGV}, {SIGBUS},  {SIGFPE},  {SIGILL},   {SIGABRT},   {SIGSYS},
                                  {SIGTRAP}, {SIGQUIT}, {SIGTERM}, {SIGHUP},   {SIGINT},    {SIGXCPU},
                                  {SIGXFSZ}, {SIGPIPE}, {SIGALRM}, {SIGPROF},  {SIGVTALRM}, {SIGUSR1},
@@ -172,7 +172,7 @@ TEST_F(CrashStopTest, WhateverSignalEndsItTheWrenchIsLeftAtZero) {
   expect_zero_after(ends);
 }
 
-TEST_F(CrashStopTest, SoItIsAfterACrashInAnyThread) {
+TEST_F(CrashStopTest, CrashInAnyThreadLeavesTheWrenchAtZero) {
   const std::vector<Ending> ends {
     {SIGSEGV, [] { raise(SIGSEGV); }}, {SIGABRT, [] { std::abort(); }},
         {SIGSEGV, nullptr, [] { raise(SIGSEGV); }},
@@ -183,7 +183,7 @@ TEST_F(CrashStopTest, SoItIsAfterACrashInAnyThread) {
   expect_zero_after(ends);
 }
 
-TEST_F(CrashStopTest, ARequestToEndThatFirstRemovesLeftoversLeavesTheWrenchAtZero) {
+TEST_F(CrashStopTest, TerminationWithCleanupLeavesTheWrenchAtZero) {
   const std::vector<Ending> ends{{.signal = SIGTERM, .removes_leftovers = true},
                                  {.signal = SIGINT, .removes_leftovers = true},
                                  {.signal = SIGHUP, .removes_leftovers = true}};
@@ -191,7 +191,7 @@ TEST_F(CrashStopTest, ARequestToEndThatFirstRemovesLeftoversLeavesTheWrenchAtZer
 }
 
 // Ctrl-Z, and terminal access from a background process.
-TEST_F(CrashStopTest, WhileItIsStoppedTheWrenchIsZeroAndThenComesUpSlowly) {
+TEST_F(CrashStopTest, WrenchIsZeroWhileStoppedAndReturnsOnContinue) {
   const int stops[] = {SIGTSTP, SIGTTIN, SIGTTOU};
   for (std::size_t n = 0; n < 3; ++n) {
     const pid_t child = begin(n, {});
@@ -209,7 +209,7 @@ TEST_F(CrashStopTest, WhileItIsStoppedTheWrenchIsZeroAndThenComesUpSlowly) {
   }
 }
 
-TEST_F(CrashStopTest, ASessionThatTookThePlaceOfAnotherIsEndedAsAnyOther) {
+TEST_F(CrashStopTest, EndingAReplacementSessionLeavesTheWrenchAtZero) {
   const std::vector<Ending> ends{
       {.signal = SIGTERM, .replaces_its_session = true},
       {.signal = SIGSEGV, .main_thread = [] { raise(SIGSEGV); }, .replaces_its_session = true}};
@@ -264,7 +264,7 @@ class HostTest : public ::testing::Test {
   SharedDevice device_{&sent_, nullptr};
 };
 
-TEST_F(HostTest, ASessionAloneTakesNoSignal) {
+TEST_F(HostTest, SessionWithoutCrashStopInstallsNoHandlers) {
   run([] {
     for (const int signal : {SIGTERM, SIGINT, SIGSEGV, SIGUSR1, SIGPROF, SIGTSTP, SIGPIPE}) {
       const struct sigaction now = action_of(signal);
@@ -277,7 +277,7 @@ TEST_F(HostTest, ASessionAloneTakesNoSignal) {
   });
 }
 
-TEST_F(HostTest, ASignalThatTheHostHandlesIsTheHosts) {
+TEST_F(HostTest, LeavesSignalsThatTheHostHandlesToTheHost) {
   for (const int signal : {SIGUSR1, SIGTSTP, SIGPIPE, SIGIO, SIGHUP, SIGTERM}) {
     const HostHandler host(signal);
     const CrashStop crash_stop;
@@ -286,7 +286,7 @@ TEST_F(HostTest, ASignalThatTheHostHandlesIsTheHosts) {
   }
 }
 
-TEST_F(HostTest, AProfilersTimerLeavesTheLoopRunning) {
+TEST_F(HostTest, ProfilingTimerLeavesTheLoopRunning) {
   const HostHandler host(SIGPROF);
   const CrashStop crash_stop;
   run([] {
@@ -302,7 +302,7 @@ TEST_F(HostTest, AProfilersTimerLeavesTheLoopRunning) {
   EXPECT_GE(host_calls, 10);
 }
 
-TEST_F(HostTest, HandlersThatWereThereComeBackWithTheLastObject) {
+TEST_F(HostTest, LastCrashStopRestoresThePreviousHandlers) {
   const struct sigaction before = action_of(SIGTERM);
   auto first = std::make_unique<CrashStop>();
   auto second = std::make_unique<CrashStop>();
@@ -313,7 +313,7 @@ TEST_F(HostTest, HandlersThatWereThereComeBackWithTheLastObject) {
   EXPECT_EQ(action_of(SIGTERM).sa_sigaction, before.sa_sigaction);
 }
 
-TEST_F(HostTest, AHandlerThatTheHostSetsLaterIsKept) {
+TEST_F(HostTest, KeepsAHandlerThatTheHostSetsLater) {
   auto crash_stop = std::make_unique<CrashStop>();
   const HostHandler host(SIGUSR2);
   crash_stop.reset();

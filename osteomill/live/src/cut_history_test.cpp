@@ -53,7 +53,7 @@ class CutHistoryTest : public ::testing::Test {
   double removed_mm3_ = 0;
 };
 
-TEST_F(CutHistoryTest, TakesCutsBackOneByOne) {
+TEST_F(CutHistoryTest, UndoesCutsOneByOne) {
   EXPECT_EQ(history_.cuts(), 0u);
   history_.begin_cut(0);
   mill({3, 4, 5});
@@ -72,7 +72,7 @@ TEST_F(CutHistoryTest, TakesCutsBackOneByOne) {
   EXPECT_EQ(undo(), 0);
 }
 
-TEST_F(CutHistoryTest, ACutWithoutAChangeIsNone) {
+TEST_F(CutHistoryTest, IgnoresCutsWithoutAChange) {
   history_.begin_cut(0);
   history_.begin_cut(0);
   mill({3, 4, 5});
@@ -83,7 +83,7 @@ TEST_F(CutHistoryTest, ACutWithoutAChangeIsNone) {
   EXPECT_EQ(now(), before_);
 }
 
-TEST_F(CutHistoryTest, ResetsPastEveryCut) {
+TEST_F(CutHistoryTest, ResetUndoesAllCuts) {
   for (int n = 0; n < 5; ++n) {
     history_.begin_cut(n);
     mill({n, 4, 5});
@@ -95,7 +95,7 @@ TEST_F(CutHistoryTest, ResetsPastEveryCut) {
   EXPECT_FALSE(history_.is_touched());
 }
 
-TEST_F(CutHistoryTest, WhatBeginsBeforeACutIsDroppedIsAnotherCut) {
+TEST_F(CutHistoryTest, CutBegunDuringAnUndoIsASeparateCut) {
   mill({3, 4, 5});
   history_.begin_cut(2.5);
   mill({18, 2, 9});
@@ -112,7 +112,7 @@ TEST_F(CutHistoryTest, WhatBeginsBeforeACutIsDroppedIsAnotherCut) {
   EXPECT_EQ(now(), before_);
 }
 
-TEST_F(CutHistoryTest, ForgetsTheOldestCutsBeyondItsMemory) {
+TEST_F(CutHistoryTest, DropsTheOldestCutsBeyondItsMemoryLimit) {
   history_ = CutHistory(2 * sizeof(DensityBlock));
   for (int n = 0; n < 5; ++n) {
     history_.begin_cut(n);
@@ -126,7 +126,7 @@ TEST_F(CutHistoryTest, ForgetsTheOldestCutsBeyondItsMemory) {
   EXPECT_EQ(now(), before_);
 }
 
-TEST_F(CutHistoryTest, NothingIsTouchedOnceTheOnlyCutIsTakenBack) {
+TEST_F(CutHistoryTest, IsUntouchedAfterUndoingTheOnlyCut) {
   mill({3, 4, 5});
   EXPECT_TRUE(history_.is_touched());
   EXPECT_EQ(history_.cuts(), 1u);
@@ -137,7 +137,7 @@ TEST_F(CutHistoryTest, NothingIsTouchedOnceTheOnlyCutIsTakenBack) {
 
 // Inside bone of density 1000: two voxels emptied to 300 and 0, two partially cut to 400 and 700; one
 // outside, not milled.
-TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPartStaysAsItWas) {
+TEST_F(CutHistoryTest, LowerIsovalueKeepsEmptiedVoxelsEmptyAndOthersUnchanged) {
   DensityGrid untouched = bone_.grid();
   const auto mill_to = [&](const VoxelIndex& voxel, float density) {
     while (bone_.grid()[voxel] > density) mill(voxel);
@@ -164,7 +164,7 @@ TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPa
 }
 
 // Compares with a plain list of whole copies of the bone.
-TEST_F(CutHistoryTest, UndoAndRedoInAnyOrderGiveTheBonesOfAListOfCopies) {
+TEST_F(CutHistoryTest, UndoAndRedoInAnyOrderMatchAListOfCopies) {
   std::mt19937 random(5);
   const auto any = [&](int count) { return std::uniform_int_distribution(0, count - 1)(random); };
   struct State {
@@ -215,7 +215,7 @@ TEST_F(CutHistoryTest, UndoAndRedoInAnyOrderGiveTheBonesOfAListOfCopies) {
   EXPECT_GT(over, 100);
 }
 
-TEST_F(CutHistoryTest, UndoneCutsTakeTheMemoryOfCutsAndAreOverOnceSomethingElseIsCut) {
+TEST_F(CutHistoryTest, UndoneCutsUseCutMemoryAndAreDroppedByANewCut) {
   history_ = CutHistory(3 * sizeof(DensityBlock));
   for (int n = 0; n < 3; ++n) {
     history_.begin_cut(n);
@@ -243,7 +243,7 @@ TEST_F(CutHistoryTest, UndoneCutsTakeTheMemoryOfCutsAndAreOverOnceSomethingElseI
 }
 
 // An undone cut holds emptied voxels, which a redo at a lower isovalue must not turn back into bone.
-TEST_F(CutHistoryTest, WhatIsMadeAgainAtALowerIsovalueStaysEmpty) {
+TEST_F(CutHistoryTest, RedoAtALowerIsovalueKeepsEmptiedVoxelsEmpty) {
   while (bone_.grid()[{3, 4, 3}] > 0) mill({3, 4, 3});
   DensityGrid milled = bone_.grid();
   undo();
@@ -253,7 +253,7 @@ TEST_F(CutHistoryTest, WhatIsMadeAgainAtALowerIsovalueStaysEmpty) {
   EXPECT_EQ(now(), milled.densities());
 }
 
-TEST_F(CutHistoryTest, DropsOfPiecesAreThoseThatAreRemovedNow) {
+TEST_F(CutHistoryTest, PieceDropsFollowUndoRedoAndReset) {
   const auto remove = [&](int n, double drop) {
     const DensityBlock before(bone_.grid(), {8 * n, 0, 0});
     bone_.lower_density({8 * n, 4, 5}, -1000);

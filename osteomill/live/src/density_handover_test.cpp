@@ -11,7 +11,7 @@ using testing_support::ball;
 using testing_support::centred_cube;
 using testing_support::shape_volume;
 
-TEST(DensityHandover, SendsWhatIsMarkedOnceAndAsItIsThen) {
+TEST(DensityHandover, SendsAMarkedBrickOnceWithItsLatestDensities) {
   Volume volume = shape_volume(centred_cube(20, 1), ball(Vec3::Zero(), 30));
   DensityHandover handover(volume.geometry(), 4);
   volume.lower_density({9, 3, 17}, 5);
@@ -30,7 +30,7 @@ TEST(DensityHandover, SendsWhatIsMarkedOnceAndAsItIsThen) {
   EXPECT_EQ(handover.front(), nullptr);
 }
 
-TEST(DensityHandover, KeepsMarkedWhatFindsNoRoomAndSendsTheLongestMarkedFirst) {
+TEST(DensityHandover, KeepsUnsentBricksMarkedAndSendsTheOldestFirst) {
   Volume volume = shape_volume(centred_cube(64, 1), ball(Vec3::Zero(), 100));
   DensityHandover handover(volume.geometry(), 3);
   handover.mark({{{0, 0, 0}, {63, 0, 0}}});

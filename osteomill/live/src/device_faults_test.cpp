@@ -128,21 +128,21 @@ INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, DeviceFaults, ::testing::ValuesIn(algor
                            return name;
                          });
 
-TEST_P(DeviceFaults, VanishesAndComesBack) {
+TEST_P(DeviceFaults, ReconnectedDeviceGetsNoContactForceUntilOutsideBone) {
   expect_zero_after([this] { hardware_.gone = true; }, 1);
   // Nothing can be sent while it is disconnected; it then begins at zero.
   expect_return_from_outside([this] { hardware_.gone = false; });
   EXPECT_EQ(device_.report().reopened, 1u);
 }
 
-TEST_P(DeviceFaults, FallsSilent) {
+TEST_P(DeviceFaults, SilentDeviceGetsZeroThenASlowReturn) {
   expect_zero_after([this] { hardware_.silent = true; }, kTicksToKnow + 1);
   EXPECT_EQ(record_.fault, WrenchFault::pose_not_finite);
   expect_slow_return([this] { hardware_.silent = false; });
 }
 
 // A force that is not rendered must not mill: no bone is removed meanwhile.
-TEST_P(DeviceFaults, IsNoLongerCalibrated) {
+TEST_P(DeviceFaults, UncalibratedDeviceGetsZeroAndRemovesNoBone) {
   const double before_mm3 = session_.removed_mm3();
   spindle_on_ = true;
   expect_zero_after([this] { hardware_.input.not_driven = "is not calibrated"; }, 1);
@@ -154,7 +154,7 @@ TEST_P(DeviceFaults, IsNoLongerCalibrated) {
 }
 
 // A device service that answers every 8 ms.
-TEST_P(DeviceFaults, TakesAWrenchWithEveryPoseButRarely) {
+TEST_P(DeviceFaults, DeviceAnsweringEvery8msGetsLessThan1N) {
   spindle_on_ = true;
   hardware_.got.clear();
   double max_N = 0;
@@ -173,7 +173,7 @@ TEST_P(DeviceFaults, TakesAWrenchWithEveryPoseButRarely) {
   expect_no_step();
 }
 
-TEST_P(DeviceFaults, GivesNumbersThatAreNone) {
+TEST_P(DeviceFaults, NonFinitePoseGivesZeroThenASlowReturn) {
   const Pose before = hardware_.input.X_BH;
   expect_zero_after(
       [this] { hardware_.input.X_BH.position_mm.y() = std::numeric_limits<double>::quiet_NaN(); }, 1);
@@ -182,7 +182,7 @@ TEST_P(DeviceFaults, GivesNumbersThatAreNone) {
 }
 
 // Jumps deeper into the bone, to a penetration that would ask for 20 N.
-TEST_P(DeviceFaults, JumpsBy50mm) {
+TEST_P(DeviceFaults, JumpOf50mmIsDetectedAndTheForceReturnsSlowly) {
   const double before_N = felt_N();
   hardware_.got.clear();
   hardware_.input.X_BH.position_mm.y() -= 50;
@@ -195,7 +195,7 @@ TEST_P(DeviceFaults, JumpsBy50mm) {
   expect_no_step();
 }
 
-TEST_P(DeviceFaults, IsSlow) {
+TEST_P(DeviceFaults, DeviceAnsweringEvery50msGetsZeroBetweenInputs) {
   hardware_.got.clear();
   double max_N = 0;
   for (int n = 0; n < 1000; ++n) {
@@ -212,12 +212,12 @@ TEST_P(DeviceFaults, IsSlow) {
   expect_no_step();
 }
 
-TEST_P(DeviceFaults, TheHapticThreadHangs) {
+TEST_P(DeviceFaults, HungHapticThreadGivesZeroWrench) {
   expect_zero_after([this] { hangs_ = true; }, kTicksToKnow + 1);
   EXPECT_EQ(device_.report().late_wrenches, 1u);
 }
 
-TEST_P(DeviceFaults, TicksComeLateBy5ms) {
+TEST_P(DeviceFaults, TicksLateBy5msGiveZeroForce) {
   hardware_.got.clear();
   // The device's own thread keeps running meanwhile.
   for (int late = 0; late < 20; ++late) {
@@ -237,7 +237,7 @@ TEST_P(DeviceFaults, TicksComeLateBy5ms) {
   expect_no_step();
 }
 
-TEST_P(DeviceFaults, TheProgramIsEnding) {
+TEST_P(DeviceFaults, DisengagedDeviceGetsZeroWrench) {
   expect_zero_after([this] { device_.disengage(); }, 0);
 }
 

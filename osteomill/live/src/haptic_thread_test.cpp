@@ -70,7 +70,7 @@ class HapticThreadTest : public ::testing::Test {
   HapticThread live_{session_on(bone_, "point-shell"), device_};
 };
 
-TEST_F(HapticThreadTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
+TEST_F(HapticThreadTest, TicksInRealTimeAndStopsWithZeroWrench) {
   live_.start();
   EXPECT_TRUE(pushes());
   EXPECT_TRUE(becomes_true_in_time([&] { return live_.state().record.contacts > 0; }));
@@ -90,7 +90,7 @@ TEST_F(HapticThreadTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
 }
 
 // On a clock set by the test, so that it takes no time and is exact to the nanosecond.
-TEST(HapticThreadOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
+TEST(HapticThreadOnTestClock, SkipsAndCountsTicksMissedByASlowTick) {
   std::atomic<Nanoseconds> now_ns{0};
   const TickClock clock{[&] { return now_ns.load(); },
                         [&](Nanoseconds deadline_ns) {
@@ -116,7 +116,7 @@ TEST(HapticThreadOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
   EXPECT_NEAR(device.time_passed_s, 0.032, 1e-9);
 }
 
-TEST_F(HapticThreadTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
+TEST_F(HapticThreadTest, VolumeCopiesStillSharePagesAfterARun) {
   GridGeometry geometry;
   geometry.dims = {256, 256, 256};
   const Volume scan(DensityGrid(geometry, std::vector<float>(256 * 256 * 256, 1000.0f)), 500);
@@ -130,7 +130,7 @@ TEST_F(HapticThreadTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
   }
 }
 
-TEST_F(HapticThreadTest, RecordsComeInOrder) {
+TEST_F(HapticThreadTest, DeliversTheRecordOfEveryTickInOrder) {
   live_.start();
   std::this_thread::sleep_for(100ms);
   live_.stop();
@@ -144,7 +144,7 @@ TEST_F(HapticThreadTest, RecordsComeInOrder) {
   EXPECT_EQ(count, live_.timing().ticks);
 }
 
-TEST_F(HapticThreadTest, WhatIsToBePlacedIsPlacedByTheSessionThatTicksThen) {
+TEST_F(HapticThreadTest, ReplacementSessionCarriesOutAPendingPlacement) {
   live_.start();
   EXPECT_TRUE(pushes());
   device_.gives_pose = false;
@@ -161,7 +161,7 @@ TEST_F(HapticThreadTest, WhatIsToBePlacedIsPlacedByTheSessionThatTicksThen) {
   live_.stop();
 }
 
-TEST_F(HapticThreadTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
+TEST_F(HapticThreadTest, SpindleMillsBoneUnlessItIsFrozen) {
   live_.start();
   live_.set_spindle(true);
   EXPECT_TRUE(becomes_true_in_time([&] { return live_.state().record.removed_mm3 > 0; }));
@@ -178,7 +178,7 @@ TEST_F(HapticThreadTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   EXPECT_NE(bone_->grid().densities(), frozen);
 }
 
-TEST_F(HapticThreadTest, APauseSendsZeroAndKeepsTheTool) {
+TEST_F(HapticThreadTest, PauseSendsZeroWrenchAndHoldsTheToolAboveTheDevice) {
   live_.start();
   EXPECT_TRUE(pushes());
   live_.set_spindle(true);
@@ -192,7 +192,7 @@ TEST_F(HapticThreadTest, APauseSendsZeroAndKeepsTheTool) {
 }
 
 // The hand may have moved into the bone while no ticks ran.
-TEST_F(HapticThreadTest, StartedAgainInBoneItIsHeldBack) {
+TEST_F(HapticThreadTest, RestartInBoneGivesNoForceUntilLifted) {
   live_.start();
   EXPECT_TRUE(pushes());
   live_.stop();
@@ -211,7 +211,7 @@ TEST_F(HapticThreadTest, StartedAgainInBoneItIsHeldBack) {
   EXPECT_TRUE(pushes());
 }
 
-TEST_F(HapticThreadTest, AnAlgorithmPreparedElsewhereTakesOver) {
+TEST_F(HapticThreadTest, ReplacementSessionTakesOverWhileRunning) {
   live_.start();
   EXPECT_TRUE(pushes());
   live_.freeze_bone(true);
@@ -230,7 +230,7 @@ TEST_F(HapticThreadTest, AnAlgorithmPreparedElsewhereTakesOver) {
   EXPECT_EQ(live_.state().record.removed_mm3, removed_mm3);
 }
 
-TEST_F(HapticThreadTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
+TEST_F(HapticThreadTest, ListenerReceivesTicksAndChangesUntilRemoved) {
   struct Heard {
     int ticks = 0;
     VoxelBox changed;
@@ -264,7 +264,7 @@ TEST_F(HapticThreadTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
   EXPECT_GT(outside, 50000);
 }
 
-TEST_F(HapticThreadTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
+TEST_F(HapticThreadTest, ThrowingDeviceStopsItWithZeroForceAndAReason) {
   device_.throw_at_tick = 500;
   live_.start();
   EXPECT_TRUE(becomes_true_in_time([&] { return !live_.is_running(); }));
@@ -276,7 +276,7 @@ TEST_F(HapticThreadTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-TEST_F(HapticThreadTest, AStartThatFailsLeavesASessionThatCanBeStarted) {
+TEST_F(HapticThreadTest, CanBeStartedAfterAFailedStart) {
   {
     const testing_support::NoMoreThreads none;
     EXPECT_THROW(live_.start(), std::system_error);

@@ -121,7 +121,7 @@ class LiveMillingTest : public ::testing::Test {
 
 // Catching up hands changes over while no ticks run; a start at that moment must not lead to two threads
 // doing so.
-TEST_F(LiveMillingTest, StartedWhileACutIsTakenBackChangesComeFromOneThread) {
+TEST_F(LiveMillingTest, SurfaceMatchesBoneAfterRestartsDuringUndo) {
   mill(0.3);
   for (int n = 0; n < 5; ++n) {
     milling_.stop();
@@ -134,7 +134,7 @@ TEST_F(LiveMillingTest, StartedWhileACutIsTakenBackChangesComeFromOneThread) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-TEST_F(LiveMillingTest, AnUndoThatGetsNoThreadChangesNothing) {
+TEST_F(LiveMillingTest, UndoThrowsAndKeepsTheCutWhenNoThreadCanStart) {
   mill(0.3);
   {
     const testing_support::NoMoreThreads none;
@@ -146,7 +146,7 @@ TEST_F(LiveMillingTest, AnUndoThatGetsNoThreadChangesNothing) {
 }
 #endif
 
-TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
+TEST_F(LiveMillingTest, UndoesTheLastCutMillsOnAndResetsToTheScan) {
   mill(0.3);
   const CopyOnWriteFloats after_first = bone();
   const double removed_mm3 = milling_.state().record.removed_mm3;
@@ -177,7 +177,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
 }
 
 // The follower shows the bone that the haptic thread mills, also after several exchanges of the two.
-TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
+TEST_F(LiveMillingTest, FollowerShowsTheBoneFeltAfterRepeatedUndos) {
   for (int n = 0; n < 3; ++n) {
     mill(0.2);
     EXPECT_TRUE(milling_.undo());
@@ -206,7 +206,7 @@ TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
   EXPECT_EQ(milling_.follower().version(), version);
 }
 
-TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
+TEST_F(LiveMillingTest, ChangesAlgorithmAndToolWithoutChangingTheBone) {
   mill(0.2);
   const double removed_mm3 = milling_.state().record.removed_mm3;
   const CopyOnWriteFloats milled = bone();
@@ -225,7 +225,7 @@ TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
   EXPECT_TRUE(milling_.is_running());
 }
 
-TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
+TEST_F(LiveMillingTest, KeepsSetupAndBoneWhenPreparationFails) {
   mill(0.2);
   const CopyOnWriteFloats milled = bone();
   MillingSetup wrong = setup_;
@@ -241,7 +241,7 @@ TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
 }
 
 // Mills a hole with partially cut sides and changes the isovalue up and back over the bone's whole range.
-TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
+TEST_F(LiveMillingTest, KeepsMilledBoneBitIdenticalAcrossIsovalueChanges) {
   mill(0.3);
   const CopyOnWriteFloats milled = bone();
   for (const double isovalue : {990.0, 300.0, kIsovalue}) {
@@ -286,7 +286,7 @@ class LiveMillingOfTwoPiecesTest : public LiveMillingTest {
   }
 };
 
-TEST_F(LiveMillingOfTwoPiecesTest, PiecesGoAndComeBackLikeCutsAndDoNotCountAsMilled) {
+TEST_F(LiveMillingOfTwoPiecesTest, RemovesPiecesAsUndoableCutsNotCountedAsMilled) {
   mill(0.2);
   const CopyOnWriteFloats milled = bone();
   const double removed_mm3 = milling_.state().record.removed_mm3;
@@ -326,7 +326,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, PiecesGoAndComeBackLikeCutsAndDoNotCountAsMil
   EXPECT_TRUE(surface_is_the_bones());
 }
 
-TEST_F(LiveMillingOfTwoPiecesTest, ARedoThatComesTooLateLeavesTheNewCut) {
+TEST_F(LiveMillingOfTwoPiecesTest, RedoAfterANewCutChangesNothing) {
   mill(0.1);
   finish(milling_.undo());
   mill(0.1);
@@ -342,7 +342,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, ARedoThatComesTooLateLeavesTheNewCut) {
   EXPECT_NE(bone(), milled);
 }
 
-TEST_F(LiveMillingOfTwoPiecesTest, ARemovalThatCannotBeLeavesAllAsItWas) {
+TEST_F(LiveMillingOfTwoPiecesTest, InvalidOrEmptyPieceRemovalKeepsTheBone) {
   const CopyOnWriteFloats before = bone();
   EXPECT_TRUE(milling_.remove_pieces({PieceRemoval::Which::chosen, {0, 0, 0}}));
   EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
@@ -355,7 +355,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, ARemovalThatCannotBeLeavesAllAsItWas) {
 }
 
 // Pieces removed, restored and removed again in a recording, with cuts between, replay to the bit.
-TEST_F(LiveMillingOfTwoPiecesTest, ARecordingHasTheBoneWithoutThemAndIsReplayedToTheBit) {
+TEST_F(LiveMillingOfTwoPiecesTest, ReplaysPieceRemovalsFromARecordingBitIdentically) {
   const testing_support::TestFolder folder;
   mill(0.1);
   milling_.start_recording(folder / "a.h5", milling_.describe("balls", ""));
@@ -415,7 +415,7 @@ TEST_F(LiveMillingOfTwoPiecesTest, ARecordingHasTheBoneWithoutThemAndIsReplayedT
 }
 
 // Bone milled in a closed window continues in another.
-TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
+TEST_F(LiveMillingTest, RestoresMilledBoneInANewSessionAndCanUndoIt) {
   mill(0.3);
   const double removed_mm3 = milling_.state().record.removed_mm3;
   const CopyOnWriteFloats milled = bone();
@@ -446,7 +446,7 @@ TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
 }
 
 // Another hand continues while the burr presses on bone, and feels nothing until it has moved off the bone.
-TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
+TEST_F(LiveMillingTest, ResumesFromARecordedTickWithoutAForceStep) {
   const testing_support::TestFolder folder;
   milling_.start_recording(folder / "a.h5", milling_.describe("ball", ""));
   mill(0.3);
@@ -496,7 +496,7 @@ TEST_F(LiveMillingTest, GoesOnFromATickOfARecordingAndTheHandFeelsNoStep) {
 
 // Pressed into the bone, deep in it, and far away: every algorithm releases the force without a step and
 // renders none at the tool's new pose.
-TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
+TEST_F(LiveMillingTest, PlacesTheToolWithoutAForceStep) {
   const Pose X_W_free = pose_above(entry_, setup_.tool, 5.0);
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     setup_.algorithm = algorithm;
@@ -538,7 +538,7 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
 
 // Starts in the middle of milling and continues across another algorithm, an undone cut, a pause, another
 // pose, another isovalue and a reset; replays to the bit from the scan.
-TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
+TEST_F(LiveMillingTest, RecordingContinuesAcrossChangesUndoPauseAndReset) {
   const testing_support::TestFolder folder;
   const auto path = folder / "live.h5";
   mill(0.1);
@@ -593,7 +593,7 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   EXPECT_EQ(milled.grid().densities(), bone());
 }
 
-TEST_F(LiveMillingTest, ARecordingBegunWhileAnotherAlgorithmIsPreparedIsOfThatOne) {
+TEST_F(LiveMillingTest, RecordsTheNewAlgorithmWhenStartedDuringItsPreparation) {
   const testing_support::TestFolder folder;
   setup_.algorithm = algorithm_named("surface-points");
   EXPECT_TRUE(milling_.change(setup_));
@@ -606,7 +606,7 @@ TEST_F(LiveMillingTest, ARecordingBegunWhileAnotherAlgorithmIsPreparedIsOfThatOn
   EXPECT_FALSE(verify_recording(*ball_of_bone(), recording).difference);
 }
 
-TEST_F(LiveMillingTest, ARecordingWhoseSessionCannotBePreparedIsNone) {
+TEST_F(LiveMillingTest, LeavesNoRecordingWhenItsSessionCannotBePrepared) {
   const testing_support::TestFolder folder;
   bool fails = false;
   setup_.algorithm.make = [&fails, make = setup_.algorithm.make](std::span<const double> values) {
@@ -624,7 +624,7 @@ TEST_F(LiveMillingTest, ARecordingWhoseSessionCannotBePreparedIsNone) {
   mill(0.1);
 }
 
-TEST_F(LiveMillingTest, ARecordingFromTheFirstTickOnNeedsNoneBefore) {
+TEST_F(LiveMillingTest, RecordingBeforeTheFirstTickNeedsNoPreparation) {
   const testing_support::TestFolder folder;
   VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
   LiveMilling milling(ball_of_bone(), setup_, hand);
@@ -639,7 +639,7 @@ TEST_F(LiveMillingTest, ARecordingFromTheFirstTickOnNeedsNoneBefore) {
   EXPECT_FALSE(verify_recording(*ball_of_bone(), recording).difference);
 }
 
-TEST_F(LiveMillingTest, WorksOnAfterItWasStopped) {
+TEST_F(LiveMillingTest, UndoesWhileStoppedAndMillsAfterRestart) {
   mill(0.2);
   milling_.stop();
   EXPECT_TRUE(milling_.undo());

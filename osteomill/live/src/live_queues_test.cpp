@@ -9,7 +9,7 @@
 namespace osteomill {
 namespace {
 
-TEST(SpscQueue, KeepsItsOrderAndItsCapacity) {
+TEST(SpscQueue, KeepsOrderAndRefusesPushWhenFull) {
   SpscQueue<std::unique_ptr<int>> queue(3);
   EXPECT_EQ(queue.front(), nullptr);
   for (int n = 0; n < 3; ++n) EXPECT_TRUE(queue.try_push(std::make_unique<int>(n)));
@@ -29,7 +29,7 @@ TEST(SpscQueue, KeepsItsOrderAndItsCapacity) {
   EXPECT_FALSE(queue.try_pop(value));
 }
 
-TEST(SpscQueue, NothingIsLostBetweenTwoThreads) {
+TEST(SpscQueue, DeliversEveryValueInOrderBetweenTwoThreads) {
   SpscQueue<int> queue(7);
   constexpr int kCount = 20000;
   std::thread sender([&] {
@@ -51,7 +51,7 @@ TEST(SpscQueue, NothingIsLostBetweenTwoThreads) {
   sender.join();
 }
 
-TEST(LatestValue, IsTheNewestAndNeverHalfOfTwo) {
+TEST(LatestValue, ReadsTheNewestValueWithoutTearing) {
   struct Pair {
     long a = 0;
     long b = 0;

@@ -16,7 +16,7 @@ TickRecord record_of(double compute_us, double milling_us) {
 }
 
 // 1001 ticks a millisecond apart, the nth of every ten woken n * 10 us late.
-TEST(LiveTiming, StatisticsOfKnownDeadlines) {
+TEST(LiveTiming, SummaryMatchesKnownDeadlines) {
   LiveTiming timing;
   for (int n = 0; n <= 1000; ++n) {
     const Nanoseconds deadline_ns = 50 * kMs + n * kMs;
@@ -39,7 +39,7 @@ TEST(LiveTiming, StatisticsOfKnownDeadlines) {
 }
 
 // Every tick ends 2.5 ms after its deadline, so that only every second deadline gets a tick.
-TEST(LiveTiming, ALoopThatCannotKeepUpShowsItsTrueRate) {
+TEST(LiveTiming, ReportsActualRateWhenTicksMissDeadlines) {
   LiveTiming timing;
   for (int n = 0; n <= 500; ++n) {
     const Nanoseconds deadline_ns = n * 2 * kMs;
@@ -53,7 +53,7 @@ TEST(LiveTiming, ALoopThatCannotKeepUpShowsItsTrueRate) {
   EXPECT_EQ(found.missed_ticks, 500u);
 }
 
-TEST(LiveTiming, AQuickLoopIsNotTakenForOneOf1000Hz) {
+TEST(LiveTiming, ReportsTheRateOfA4000HzLoop) {
   LiveTiming timing(250);
   for (int n = 0; n <= 400; ++n) {
     const Nanoseconds deadline_ns = n * 250 * kUs;
@@ -63,7 +63,7 @@ TEST(LiveTiming, AQuickLoopIsNotTakenForOneOf1000Hz) {
   EXPECT_NEAR(timing.summary().ticks_per_s, 4000, 1e-9);
 }
 
-TEST(LiveTiming, NoTickIsNoRate) {
+TEST(LiveTiming, ReportsZeroRateWithoutTicks) {
   EXPECT_EQ(LiveTiming().summary().rate_hz, 0);
   EXPECT_EQ(LiveTiming().summary().ticks, 0u);
 }

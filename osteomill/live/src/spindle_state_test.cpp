@@ -104,7 +104,7 @@ TEST(SpindleState, ASessionsSoundTellsEnamelFromDentine) {
             0.9);
 }
 
-TEST(SpindleState, ASessionsSoundTellsThroughFromNotYet) {
+TEST(SpindleState, ASessionsSoundTellsBreakthroughFromCutting) {
   EXPECT_GE(classification_accuracy([](const Hand& hand) {
               const Sounds sounds = heard(tooth_plate(kDentine, 0.25), hand, 60);
               return std::array{bright(sounds.cutting, hand), bright(sounds.through, hand)};

@@ -5,13 +5,13 @@
 namespace osteomill {
 namespace {
 
-TEST(TimeHistogram, NothingCountedIsZero) {
+TEST(TimeHistogram, ReportsZeroWithoutSamples) {
   const TimeHistogram none;
   EXPECT_EQ(none.percentiles().p50_us, 0);
   EXPECT_EQ(none.percentiles().max_us, 0);
 }
 
-TEST(TimeHistogram, PercentilesOfKnownTimes) {
+TEST(TimeHistogram, PercentilesMatchKnownTimes) {
   TimeHistogram times;
   for (int n = 0; n < 1000; ++n) times.add(n + 0.5);
   const TimePercentiles found = times.percentiles();
@@ -21,7 +21,7 @@ TEST(TimeHistogram, PercentilesOfKnownTimes) {
   EXPECT_EQ(found.max_us, 999.5);
 }
 
-TEST(TimeHistogram, LongTimesAreCountedCoarselyAndTheGreatestExactly) {
+TEST(TimeHistogram, BinsLongTimesCoarselyAndReportsTheLongestExactly) {
   TimeHistogram times;
   for (int n = 0; n < 98; ++n) times.add(3);
   times.add(2345);

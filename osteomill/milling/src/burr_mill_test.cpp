@@ -75,7 +75,7 @@ Hole mill_hole_in(const GridGeometry& geometry, double rate_hz, const Vec3& norm
   return mill_hole(volume, mill, 1.5, 2.5, rate_hz, -normal);
 }
 
-TEST(BurrMill, ABurrThatIsHeldWhereItIsCutsWhatTheForcePaysForAndThenNothing) {
+TEST(BurrMill, HeldBurrRemovesTheForceBudgetThenStops) {
   for (const double spacing_mm : {0.25, 0.2, 0.125, 0.05}) {
     for (const double radius_mm : {0.5, 1.5}) {
       for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0.3, -0.4, 0.8), Vec3(0.6, 0.1, 0.5)}) {
@@ -99,7 +99,7 @@ TEST(BurrMill, ABurrThatIsHeldWhereItIsCutsWhatTheForcePaysForAndThenNothing) {
   }
 }
 
-TEST(BurrMill, RemovesWhatTheForcePaysFor) {
+TEST(BurrMill, RemovedVolumeMatchesTheForceBudget) {
   for (const double force_N : {0.1, 1.5, 6.0}) {
     const GridGeometry geometry = cube_of(7, 0.125);
     Volume volume = half_space(geometry);
@@ -158,7 +158,7 @@ TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
   }
 }
 
-TEST(BurrMill, TakesNothingWithoutForceOrWithoutASensibleInput) {
+TEST(BurrMill, RemovesNothingWithoutForceContactOrValidInput) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
   const CopyOnWriteFloats before = volume.grid().densities();
@@ -179,7 +179,7 @@ TEST(BurrMill, TakesNothingWithoutForceOrWithoutASensibleInput) {
   EXPECT_EQ(volume.grid().densities(), before);
 }
 
-TEST(BurrMill, StopsWhereItsReachEndsAndCarriesTheRestWithinBounds) {
+TEST(BurrMill, StopsAtItsReachAndBoundsTheUnspentBudget) {
   constexpr double kSpacing_mm = 0.25, kForce_N = 5;
   const GridGeometry geometry = cube_of(5, kSpacing_mm);
   Volume volume = half_space(geometry);
@@ -211,7 +211,7 @@ TEST(BurrMill, StopsWhereItsReachEndsAndCarriesTheRestWithinBounds) {
   EXPECT_GT(mill.unspent_mm3(), 0);
 }
 
-TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
+TEST(BurrMill, DropsTheUnspentBudgetOnlyAfterALift) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
   BurrMill mill(volume, kRadius_mm, kBone, kMilling);
@@ -224,7 +224,7 @@ TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
   EXPECT_EQ(mill.unspent_mm3(), 0);
 }
 
-TEST(BurrMill, CutsWhereItPresses) {
+TEST(BurrMill, CutsOnThePressedSideOfAFittingHole) {
   // In a hole that fits it, pressed at an angle: bone is removed on that side only.
   const GridGeometry geometry = cube_of(6, 0.125);
   Volume volume = shape_volume(geometry, [](const Vec3& p) { return kRadius_mm - p.norm(); });
@@ -263,7 +263,7 @@ TEST(BurrMill, MakesTheSameHoleAtAnyHapticRate) {
   }
 }
 
-TEST(BurrMill, MakesTheSameHoleWithAnyVoxels) {
+TEST(BurrMill, MakesTheSameHoleAtAnyVoxelSize) {
   const Hole finest = mill_hole_in(cube_of(7, 0.10), 1000);
   EXPECT_NEAR(finest.removed_mm3 / finest.pressed_mm3, 1, 0.02);
   for (const double spacing_mm : {0.25, 0.20}) {
@@ -275,7 +275,7 @@ TEST(BurrMill, MakesTheSameHoleWithAnyVoxels) {
 
 // With 0.0625 mm voxels the burr overlaps thousands and cuts a share of its lines in each step; with 0.25 mm
 // voxels it overlaps a few hundred and cuts all.
-TEST(BurrMill, CuttingAShareOfItsLinesAStepMakesTheSameHole) {
+TEST(BurrMill, MakesTheSameHoleCuttingAShareOfLinesPerStep) {
   const auto hole_in = [](double spacing_mm) {
     Volume volume = half_space(cube_of(5, spacing_mm));
     BurrMill mill(volume, kRadius_mm, kBone, kMilling);
@@ -313,7 +313,7 @@ TEST(BurrMill, MakesTheSameHoleInAnisotropicVoxels) {
   EXPECT_NEAR(hole.depth_mm, isotropic.depth_mm, 0.125);
 }
 
-TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
+TEST(BurrMill, CutsARotatedGridLikeAnAxisAlignedOne) {
   const GridGeometry straight = cube_of(7, 0.125);
   GridGeometry turned = straight;
   turned.direction = Quat(0.8, 0.3, -0.4, 0.33).normalized().toRotationMatrix();
@@ -337,7 +337,7 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
            [&](const VoxelIndex& v) { ASSERT_NEAR(straight_volume.grid()[v], turned_volume.grid()[v], 2); });
 }
 
-TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
+TEST(BurrMill, ReportsExactlyTheChangedBox) {
   const GridGeometry geometry = cube_of(6, 0.2);
   Volume volume = half_space(geometry);
   BurrMill mill(volume, kRadius_mm, kBone, kMilling);
@@ -355,7 +355,7 @@ TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
   }
 }
 
-TEST(BurrMill, CutsAtTheEdgeOfTheGridWhatIsInside) {
+TEST(BurrMill, CutsWithinTheGridWhenTheBurrOverlapsItsEdge) {
   const GridGeometry geometry = cube_of(4, 0.2);
   Volume volume = half_space(geometry);
   BurrMill mill(volume, kRadius_mm, kBone, kMilling);
@@ -368,7 +368,7 @@ TEST(BurrMill, CutsAtTheEdgeOfTheGridWhatIsInside) {
   EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-9);
 }
 
-TEST(BurrMill, CountsExactlyWhatItTakesEvenNearTheResolutionOfAFloat) {
+TEST(BurrMill, CountsRemovedVolumeExactlyNearFloatResolution) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
   BurrMill mill(volume, kRadius_mm, kBone, {1e-2});

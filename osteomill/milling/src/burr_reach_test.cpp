@@ -87,7 +87,7 @@ void expect_found_as_one_by_one(const BurrReach& reach, const Volume& volume, co
       }
 }
 
-TEST(BurrReach, FindsWhatAPlainSearchFindsWhileBoneGoesAndTheBallMoves) {
+TEST(BurrReach, MatchesBruteForceSearchWhileBoneIsCutAndBallMoves) {
   const GridGeometry geometry = turned_geometry();
   std::mt19937_64 random(11);
   Volume volume = random_volume(geometry, random);
@@ -112,7 +112,7 @@ TEST(BurrReach, FindsWhatAPlainSearchFindsWhileBoneGoesAndTheBallMoves) {
   }
 }
 
-TEST(BurrReach, SharesOfLinesTogetherFindAllOnceWhileBoneGoes) {
+TEST(BurrReach, SharesOfLinesTogetherFindEachVoxelExactlyOnce) {
   // More than 64 bricks along a line, which needs two words.
   GridGeometry geometry = turned_geometry();
   geometry.dims = {540, 11, 13};
@@ -151,7 +151,7 @@ TEST(BurrReach, SharesOfLinesTogetherFindAllOnceWhileBoneGoes) {
   }
 }
 
-TEST(BurrReach, HasRoomForABallFullOfBoneAtAnyShift) {
+TEST(BurrReach, ReservesRoomForABallFullOfBoneAtAnyOffset) {
   for (const double radius_mm : {0.05, 0.4, 1.0, 2.7, 20.0}) {
     const GridGeometry geometry = turned_geometry();
     const Volume volume(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 1000.0f)), 500);
@@ -171,7 +171,7 @@ TEST(BurrReach, HasRoomForABallFullOfBoneAtAnyShift) {
   }
 }
 
-TEST(BurrReach, FindsNoMoreThanItIsGivenRoomFor) {
+TEST(BurrReach, LimitsPiecesToTheGivenCapacity) {
   const GridGeometry geometry = turned_geometry();
   const Volume volume(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 1000.0f)), 500);
   BurrReach reach(volume, 2.0, kFloor, 20);

@@ -117,7 +117,7 @@ void expect_swept(const Cut& cut, const Vec3& spacing_mm, const std::string& wha
   EXPECT_NEAR(cut.removed_mm3 / cut.paid_mm3, 1, 0.01) << what;
 }
 
-TEST(BurrSweep, WhatIsCutIsWhatTheBurrSweeps) {
+TEST(BurrSweep, CutMatchesTheSweptVolume) {
   constexpr double kRadius_mm = 1.5;
   for (const double spacing_mm : {0.2, 0.125}) {
     for (const Drive& drive : {plunge(kRadius_mm, 2.5), groove(kRadius_mm, 2), diagonal(kRadius_mm, 2.5),
@@ -129,7 +129,7 @@ TEST(BurrSweep, WhatIsCutIsWhatTheBurrSweeps) {
   }
 }
 
-TEST(BurrSweep, InATurnedGridToo) {
+TEST(BurrSweep, CutMatchesTheSweptVolumeInARotatedGrid) {
   const Quat turn = Quat(0.8, 0.3, -0.4, 0.33).normalized();
   const Vec3 spacing = Vec3::Constant(0.2);
   for (const Drive& drive : {plunge(1.5, 2), diagonal(1.5, 2)}) {
@@ -137,7 +137,7 @@ TEST(BurrSweep, InATurnedGridToo) {
   }
 }
 
-TEST(BurrSweep, InVoxelsThatAreNoCubesToo) {
+TEST(BurrSweep, CutMatchesTheSweptVolumeInAnisotropicVoxels) {
   const Vec3 spacing(0.3, 0.3, 0.7);
   for (const Drive& drive : {plunge(1.5, 3), groove(1.5, 3), diagonal(1.5, 3)}) {
     const Cut cut = cut_in(drive, 1.5, spacing, 3);
@@ -148,7 +148,7 @@ TEST(BurrSweep, InVoxelsThatAreNoCubesToo) {
   }
 }
 
-TEST(BurrSweep, ByBurrsOfAnySizeAndForce) {
+TEST(BurrSweep, CutMatchesTheSweptVolumeForBurrSizesAndForces) {
   struct Case {
     double radius_mm, spacing_mm, force_N;
   };
@@ -167,7 +167,7 @@ TEST(BurrSweep, LeavesNoIslandsInFineVoxels) {
   }
 }
 
-TEST(BurrSweep, SlidingPastAWallLeavesEveryVoxelOfItAsItWas) {
+TEST(BurrSweep, SlidingPastAWallChangesNoneOfItsVoxels) {
   constexpr double kRadius_mm = 1.5, kGap_mm = 0.2;
   const Vec3 spacing = Vec3::Constant(0.125);
   const Drive drive = along_wall(kRadius_mm + kGap_mm, 2);
@@ -211,7 +211,7 @@ TEST(BurrSweep, CuttingAgainChangesNothing) {
 }
 
 // A tool that starts inside bone overlaps more than it can pay for, and its force rotates.
-TEST(BurrSweep, ABurrInSolidBoneIsPaidForToo) {
+TEST(BurrSweep, RemovesItsBudgetWhenStartedInsideSolidBone) {
   const GridGeometry grid = grid_about(plunge(1, 1), 1, Vec3::Constant(0.125), Quat::Identity());
   Volume volume(DensityGrid(grid, std::vector<float>(grid.voxel_count(), 1000.0f)), 500);
   BurrMill mill(volume, 1, kBone, kMilling);

@@ -23,7 +23,7 @@ double rate(const ChipLaw& law, const ChipContact& contact) {
   return cut_chips(law, contact).rate_mm3_s;
 }
 
-TEST(ChipLaw, PowerPaysForChipsAsThickAsItMakesThem) {
+TEST(ChipLaw, PowerMatchesEnergyAtTheResultingChipThickness) {
   const ChipLaw law = chip_law(BurrEdge::cutting);
   for (const double force_N : {0.1, 1.0, 10.0}) {
     ChipContact contact = kContact;
@@ -37,20 +37,20 @@ TEST(ChipLaw, PowerPaysForChipsAsThickAsItMakesThem) {
   }
 }
 
-TEST(ChipLaw, WithoutAnExponentTheRateIsPowerOverEnergy) {
+TEST(ChipLaw, RateIsPowerOverEnergyForZeroExponent) {
   const ChipEdge edge{500, 0.048, 0};
   const ChipCut cut = cut_chips({edge, edge, 1, 0.3, 1}, kContact);
   EXPECT_DOUBLE_EQ(cut.rate_mm3_s, cut.power_mW / 500);
 }
 
-TEST(ChipLaw, AFirmPushPaysMoreThanItCosts) {
+TEST(ChipLaw, RateGrowsMoreThanLinearlyWithForce) {
   const ChipLaw law = chip_law(BurrEdge::cutting);
   ChipContact firm = kContact;
   firm.force_N *= 2;
   EXPECT_NEAR(rate(law, firm) / rate(law, kContact), std::pow(2.0, 1 / 0.7), 1e-9);
 }
 
-TEST(ChipLaw, ADiamondNeverCutsFasterThanACuttingBurr) {
+TEST(ChipLaw, DiamondBurrNeverCutsFasterThanCuttingBurr) {
   for (double force_N = 0.25; force_N < 30; force_N *= 2) {
     ChipContact contact = kContact;
     contact.force_N = force_N;
@@ -59,13 +59,13 @@ TEST(ChipLaw, ADiamondNeverCutsFasterThanACuttingBurr) {
   EXPECT_LT(rate(chip_law(BurrEdge::diamond), kContact), 0.5 * rate(chip_law(BurrEdge::cutting), kContact));
 }
 
-TEST(ChipLaw, TwentyCutsTakeAFifthOfTheRate) {
+TEST(ChipLaw, TwentyCutsOfWearReduceTheRateByAFifth) {
   for (const BurrEdge burr : {BurrEdge::cutting, BurrEdge::diamond}) {
     EXPECT_NEAR(rate(chip_law(burr, 20), kContact), 0.8 * rate(chip_law(burr), kContact), 1e-12);
   }
 }
 
-TEST(ChipLaw, EnergiesOfTheTableAreMetAndBoneBetweenThemCostsMoreTheDenserItIs) {
+TEST(ChipLaw, EnergyMatchesTheTableAndRisesWithDensity) {
   double before = 0;
   for (double density = 0.02; density < 4; density *= 1.05) {
     EXPECT_GT(chip_energy_Nmm_per_mm3(density), before) << density;
@@ -77,7 +77,7 @@ TEST(ChipLaw, EnergiesOfTheTableAreMetAndBoneBetweenThemCostsMoreTheDenserItIs) 
   }
 }
 
-TEST(ChipLaw, EveryCellOfTheTablesNamesItsSource) {
+TEST(ChipLaw, EveryTableValueNamesItsSource) {
   const auto has_source = [](const Sourced& cell) {
     const std::string_view source = cell.source;
     return source.starts_with("assumed") || source.find("19") != source.npos ||
@@ -91,7 +91,7 @@ TEST(ChipLaw, EveryCellOfTheTablesNamesItsSource) {
         << b.name;
 }
 
-TEST(ChipLaw, WhatDoesNotTurnPressOrTouchCutsNothing) {
+TEST(ChipLaw, RateIsZeroWithoutForceSpeedOrContactArea) {
   const ChipLaw law = chip_law(BurrEdge::cutting);
   EXPECT_EQ(rate(law, {0, kBurr_mm, 40000, 3, 1}), 0);
   EXPECT_EQ(rate(law, {2, kBurr_mm, 0, 3, 1}), 0);
@@ -134,7 +134,7 @@ Plunge plunge(double force_N, double spacing_mm, double density) {
   return all;
 }
 
-TEST(ChipMill, APlungeGoesAsFastAsTheClosedFormSays) {
+TEST(ChipMill, PlungeSpeedMatchesTheClosedForm) {
   const ChipLaw law = chip_law(BurrEdge::cutting);
   for (const double density : {0.7, 1.0, 1.4}) {
     const Plunge cut = plunge(5, 0.125, density);
@@ -146,13 +146,13 @@ TEST(ChipMill, APlungeGoesAsFastAsTheClosedFormSays) {
   }
 }
 
-TEST(ChipMill, TheHoleDoesNotDependOnTheVoxels) {
+TEST(ChipMill, PlungeSpeedIsIndependentOfVoxelSize) {
   const double usual = plunge(6, 0.125, 1).speed_mm_s;
   EXPECT_NEAR(plunge(6, 0.2, 1).speed_mm_s / usual, 1, 0.02);
   EXPECT_NEAR(plunge(6, 0.08, 1).speed_mm_s / usual, 1, 0.02);
 }
 
-TEST(ChipMill, ThePoleAlwaysPaysWithLessThanTheEquator) {
+TEST(ChipMill, PayingForceIsLessAtThePoleThanAtTheEquator) {
   MillingSettings settings;
   settings.chips = chip_law(BurrEdge::cutting);
   EXPECT_NEAR(paying_force_W_N(settings, {}, {2, 0, 0}, true).norm(), 1.5, 1e-12);

@@ -66,7 +66,7 @@ CutVoxels::Cost plain_cost(const Volume& bone, const CuttingBall& ball, double a
   return cost;
 }
 
-TEST(CutKernel, CostsWhatAPlainSumOfDropsDoes) {
+TEST(CutKernel, CostMatchesAPlainSumOfDensityDrops) {
   for (const Vec3& spacing_mm : {Vec3(0.15, 0.15, 0.15), Vec3(0.12, 0.15, 0.2)}) {
     const Volume bone = random_bone(spacing_mm);
     const Gathered g = gathered(bone, 0.2);
@@ -83,7 +83,7 @@ TEST(CutKernel, CostsWhatAPlainSumOfDropsDoes) {
   }
 }
 
-TEST(CutKernel, EverySetOfInstructionsGivesTheSameBits) {
+TEST(CutKernel, IsBitIdenticalForEveryInstructionSet) {
   const Volume bone = random_bone(Vec3(0.12, 0.15, 0.2));
   const std::vector<std::int64_t> targets = available_instruction_sets(cut_kernel_targets());
   ASSERT_GE(targets.size(), 2u);

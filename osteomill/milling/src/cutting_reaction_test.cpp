@@ -57,7 +57,7 @@ Wrench by_pieces(const Vec3& force_W_N, const Vec3& spin_W) {
   return {sum.force_N / weights, sum.torque_Nmm / weights};
 }
 
-TEST(CuttingReaction, IsThatOfItsPiecesHeldBackAgainstTheirSpeed) {
+TEST(CuttingReaction, MatchesIntegralOverSurfaceElements) {
   for (const Vec3& force_N : {Vec3(1.5, 0, 0), Vec3(0, 0, -1.5), Vec3(0.7, -0.3, -1.1)}) {
     const Wrench wrench = settled(force_N), pieces = by_pieces(force_N, -Vec3::UnitZ());
     EXPECT_LT((wrench.force_N - pieces.force_N).norm(), 1e-3) << force_N.transpose();
@@ -67,7 +67,7 @@ TEST(CuttingReaction, IsThatOfItsPiecesHeldBackAgainstTheirSpeed) {
 
 // The burr turns clockwise as seen from the hand. Pressed to the right (+x), where its rim moves towards -y,
 // it is pushed towards +y.
-TEST(CuttingReaction, TheBurrWalksOffAgainstItsTurning) {
+TEST(CuttingReaction, ForceOpposesRimVelocityAtTheContact) {
   const Wrench wrench = settled({1.5, 0, 0});
   EXPECT_NEAR(wrench.force_N.y(), 2.0 / 3.0 * 0.3 * 1.5, 1e-9);
   EXPECT_NEAR(wrench.force_N.x(), 0, 1e-12);
@@ -75,13 +75,13 @@ TEST(CuttingReaction, TheBurrWalksOffAgainstItsTurning) {
   EXPECT_GT(wrench.torque_Nmm.z(), 0);
 }
 
-TEST(CuttingReaction, ThePoleCutsLessThanTheEquator) {
+TEST(CuttingReaction, PayingForceIsLessAtThePoleAndLateralForcesCancel) {
   EXPECT_NEAR(paying_force_W_N(settings(), upright(), {2, 0, 0}, true).norm(), 1.5, 1e-12);
   EXPECT_NEAR(paying_force_W_N(settings(), upright(), {0, 0, -2}, true).norm(), 1.0, 1e-12);
   EXPECT_NEAR(settled({0, 0, -2}).force_N.norm(), 0, 1e-12) << "lateral forces cancel";
 }
 
-TEST(CuttingReaction, WithoutItAllOfTheForcePaysAndNothingIsFelt) {
+TEST(CuttingReaction, AllForcePaysAndWrenchIsZeroWithoutReaction) {
   MillingSettings off = settings();
   off.reaction_share = 0;
   EXPECT_EQ(paying_force_W_N(off, upright(), {0, 0, -2}, true), Vec3(0, 0, -2));
@@ -91,7 +91,7 @@ TEST(CuttingReaction, WithoutItAllOfTheForcePaysAndNothingIsFelt) {
   EXPECT_EQ(reaction.wrench().force_N.norm() + reaction.wrench().torque_Nmm.norm(), 0);
 }
 
-TEST(CuttingReaction, IsBoundedAndHasNoSteps) {
+TEST(CuttingReaction, ForceAndItsChangePerTickAreBounded) {
   CuttingReaction reaction(settings(), kRadius_mm);
   const MillingSettings s = settings();
   double before_N = 0;
@@ -109,7 +109,7 @@ TEST(CuttingReaction, IsBoundedAndHasNoSteps) {
 }
 
 // The work of the spindle's torque equals the cost of the bone, whatever the burr's orientation.
-TEST(CuttingReaction, TheSpindlePaysForTheBone) {
+TEST(CuttingReaction, SpindleWorkMatchesEnergyOfRemovedBone) {
   using testing_support::centred_cube;
   using testing_support::plane;
   using testing_support::shape_volume;

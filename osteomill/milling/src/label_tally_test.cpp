@@ -15,7 +15,7 @@ namespace {
 
 using testing_support::centred_cube;
 
-TEST(LabelTally, TellsOfEveryLabelInItsTurn) {
+TEST(LabelTally, ReportsAllLabelsAndTheirTotalRemovedVolume) {
   LabelTally tally;
   std::map<int, double> told;
   double added = 0;
@@ -47,7 +47,7 @@ double cap_mm3(double radius_mm, double z) {
 
 // A burr inside solid bone cuts its ball plus a disc whose thickness is its advance. A plane at z = 0.4 mm
 // divides both as geometry predicts.
-TEST(BurrMill, SharesOutACarvedBallAmongLabelsAsGeometryDoes) {
+TEST(BurrMill, SplitsRemovedVolumeAmongLabelsByGeometry) {
   constexpr double kRadius_mm = 1.5, kPlane_mm = 0.4;
   const GridGeometry grid = centred_cube(61, 0.1);
   std::vector<LabelMap::LabelIndex> places;

@@ -9,7 +9,7 @@
 namespace osteomill {
 namespace {
 
-TEST(NamedBurrs, AreFoundByTheirNamesAndByTheirSizes) {
+TEST(NamedBurrs, AreFoundByNameAndBySize) {
   std::set<std::string> names;
   for (const NamedBurr& burr : named_burrs()) {
     EXPECT_EQ(find_burr(burr.name), &burr);
@@ -26,7 +26,7 @@ TEST(NamedBurrs, AreFoundByTheirNamesAndByTheirSizes) {
   EXPECT_EQ(find_burr(MillingTool{1.5, 0.1, 25}, BurrEdge::cutting), nullptr);
 }
 
-TEST(NamedBurrs, ReachFromAHalfToSixMillimetresCuttingAndDiamond) {
+TEST(NamedBurrs, CoverHalfToSixMillimetreDiametersForEachEdge) {
   for (const BurrEdge edge : {BurrEdge::cutting, BurrEdge::diamond}) {
     double least_mm = 100, greatest_mm = 0;
     for (const NamedBurr& burr : named_burrs()) {

@@ -27,7 +27,7 @@ std::shared_ptr<const LabelMap> nerve_in_bone() {
                                           grid, places);
 }
 
-TEST(NoGoWatch, FindsAStructureFromWhereverTheBurrComes) {
+TEST(NoGoWatch, DetectsNoGoContactFromEveryDirection) {
   const NoGoWatch watch(nerve_in_bone(), kRadius_mm);
   for (int n = 0; n < 60; ++n) {
     const double z = 1 - (2 * n + 1) / 60.0, turn = 2.4 * n;
@@ -46,7 +46,7 @@ TEST(NoGoWatch, FindsAStructureFromWhereverTheBurrComes) {
   }
 }
 
-TEST(NoGoWatch, HasNothingToSayWithoutNoGoLabels) {
+TEST(NoGoWatch, ReportsNoContactWithoutLabelsOrForNanPosition) {
   LabelTally tally;
   NoGoWatch(nullptr, kRadius_mm).tally_contacts(Vec3::Zero(), tally);
   NoGoWatch(nerve_in_bone(), kRadius_mm).tally_contacts(Vec3::Constant(NAN), tally);

@@ -13,7 +13,7 @@ double settled_rpm(Spindle spindle, double torque_Nmm, double seconds = 3) {
   return spindle.speed_rpm();
 }
 
-TEST(Spindle, WithoutAHandpieceItTurnsAsSetWhateverTheLoad) {
+TEST(Spindle, KeepsSetSpeedUnderAnyLoadWithoutAHandpiece) {
   Spindle spindle(Handpiece::none, 30000);
   spindle.step(true, 1e6, 1e-3);
   EXPECT_EQ(spindle.speed_rpm(), 30000);
@@ -21,7 +21,7 @@ TEST(Spindle, WithoutAHandpieceItTurnsAsSetWhateverTheLoad) {
   EXPECT_EQ(spindle.speed_rpm(), 0);
 }
 
-TEST(Spindle, UnderLoadItSettlesOnTheLineFromStallToFree) {
+TEST(Spindle, SettlesOnTheTorqueSpeedLineUnderLoad) {
   for (const Handpiece handpiece : {Handpiece::turbine, Handpiece::electric, Handpiece::surgical}) {
     const HandpieceType& type = handpiece_types()[static_cast<std::size_t>(handpiece)];
     for (const double load : {0.0, 0.25, 0.5, 0.9}) {
@@ -33,14 +33,14 @@ TEST(Spindle, UnderLoadItSettlesOnTheLineFromStallToFree) {
   }
 }
 
-TEST(Spindle, ANineNewtonPushHalvesASurgicalDrillAndATurbineStalls) {
+TEST(Spindle, NineNewtonsHalveASurgicalDrillAndStallATurbine) {
   const double torque_Nmm = 0.4 * 9 * 1.5 * 0.75;
   EXPECT_NEAR(settled_rpm(Spindle(Handpiece::surgical, 40000), torque_Nmm) / 40000, 0.5, 0.02);
   EXPECT_EQ(settled_rpm(Spindle(Handpiece::turbine, 400000), torque_Nmm), 0);
 }
 
 // Maximum power measured on 41 turbines; independent of the stall torque and free speed in the table.
-TEST(Spindle, TheGreatestPowerOfATurbineIsThatMeasured) {
+TEST(Spindle, MaximumTurbinePowerMatchesMeasurement) {
   double max_W = 0;
   for (double torque_Nmm = 0.05; torque_Nmm < 2.3; torque_Nmm += 0.05) {
     const double rpm = settled_rpm(Spindle(Handpiece::turbine, 500000), torque_Nmm);
@@ -49,7 +49,7 @@ TEST(Spindle, TheGreatestPowerOfATurbineIsThatMeasured) {
   EXPECT_NEAR(max_W / 29.6, 1, 0.05);
 }
 
-TEST(Spindle, RunsUpAndDownWithoutAJumpAndRecoversFromAStall) {
+TEST(Spindle, ChangesSpeedWithoutJumpsAndRecoversFromAStall) {
   Spindle spindle(Handpiece::surgical, 40000);
   double before = 0;
   const auto step = [&](bool is_on, double torque_Nmm) {
@@ -67,7 +67,7 @@ TEST(Spindle, RunsUpAndDownWithoutAJumpAndRecoversFromAStall) {
   EXPECT_EQ(before, 0);
 }
 
-TEST(Spindle, DoesNotDependOnTheLengthOfATick) {
+TEST(Spindle, SpeedIsIndependentOfTickLength) {
   Spindle coarse(Handpiece::electric, 200000), fine(Handpiece::electric, 200000);
   for (int n = 0; n < 100; ++n) coarse.step(true, 3, 1e-3);
   for (int n = 0; n < 400; ++n) fine.step(true, 3, 0.25e-3);

@@ -43,9 +43,9 @@ void expect_same(const IgtlStandIn::Image& image, const Volume& bone) {
   }
 }
 
-class SendBone : public ::testing::Test {
+class BoneSenderTest : public ::testing::Test {
  protected:
-  SendBone()
+  BoneSenderTest()
       : bone_(std::make_shared<Volume>(testing_support::shape_volume(
             turned_grid(), testing_support::ball(turned_grid().world_from_voxel(Vec3(15, 15, 15)), 4)))),
         follower_(bone_) {}
@@ -62,7 +62,7 @@ class SendBone : public ::testing::Test {
   BoneFollower follower_;
 };
 
-TEST_F(SendBone, AllOfItComesFirstWhereItLies) {
+TEST_F(BoneSenderTest, SendsTheWholeBoneFirstAtItsPosition) {
   const BoneSender sender(follower_, server_.address(), 30);
   const IgtlStandIn::Image image = await_messages(server_, 1);
   expect_same(image, *bone_);
@@ -81,7 +81,7 @@ TEST_F(SendBone, AllOfItComesFirstWhereItLies) {
   EXPECT_NEAR((ras_mm - Vec3(-lps_mm.x(), -lps_mm.y(), lps_mm.z())).norm(), 0, 1e-5);
 }
 
-TEST_F(SendBone, ThenWhatWasMilled) {
+TEST_F(BoneSenderTest, SendsOnlyChangedPartsAfterMilling) {
   const BoneSender sender(follower_, server_.address(), 30);
   await_messages(server_, 1);
   mill();
@@ -93,7 +93,7 @@ TEST_F(SendBone, ThenWhatWasMilled) {
   EXPECT_EQ(server_.image().messages, image.messages);
 }
 
-TEST_F(SendBone, TheLastOfItComesAtTheEnd) {
+TEST_F(BoneSenderTest, SendsPendingChangesOnDestruction) {
   {
     const BoneSender sender(follower_, server_.address(), 30);
     await_messages(server_, 1);
@@ -102,7 +102,7 @@ TEST_F(SendBone, TheLastOfItComesAtTheEnd) {
   expect_same(await_messages(server_, 2), *bone_);
 }
 
-TEST_F(SendBone, TheToolComesAsOftenAsItIsAskedFor) {
+TEST_F(BoneSenderTest, SendsToolStateAtMostAtTheRequestedRate) {
   BoneSender sender(follower_, server_.address(), 50);
   TickRecord now;
   now.X_WT = {{1, 2, 3}, quaternion_from_rotation_vector({0, 0.5 * std::numbers::pi, 0})};
@@ -124,7 +124,7 @@ TEST_F(SendBone, TheToolComesAsOftenAsItIsAskedFor) {
               1e-6);
 }
 
-TEST_F(SendBone, AReceiverThatGoesIsNoticed) {
+TEST_F(BoneSenderTest, ReportsDisconnectionWhenTheReceiverCloses) {
   const BoneSender sender(follower_, server_.address(), 30);
   await_messages(server_, 1);
   server_.closes = true;
@@ -132,7 +132,7 @@ TEST_F(SendBone, AReceiverThatGoesIsNoticed) {
   EXPECT_FALSE(sender.is_connected());
 }
 
-TEST_F(SendBone, WhereNothingListensIsSaid) {
+TEST_F(BoneSenderTest, ThrowsWithoutAListenerOrWithAnInvalidAddress) {
   EXPECT_THROW(BoneSender(follower_, "127.0.0.1:1", 30), InputError);
   EXPECT_THROW(BoneSender(follower_, "here", 30), InputError);
 }

@@ -25,7 +25,7 @@ TickRecord cutting_tick(int n) {
   return record;
 }
 
-TEST(LabelRecording, KeepsLabelsAndEveryCutOfThem) {
+TEST(LabelRecording, PreservesLabelsAndEveryLabelCut) {
   const TestFolder folder;
   constexpr int kTicks = 3000;
   {
@@ -41,7 +41,7 @@ TEST(LabelRecording, KeepsLabelsAndEveryCutOfThem) {
   }
 }
 
-TEST(LabelRecording, OpensWhatAKilledProgramLeft) {
+TEST(LabelRecording, ReadsLabelCutsFromAnUnfinishedFile) {
   const TestFolder folder;
   {
     Recorder recorder(folder / "run.h5", with_labels());
@@ -52,7 +52,7 @@ TEST(LabelRecording, OpensWhatAKilledProgramLeft) {
   EXPECT_EQ(recording.records.at(99).label_cuts, cutting_tick(99).label_cuts);
 }
 
-TEST(LabelRecording, WithoutLabelsHasNone) {
+TEST(LabelRecording, HasNoLabelCutsWithoutLabels) {
   const TestFolder folder;
   {
     Recorder recorder(folder / "run.h5", sample_description());

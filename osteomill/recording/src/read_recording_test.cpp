@@ -91,12 +91,12 @@ class ChangedRecording : public ::testing::Test {
   fs::path path_ = folder_ / "run.h5";
 };
 
-TEST_F(ChangedRecording, AnotherVersionIsRefused) {
+TEST_F(ChangedRecording, IsRefusedWithAnUnsupportedVersion) {
   change([](hid_t file) { set_number(file, "osteomill_recording_version", 4); });
   expect_refused(path_, "is a recording of version 4; this program reads versions 5 and 6");
 }
 
-TEST_F(ChangedRecording, ASessionThatCannotBeIsRefused) {
+TEST_F(ChangedRecording, IsRefusedWithAnInvalidOrMissingSession) {
   change([](hid_t file) {
     const hid_t session = H5Gopen2(file, "sessions/0", H5P_DEFAULT);
     set_number(session, "row", 5);
@@ -107,13 +107,13 @@ TEST_F(ChangedRecording, ASessionThatCannotBeIsRefused) {
   expect_refused(path_, "has ticks without a session");
 }
 
-TEST_F(ChangedRecording, AMissingColumnIsNamed) {
+TEST_F(ChangedRecording, IsRefusedNamingAMissingColumn) {
   change([](hid_t file) { H5Ldelete(file, "columns/torque_y_Nmm", H5P_DEFAULT); });
   expect_refused(path_, "no column 'columns/torque_y_Nmm'");
 }
 
 // In recordings of programs without held-back hands, every hand was driven.
-TEST_F(ChangedRecording, OneFromBeforeHandsWereHeldBackIsRead) {
+TEST_F(ChangedRecording, IsReadWithDefaultsForNewerFields) {
   change([](hid_t file) {
     H5Ldelete(file, "columns/driven", H5P_DEFAULT);
     H5Ldelete(file, "columns/no_go_distance_mm", H5P_DEFAULT);
@@ -128,12 +128,12 @@ TEST_F(ChangedRecording, OneFromBeforeHandsWereHeldBackIsRead) {
   EXPECT_FALSE(read.sessions.front().start.handover.held_back);
 }
 
-TEST_F(ChangedRecording, UnequalLengthsAreRefused) {
+TEST_F(ChangedRecording, IsRefusedWithColumnsOfUnequalLength) {
   change([](hid_t file) { set_rows(file, "columns/force_x_N", 1499); });
   expect_refused(path_, "'columns/force_x_N' has 1499 rows");
 }
 
-TEST_F(ChangedRecording, AnUnfinishedOneIsCutToTheShortestColumn) {
+TEST_F(ChangedRecording, IsCutToTheShortestColumnIfUnfinished) {
   change([](hid_t file) {
     set_number(file, "complete", 0);
     set_rows(file, "columns/force_x_N", 1499);
@@ -144,19 +144,19 @@ TEST_F(ChangedRecording, AnUnfinishedOneIsCutToTheShortestColumn) {
   EXPECT_TRUE(same_bits(read.records.back(), sample_record(1498)));
 }
 
-TEST_F(ChangedRecording, MoreRowsThanTheFileCanHoldAreRefusedBeforeMemoryIsTaken) {
+TEST_F(ChangedRecording, IsRefusedWithMoreRowsThanTheFileCanHold) {
   change([](hid_t file) { set_rows(file, "columns/time_s", hsize_t{1} << 50); });
   expect_refused(path_, "more than the file can hold");
 }
 
-TEST_F(ChangedRecording, AMissingOrMistypedAttributeIsNamed) {
+TEST_F(ChangedRecording, IsRefusedNamingAMissingOrMistypedAttribute) {
   change([](hid_t file) { H5Adelete(file, "isovalue"); });
   expect_refused(path_, "no attribute 'isovalue'");
   change([](hid_t file) { H5Arename(file, "seed", "isovalue"); });
   expect_refused(path_, "'isovalue' has the wrong type");
 }
 
-TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
+TEST_F(ChangedRecording, IsRefusedWithAnInvalidDescription) {
   const auto reals = [this](const char* name, std::vector<double> values, const std::string& reason) {
     const std::string sound = bytes_of(path_);
     change([&](hid_t file) {
@@ -183,7 +183,7 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
   expect_refused(path_, "'dims' is not a valid scan size");
 }
 
-TEST_F(ChangedRecording, ANumberThatNobodyRecordsIsRefused) {
+TEST_F(ChangedRecording, IsRefusedWithAColumnValueOutOfRange) {
   const auto fill = [this](const char* column, double value) {
     change([&](hid_t file) {
       const hid_t dataset = H5Dopen2(file, column, H5P_DEFAULT);
@@ -201,7 +201,7 @@ TEST_F(ChangedRecording, ANumberThatNobodyRecordsIsRefused) {
   expect_refused(path_, "'force_x_N' holds 1e+300");
 }
 
-TEST_F(ChangedRecording, AGroupThatHoldsItselfIsRefusedAndNotFollowedForEver) {
+TEST_F(ChangedRecording, IsRefusedWithAGroupContainingItself) {
   change([](hid_t file) {
     H5Ldelete(file, "pictures", H5P_DEFAULT);
     H5Lcreate_hard(file, "/", file, "pictures", H5P_DEFAULT, H5P_DEFAULT);
@@ -253,7 +253,7 @@ TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
   });
 }
 
-TEST_F(ChangedRecording, AColourThatIsNoneIsRefused) {
+TEST_F(ChangedRecording, IsRefusedWithAnInvalidColour) {
   change([this](hid_t file) {
     H5Adelete(file, "algorithm_colour");
     Attributes(path_, file).put("algorithm_colour", "red'; system 'ls");
@@ -261,7 +261,7 @@ TEST_F(ChangedRecording, AColourThatIsNoneIsRefused) {
   expect_refused(path_, "label or colour of its algorithm");
 }
 
-TEST_F(ChangedRecording, AFaultThatDoesNotExistIsRefused) {
+TEST_F(ChangedRecording, IsRefusedWithAnUnknownFault) {
   change([](hid_t file) {
     const hid_t dataset = H5Dopen2(file, "columns/fault", H5P_DEFAULT);
     const std::vector<int> values(1500, 10);
@@ -271,12 +271,12 @@ TEST_F(ChangedRecording, AFaultThatDoesNotExistIsRefused) {
   expect_refused(path_, "'fault' holds 10");
 }
 
-TEST_F(ChangedRecording, AnotherHdf5FileIsNoRecording) {
+TEST_F(ChangedRecording, IsRefusedWithoutItsVersionAttribute) {
   change([](hid_t file) { H5Adelete(file, "osteomill_recording_version"); });
   expect_refused(path_, "not an osteomill recording");
 }
 
-TEST_F(ChangedRecording, CutShortAnywhereItIsRefused) {
+TEST_F(ChangedRecording, IsRefusedWhenTruncated) {
   for (const bool sealed : {true, false}) {
     if (!sealed) remove_seal();
     const std::string whole = bytes_of(path_);
@@ -291,7 +291,7 @@ TEST_F(ChangedRecording, CutShortAnywhereItIsRefused) {
 }
 
 // HDF5 itself crashes on some of these files, so they must be refused before it opens them.
-TEST_F(ChangedRecording, AnyDamagedByteIsNoticed) {
+TEST_F(ChangedRecording, IsRefusedWithASingleFlippedBit) {
   const std::string whole = bytes_of(path_);
   std::uint64_t state = 12345;
   for (int round = 0; round < 500; ++round) {
@@ -311,7 +311,7 @@ class DamagedRecording : public ChangedRecording, public ::testing::WithParamInt
 INSTANTIATE_TEST_SUITE_P(, DamagedRecording, ::testing::Bool(),
                          [](const auto& sealed) { return sealed.param ? "Sealed" : "Unsealed"; });
 
-TEST_P(DamagedRecording, EndsNoProgram) {
+TEST_P(DamagedRecording, DoesNotCrashTheReader) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "HDF5 reads beyond its memory in the child, and loses some when it refuses";
 #endif
@@ -334,12 +334,12 @@ TEST_P(DamagedRecording, EndsNoProgram) {
   }
 }
 
-TEST_F(ChangedRecording, WithoutItsChecksumItIsStillRead) {
+TEST_F(ChangedRecording, IsReadWithoutItsChecksum) {
   remove_seal();
   EXPECT_EQ(read_recording(path_).records.size(), 1500u);
 }
 
-TEST(ReadRecording, WhatIsNotAFileIsNamed) {
+TEST(ReadRecording, RefusesMissingFilesFoldersAndOtherFormats) {
   const TestFolder folder;
   expect_refused(folder / "none.h5", "no such file");
   expect_refused(folder.path(), "is not a file");

@@ -48,7 +48,7 @@ class SharedCount {
   }
 }
 
-TEST(KilledRecorder, LeavesARecordingThatReadsUpToShortlyBeforeItsEnd) {
+TEST(KilledRecorder, LeavesAReadableRecordingMissingAtMostOneSecond) {
   const TestFolder folder;
   for (int round = 0; round < 3; ++round) {
     SharedCount pushed;

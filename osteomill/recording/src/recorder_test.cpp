@@ -71,7 +71,7 @@ void expect_same(const RunDescription& a, const RunDescription& b) {
 }
 
 // An hour of recording has some 7000 flushes.
-TEST(RecordingFile, TakesNoMoreMemoryTheLongerItIs) {
+TEST(RecordingFile, MemoryDoesNotGrowWithItsLength) {
   const TestFolder folder;
   RecordingFile file(folder.path() / "long.h5", sample_description());
   std::vector<TickRecord> second(1000);
@@ -87,7 +87,7 @@ TEST(RecordingFile, TakesNoMoreMemoryTheLongerItIs) {
   EXPECT_LT(seconds(60), before + 0.5e6);
 }
 
-TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {
+TEST(Recorder, RoundTripsRecordsBitIdentically) {
   const TestFolder folder;
   constexpr int kTicks = 5000;  // several chunks and a part of one
   TickRecord odd = sample_record(kTicks);
@@ -123,7 +123,7 @@ TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {
   EXPECT_EQ(read.pictures[1].png, png);
 }
 
-TEST(Recorder, KeepsEveryFieldOfTheViewsBesideTheTicks) {
+TEST(Recorder, RoundTripsEveryFieldOfTheViews) {
   const TestFolder folder;
   const auto sample = [](int n) {
     ViewSample view;
@@ -149,7 +149,7 @@ TEST(Recorder, KeepsEveryFieldOfTheViewsBesideTheTicks) {
 }
 
 // Paths in Latin-1 and other invalid UTF-8 are valid UTF-8 in the file and survive the round trip.
-TEST(Recorder, BytesThatAreNoUtf8AreStoredAsUtf8AndComeBack) {
+TEST(Recorder, RoundTripsInvalidUtf8StoredAsValidUtf8) {
   const TestFolder folder;
   for (const std::string name : {"Sch\xE4"
                                  "del.nrrd",
@@ -175,13 +175,13 @@ TEST(Recorder, BytesThatAreNoUtf8AreStoredAsUtf8AndComeBack) {
             std::string::npos);
 }
 
-TEST(Recorder, ARunOfNoTicksReadsBackAsOne) {
+TEST(Recorder, EmptyRunReadsBackWithoutTicks) {
   const TestFolder folder;
   Recorder(folder / "run.h5", sample_description()).close();
   EXPECT_TRUE(read_recording(folder / "run.h5").records.empty());
 }
 
-TEST(Recorder, AStartWithoutTicksReadsBackOrIsRefused) {
+TEST(Recorder, SessionStartRoundTripsAndInvalidBricksAreRefused) {
   const TestFolder folder;
   SessionStart start{.run = sample_description(), .removed_mm3 = 1.0 / 3};
   start.run.dims = {21, 21, 21};
@@ -219,7 +219,7 @@ TEST(Recorder, AStartWithoutTicksReadsBackOrIsRefused) {
 }
 
 // Records are pushed faster than any disk takes them.
-TEST(Recorder, AFullQueueIsCountedAndTheRestIsKept) {
+TEST(Recorder, CountsTicksDroppedByAFullQueueAndKeepsTheRest) {
   const TestFolder folder;
   std::vector<int> accepted;
   std::uint64_t refused = 0;
@@ -243,7 +243,7 @@ TEST(Recorder, AFullQueueIsCountedAndTheRestIsKept) {
   }
 }
 
-TEST(Recorder, WaitingLosesNothingWhereTheQueueIsFull) {
+TEST(Recorder, PushWaitingDropsNothingWhenTheQueueIsFull) {
   const TestFolder folder;
   Recorder recorder(folder / "run.h5", sample_description());
   constexpr int kTicks = 40000;
@@ -255,7 +255,7 @@ TEST(Recorder, WaitingLosesNothingWhereTheQueueIsFull) {
   EXPECT_TRUE(same_bits(read.records.back(), sample_record(kTicks - 1)));
 }
 
-TEST(Recorder, PushingAllocatesNothingEvenWhenFull) {
+TEST(Recorder, PushAllocatesNothingEvenWhenFull) {
 #if OSTEOMILL_COUNTS_ALLOCATIONS
   const TestFolder folder;
   Recorder recorder(folder / "run.h5", sample_description());
@@ -273,7 +273,7 @@ TEST(Recorder, PushingAllocatesNothingEvenWhenFull) {
 
 // For -fsanitize=thread: one thread pushes, one polls, the recorder's own thread writes, and a second
 // recorder runs at the same time.
-TEST(Recorder, PushingWatchingAndWritingThreadsDoNotDisturbEachOther) {
+TEST(Recorder, AccountsForEveryTickAcrossConcurrentThreads) {
   const TestFolder folder;
   Recorder recorder(folder / "a.h5", sample_description());
   Recorder other(folder / "b.h5", sample_description());
@@ -303,7 +303,7 @@ TEST(Recorder, PushingWatchingAndWritingThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(read_recording(folder / "b.h5").records.size(), 5000u);
 }
 
-TEST(Recorder, WithoutCloseAnUnfinishedRecordingIsLeft) {
+TEST(Recorder, LeavesAnUnfinishedRecordingWithoutClose) {
   const TestFolder folder;
   {
     Recorder recorder(folder / "run.h5", sample_description());
@@ -315,7 +315,7 @@ TEST(Recorder, WithoutCloseAnUnfinishedRecordingIsLeft) {
   EXPECT_EQ(read.records.size(), 100u);
 }
 
-TEST(Recorder, OfARunThatCanBeRunAgainNothingIsLeftWithoutClose) {
+TEST(Recorder, RemovesTheUnfinishedFileWithoutCloseIfRequested) {
   const TestFolder folder;
   {
     Recorder recorder(folder / "run.h5", sample_description(), Recorder::FirstSession::begins_at_once,
@@ -325,7 +325,7 @@ TEST(Recorder, OfARunThatCanBeRunAgainNothingIsLeftWithoutClose) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(Recorder, OneAtATimeWritesAFileOfAName) {
+TEST(Recorder, LocksItsFileAgainstOtherRecordersAndReaders) {
   const TestFolder folder;
   const fs::path path = folder / "run.h5";
   Recorder first(path, sample_description());
@@ -338,7 +338,7 @@ TEST(Recorder, OneAtATimeWritesAFileOfAName) {
   EXPECT_FALSE(fs::exists(unfinished_recording_path(path)));
 }
 
-TEST(Recorder, AnUnfinishedRecordingIsKeptUnderAnotherName) {
+TEST(Recorder, KeepsEarlierUnfinishedRecordingsUnderNewNames) {
   const TestFolder folder;
   const fs::path path = folder / "run.h5";
   for (int ticks = 1; ticks <= 3; ++ticks) {
@@ -362,7 +362,7 @@ TEST(Recorder, AFolderThatIsMissingIsNamed) {
   }
 }
 
-TEST(Recorder, KeysAndNamesThatCannotBeStoredAreRefused) {
+TEST(Recorder, RefusesInvalidOrDuplicateKeysAndPictureNames) {
   const TestFolder folder;
   for (const char* key : {"", "x.unit", "twice"}) {
     RunDescription description = sample_description();
@@ -378,7 +378,7 @@ TEST(Recorder, KeysAndNamesThatCannotBeStoredAreRefused) {
 
 // File size limits simulate full disks; in a child process, because they cannot be lifted again. Everything
 // accepted before the disk was full must be readable.
-TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
+TEST(Recorder, ReportsAFullDiskAndKeepsWrittenRowsReadable) {
   const TestFolder folder;
   std::size_t max_rows = 0;
   for (rlim_t limit_bytes = 400'000; limit_bytes < 6'000'000; limit_bytes += 700'001) {

@@ -73,7 +73,7 @@ std::string refusal(Volume bone, const Recording& recording) {
   return "";
 }
 
-TEST(RepeatMilling, LeavesTheBoneAsTheRunDidDensityByDensity) {
+TEST(RepeatMilling, ReproducesTheRecordedBoneExactly) {
   const TestFolder folder;
   const Milled milled = mill_and_record(folder);
   ASSERT_GT(milled.recording.records.back().removed_mm3, 1);
@@ -83,7 +83,7 @@ TEST(RepeatMilling, LeavesTheBoneAsTheRunDidDensityByDensity) {
   EXPECT_NE(again.grid().densities(), fresh_bone().grid().densities());
 }
 
-TEST(RepeatMilling, RefusesWhatItCannotRepeat) {
+TEST(RepeatMilling, RefusesOtherScansLostTicksAndInvalidSettings) {
   const TestFolder folder;
   const Recording recording = mill_and_record(folder).recording;
 

@@ -28,7 +28,7 @@ const SessionSettings kSettings{{.law = CuttingLaw::chips,
                                 {0, 1000}};
 
 // Two sessions, of which the second begins with the spindle still turning.
-TEST(ReplayChips, SpindleDragAndVibrationComeOutToTheBit) {
+TEST(ReplayChips, ReplaysSpindleDragAndVibrationBitIdentically) {
   const testing_support::TestFolder folder;
   const Volume scan = testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 5));
@@ -69,7 +69,7 @@ TEST(ReplayChips, SpindleDragAndVibrationComeOutToTheBit) {
   EXPECT_EQ(again.grid().densities(), bone->grid().densities());
 }
 
-TEST(ReplayChips, ARecordingOfAnEarlierProgramHasConstantEnergyAndAConstantSpeed) {
+TEST(ReplayChips, UsesConstantEnergyAndSpeedForOlderRecordings) {
   RunDescription run = describe_run(testing_support::shape_volume(testing_support::centred_cube(10, 0.25),
                                                                   testing_support::ball(Vec3::Zero(), 1)),
                                     {"ball", 0}, kSettings, 0);

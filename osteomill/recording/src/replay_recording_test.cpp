@@ -89,7 +89,7 @@ std::string refusal(const Volume& scan, const Recording& recording) {
   return "";
 }
 
-TEST(ReplayRecording, EveryAlgorithmComesOutTheSameWhateverTheHandDoes) {
+TEST(ReplayRecording, ReplaysEveryAlgorithmWithoutDifference) {
   const TestFolder folder;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     const Volume scan = fresh_bone();
@@ -118,7 +118,7 @@ TEST(ReplayRecording, EveryAlgorithmComesOutTheSameWhateverTheHandDoes) {
 
 // Recording starts after a first session has milled and continues across changes of algorithm, a reset and
 // another isovalue.
-TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
+TEST(ReplayRecording, ReplaysSeveralSessionsOnPreviouslyMilledBone) {
   const TestFolder folder;
   const Volume scan = fresh_bone();
   const auto bone = std::make_shared<Volume>(scan);
@@ -173,9 +173,9 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
   EXPECT_EQ(verified.ticks, 520u);
 }
 
-class OneRecording : public ::testing::Test {
+class ReplayRecordingTest : public ::testing::Test {
  protected:
-  OneRecording() {
+  ReplayRecordingTest() {
     const auto session = make(std::make_shared<Volume>(scan_), algorithm_);
     Recorder recorder(folder_ / "a.h5", description_of(scan_, algorithm_));
     Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_),
@@ -193,7 +193,7 @@ class OneRecording : public ::testing::Test {
   AlgorithmDescription algorithm_ = algorithm_named("point-shell");
 };
 
-TEST_F(OneRecording, WhatDiffersIsToldFromTheFirstTickOn) {
+TEST_F(ReplayRecordingTest, ReportsTheFirstDifferingTick) {
   const Recording recording = read_recording(folder_ / "a.h5");
   Recording other = recording;
   other.records[200].wrench.force_N.y() += 0.25;
@@ -219,7 +219,7 @@ TEST_F(OneRecording, WhatDiffersIsToldFromTheFirstTickOn) {
   EXPECT_EQ(verified.difference->record, 150u);
 }
 
-TEST_F(OneRecording, GoesOnFromTheOneBeforeIt) {
+TEST_F(ReplayRecordingTest, ReplaysAChainOfContinuedRecordings) {
   const Recording rest = read_recording(folder_ / "b.h5");
   EXPECT_NE(refusal(scan_, rest).find("continues a.h5"), std::string::npos);
   const Recording whole = read_recording_chain(folder_ / "b.h5");
@@ -230,7 +230,7 @@ TEST_F(OneRecording, GoesOnFromTheOneBeforeIt) {
   EXPECT_EQ(verified.compared_bones, 3u + 2u);
 }
 
-TEST_F(OneRecording, WhatCannotBeReplayedIsRefused) {
+TEST_F(ReplayRecordingTest, RefusesOtherScansLostTicksAndUnknownAlgorithms) {
   const Recording recording = read_recording(folder_ / "a.h5");
   EXPECT_NE(refusal(fresh_bone(5.1), recording).find("another scan (ball)"), std::string::npos);
   Recording other = recording;
@@ -247,7 +247,7 @@ TEST_F(OneRecording, WhatCannotBeReplayedIsRefused) {
   EXPECT_NE(refusal(scan_, other).find("cannot be replayed"), std::string::npos);
 }
 
-TEST_F(OneRecording, TheSameMotionGoesThroughAnotherAlgorithm) {
+TEST_F(ReplayRecordingTest, ReplaysTheSameMotionWithAnotherAlgorithm) {
   const Recording recording = read_recording(folder_ / "a.h5");
   ReplayHooks hooks;
   hooks.transform_description = [](RunDescription run) {

@@ -67,7 +67,7 @@ TickRecord tick(MillingSession& session, int n) {
 }
 
 // Recording of several sessions with undo, reset, and changes of algorithm and burr.
-class SeveralSessions : public ::testing::Test {
+class ResumeRecordingTest : public ::testing::Test {
  protected:
   void record(const std::vector<Stretch>& stretches, int ticks_each) {
     std::vector<Volume> bones;
@@ -133,7 +133,7 @@ std::string differing(const TickRecord& run, const TickRecord& again) {
   return run.bone_hash == again.bone_hash ? names : names + "bone";
 }
 
-TEST_F(SeveralSessions, GoOnToTheBitFromTwentyRandomTicks) {
+TEST_F(ResumeRecordingTest, ContinuesBitIdenticallyFromRandomTicks) {
   record({{"barrier-shell", 1.5},
           {"barrier-shell", 1.0},
           {"point-shell", 1.0},
@@ -169,7 +169,7 @@ TEST_F(SeveralSessions, GoOnToTheBitFromTwentyRandomTicks) {
   }
 }
 
-TEST_F(SeveralSessions, WhatCannotBeResumedIsRefused) {
+TEST_F(ResumeRecordingTest, RefusesInvalidTimesOtherScansAndDifferingTicks) {
   record({{"point-shell", 1.5}}, 300);
   const auto refused = [&](const Recording& recording, double time_s) {
     return refusal([&] { resume_recording(scan_, recording, time_s); });
@@ -188,7 +188,7 @@ TEST_F(SeveralSessions, WhatCannotBeResumedIsRefused) {
   EXPECT_EQ(refused(changed, 0.19), "");
 }
 
-TEST_F(SeveralSessions, ABranchNamesItsTickAndReplaysWithWhatCameBefore) {
+TEST_F(ResumeRecordingTest, ReplaysBranchesAndRefusesBrokenOrCircularChains) {
   record({{"point-shell", 1.5}, {"barrier-shell", 1.5}}, 200);
   ResumedRecording resumed = resume_recording(scan_, recording_, 0.299);
   const auto write = [&](const char* name, const char* from, std::uint64_t after) {
@@ -224,7 +224,7 @@ TEST_F(SeveralSessions, ABranchNamesItsTickAndReplaysWithWhatCameBefore) {
     EXPECT_NE(refusal([&] { read_recording_chain(folder_ / round); }).find("or itself"), std::string::npos);
 }
 
-TEST_F(SeveralSessions, TheBoneOfAnyTickIsFoundWithinTheMemory) {
+TEST_F(ResumeRecordingTest, FindsTheBoneAtAnyTickWithinTheMemoryLimit) {
   record({{"point-shell", 1.5}, {"point-shell", 2.0}, {"point-shell", 1.0, 1}, {"point-shell", 1.5}}, 2600);
   const std::size_t all = RecordedBone(scan_, recording_).bytes();
   // Each lower limit leaves fewer checkpoints.
@@ -256,7 +256,7 @@ TEST_F(SeveralSessions, TheBoneOfAnyTickIsFoundWithinTheMemory) {
 }
 
 // Resets after a cut that no checkpoint contains; the new session lists no bricks.
-TEST_F(SeveralSessions, TheBoneOfASessionAfterAnEarlyResetIsTheScan) {
+TEST_F(ResumeRecordingTest, FindsTheBoneAfterAResetOfACutWithoutCheckpoint) {
   record({{"point-shell", 1.5}, {"point-shell", 1.0, 0}, {"point-shell", 1.0}}, 400);
   ASSERT_GT(ticks_[399].removed_mm3, 0);
   RecordedBone bone(scan_, recording_);

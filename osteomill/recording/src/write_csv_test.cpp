@@ -28,7 +28,7 @@ constexpr const char* kHeader =
     "force_x_N,force_y_N,force_z_N,torque_x_Nmm,torque_y_Nmm,torque_z_Nmm,contacts,removed_mm3,compute_us,"
     "energy_given_Nmm,spindle_rpm,cutting_power_W";
 
-TEST(WriteCsv, HasTheColumnsOfTheLogInTheirOrder) {
+TEST(WriteCsv, WritesLogColumnsInOrder) {
   const TestFolder folder;
   TickRecord record;
   record.time_s = 1;
@@ -48,7 +48,7 @@ TEST(WriteCsv, HasTheColumnsOfTheLogInTheirOrder) {
   EXPECT_EQ(lines[1], "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18.5,19,20,-21,22,23,24,25,26,27");
 }
 
-TEST(WriteCsv, EveryNumberReadsBackToTheSameBits) {
+TEST(WriteCsv, NumbersReadBackExactly) {
   const TestFolder folder;
   std::vector<TickRecord> records;
   for (int tick = 0; tick < 200; ++tick) records.push_back(sample_record(tick));
@@ -70,7 +70,7 @@ class CommaForPoint : public std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
 };
 
-TEST(WriteCsv, TheLocaleDoesNotMatter) {
+TEST(WriteCsv, WritesDecimalPointsInAnyLocale) {
   const TestFolder folder;
   TickRecord record;
   record.time_s = 0.5;

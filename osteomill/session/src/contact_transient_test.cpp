@@ -45,7 +45,7 @@ double largest_N(const Bounce& bounce) {
   return *std::ranges::max_element(bounce.transient_N);
 }
 
-TEST(ContactTransient, GrowsWithTheSpeedOfTheImpactUpToItsLimit) {
+TEST(ContactTransient, GrowsWithImpactSpeedUpToItsLimit) {
   const ContactTransientSettings settings{.on = true};
   EXPECT_EQ(largest_N(bounce({}, 50)), 0);
   EXPECT_EQ(largest_N(bounce(settings, 4)), 0);
@@ -65,7 +65,7 @@ TEST(ContactTransient, TakesEnergyFromTheHandAtEverySpeed) {
   }
 }
 
-TEST(ContactTransient, BeginsAtZeroSwingsAndIsOverAfterTwentyMilliseconds) {
+TEST(ContactTransient, StartsSmallOscillatesAndEndsWithin20Milliseconds) {
   const Bounce hit = bounce({.on = true}, 100);
   const auto first = std::ranges::find_if(hit.transient_N, [](double force_N) { return force_N > 0; });
   // Zero in the tick of the contact; then less than half of the amplitude.
@@ -77,7 +77,7 @@ TEST(ContactTransient, BeginsAtZeroSwingsAndIsOverAfterTwentyMilliseconds) {
   EXPECT_TRUE(std::all_of(first + 20, hit.transient_N.end(), [](double force_N) { return force_N == 0; }));
 }
 
-TEST(ContactTransient, IsSilentWhileContactsFollowEachOther) {
+TEST(ContactTransient, IsZeroForContactsInQuickSuccession) {
   ContactTransient transient({.on = true});
   double z_mm = 5;
   const auto tick = [&](double contact_N) {
@@ -92,7 +92,7 @@ TEST(ContactTransient, IsSilentWhileContactsFollowEachOther) {
 }
 
 // Difference of a session's wrench with and without the transient while plunging onto flat bone.
-TEST(ContactTransient, IsAllThatChangesInASession) {
+TEST(ContactTransient, ChangesSessionForceForAtMost21Ticks) {
   const auto wrenches = [](bool on) {
     MillingSetup setup;
     setup.tick_s = kTick_s;

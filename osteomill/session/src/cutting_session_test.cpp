@@ -65,7 +65,7 @@ class CuttingSession : public ::testing::Test {
 
 constexpr double kEquator = 0.75, kFriction = 0.4, kBurrRadius_mm = 1.5;
 
-TEST_F(CuttingSession, ThePushSlowsTheSpindleAlongItsLineAndItIsRecorded) {
+TEST_F(CuttingSession, PushSlowsTheSpindleAlongItsTorqueSpeedLine) {
   start({.law = CuttingLaw::chips, .handpiece = Handpiece::surgical});
   EXPECT_NEAR(ticks(1000).spindle_rpm, 40000, 400);
   press(4);
@@ -75,7 +75,7 @@ TEST_F(CuttingSession, ThePushSlowsTheSpindleAlongItsLineAndItIsRecorded) {
   EXPECT_LT(ticks(2000, false).spindle_rpm, 1);
 }
 
-TEST_F(CuttingSession, AStallStopsTheRemovalAndNotTheHand) {
+TEST_F(CuttingSession, StallStopsRemovalButKeepsTheContactForce) {
   start({.law = CuttingLaw::chips, .handpiece = Handpiece::surgical});
   ticks(1000);
   press(25);
@@ -92,7 +92,7 @@ TEST_F(CuttingSession, AStallStopsTheRemovalAndNotTheHand) {
   EXPECT_GT(ticks(500).removed_mm3, later.removed_mm3 + 0.01);
 }
 
-TEST_F(CuttingSession, ConstantEnergyFollowsTheTrueSpeedToo) {
+TEST_F(CuttingSession, ConstantEnergyRemovesLessDuringRunUp) {
   start({.handpiece = Handpiece::surgical});
   press(1);
   device_.put(at(1.2));
@@ -103,7 +103,7 @@ TEST_F(CuttingSession, ConstantEnergyFollowsTheTrueSpeedToo) {
   EXPECT_LT(run_up.removed_mm3, 0.2 * ticks(20).removed_mm3);
 }
 
-TEST_F(CuttingSession, WhatPressesAndRemovesNothingDragsByItsFriction) {
+TEST_F(CuttingSession, DragsByFrictionWhenPressingWithoutRemoval) {
   start({.law = CuttingLaw::chips, .drag = true});
   device_.put(at(5));
   press(2);
@@ -117,7 +117,7 @@ TEST_F(CuttingSession, WhatPressesAndRemovesNothingDragsByItsFriction) {
   EXPECT_EQ(ticks(200).wrench.force_N, Vec3(0, 0, 2));
 }
 
-TEST_F(CuttingSession, AStalledBurrTwistsTheHandWithNoMoreThanTheDriveHas) {
+TEST_F(CuttingSession, StalledBurrTorqueIsLimitedToTheStallTorque) {
   start({.law = CuttingLaw::chips, .handpiece = Handpiece::turbine, .drag = true});
   device_.put(at(5));
   press(20);
@@ -129,7 +129,7 @@ TEST_F(CuttingSession, AStalledBurrTwistsTheHandWithNoMoreThanTheDriveHas) {
 
 // The spindle supplies the energy of drag: along any path the hand gets at most the friction force times the
 // path length.
-TEST_F(CuttingSession, DragGivesTheHandNoMoreThanItsFrictionAlongTheWay) {
+TEST_F(CuttingSession, DragEnergyIsBoundedByFrictionTimesPathLength) {
   start({.law = CuttingLaw::chips, .drag = true});
   press(2);
   algorithm_->next.wrench = {};
@@ -152,7 +152,7 @@ TEST_F(CuttingSession, VibrationStopsWhenNothingIsCut) {
   EXPECT_LT(ticks(200).wrench.force_N.norm(), 1e-6);
 }
 
-TEST(ShaftDrag, HoldsTheShaftBackAgainstItsTurningAtTheContact) {
+TEST(ShaftDrag, ForceOpposesShaftRotationAtTheContact) {
   const Pose upright{{1, 2, 3}, Quat::Identity()};
   // Bone at +x, 10 mm above the burr, pushes the shaft with 2 N.
   const ShaftDrag drag = shaft_drag({}, upright, {{-2, 0, 0}, {0, -20, 0}});

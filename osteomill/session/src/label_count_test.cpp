@@ -14,7 +14,7 @@ TickRecord tick(double time_s, double force_N, const LabelCuts& cuts) {
   return record;
 }
 
-TEST(LabelCount, SaysHowMuchWhenAndWithWhatForce) {
+TEST(LabelCount, CountsVolumeTimeForceAndContactsOfEachLabel) {
   LabelCount count({{3, "bone", {}}, {8, "nerve", {}, true}});
   EXPECT_EQ(count.add(tick(0, 9, {})), std::nullopt);
   EXPECT_EQ(count.add(tick(1.000, 1, {LabelCut{1, 0.5}})), std::nullopt);

@@ -27,7 +27,7 @@ std::string fault_of(const MillingTool& tool) {
   return "";
 }
 
-TEST(RequireWorkable, NamesAToolThatCannotWorkInTheScan) {
+TEST(RequireWorkable, ReportsWhyAToolCannotWorkInTheScan) {
   EXPECT_EQ(fault_of({}), "");
   EXPECT_EQ(fault_of({3, 3, 100}), "");
   EXPECT_NE(fault_of({50, 1, 25}).find("the burr's radius, 50 mm, makes it 100 mm wide"), std::string::npos);
@@ -84,7 +84,7 @@ class MillingSessionTest : public ::testing::Test {
   double time_s_ = 0;
 };
 
-TEST_F(MillingSessionTest, TheDeviceGetsWhatIsRecorded) {
+TEST_F(MillingSessionTest, SendsTheRecordedForceToTheDevice) {
   algorithm_->next.wrench = {{0, 0, 3}, {0, 40, 0}};
   const TickRecord record = tick();
   EXPECT_EQ(device_.sent().force_N, Vec3(0, 0, 3));
@@ -93,14 +93,14 @@ TEST_F(MillingSessionTest, TheDeviceGetsWhatIsRecorded) {
   EXPECT_EQ(record.fault, WrenchFault::none);
 }
 
-TEST_F(MillingSessionTest, TooMuchIsClampedAndSaid) {
+TEST_F(MillingSessionTest, ClampsAnExcessiveForceAndReportsIt) {
   algorithm_->next.wrench = {{0, 0, 300}, {0, 40, 0}};
   EXPECT_EQ(tick().fault, WrenchFault::force_clamped);
   EXPECT_TRUE(device_.sent().force_N.isApprox(Vec3(0, 0, 20)));
 }
 
 // The tool lies on its side, hand to the right, and presses down; bone resists along its surface.
-TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
+TEST_F(MillingSessionTest, AddsTheCuttingReactionWithinTheForceLimit) {
   start(session_->volume(), {.cutting_reaction = true, .guard = GuardSettings::for_simulation({0.25, 500})});
   const Pose lying{{0, 0, 1.45}, Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX())};
   device_.put(lying);
@@ -124,7 +124,7 @@ TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
 }
 
 // A restarted burr cuts no more in its first tick than one that never turned.
-TEST_F(MillingSessionTest, ASpindleThatStandsStillForgetsWhatItWasPressedFor) {
+TEST_F(MillingSessionTest, RestartedSpindleCutsLikeOneThatNeverTurned) {
   device_.put({{0, 0, 1.4}, Quat::Identity()});
   algorithm_->next.burr_force_W_N = {0, 0, -5};
   for (int n = 0; n < 8; ++n) tick();
@@ -137,7 +137,7 @@ TEST_F(MillingSessionTest, ASpindleThatStandsStillForgetsWhatItWasPressedFor) {
   EXPECT_EQ(again_mm3, tick().removed_mm3);
 }
 
-TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {
+TEST_F(MillingSessionTest, ResumeStartsTheAlgorithmAtTheOtherSessionsToolPose) {
   session_->resume_from({Pose{{0, 0, 1.5}, Quat::Identity()}, {}});
   tick();
   ASSERT_EQ(algorithm_->steps.size(), 2u);
@@ -166,7 +166,7 @@ class AskedDevice final : public Device {
   }
 };
 
-TEST_F(MillingSessionTest, OneCallIsTheWholeTickOfADevice) {
+TEST_F(MillingSessionTest, TickReadsThePoseSendsTheWrenchAndReportsDoneInOrder) {
   AskedDevice device;
   algorithm_->next.burr_force_W_N = {0, 0, -5};
   EXPECT_FALSE(session_->tick(device, {}).spindle_on);
@@ -186,7 +186,7 @@ TEST_F(MillingSessionTest, OneCallIsTheWholeTickOfADevice) {
   EXPECT_EQ(device.passed_s, 2.5e-3);
 }
 
-TEST_F(MillingSessionTest, APausedTickSendsZeroAndStepsNothing) {
+TEST_F(MillingSessionTest, PausedTickSendsZeroAndDoesNotStepTheAlgorithm) {
   algorithm_->next.wrench = {{0, 0, 3}, {0, 40, 0}};
   tick(true);
   const TickRecord idle = session_->tick(device_, {.time_s = 1, .spindle_on = true, .paused = true});
@@ -197,7 +197,7 @@ TEST_F(MillingSessionTest, APausedTickSendsZeroAndStepsNothing) {
   EXPECT_TRUE(session_->last_change().voxels.empty());
 }
 
-TEST_F(MillingSessionTest, AWrenchThatIsNotFiniteIsZeroAndTheContactsAreForgotten) {
+TEST_F(MillingSessionTest, ReplacesANonFiniteWrenchByZeroAndResetsTheAlgorithm) {
   algorithm_->next.wrench.torque_Nmm.y() = std::numeric_limits<double>::quiet_NaN();
   algorithm_->next.burr_force_W_N.z() = -5;
   const TickRecord record = tick();
@@ -210,7 +210,7 @@ TEST_F(MillingSessionTest, AWrenchThatIsNotFiniteIsZeroAndTheContactsAreForgotte
   EXPECT_EQ(tick().fault, WrenchFault::none);
 }
 
-TEST_F(MillingSessionTest, AfterAWrenchThatIsNotFiniteTheToolIsWhereItWasAndNotAtADeviceInBone) {
+TEST_F(MillingSessionTest, RestartsAtTheLastToolPoseAfterANonFiniteWrench) {
   tick();
   device_.put(Pose{{0, 0, 0.5}, Quat::Identity()});
   algorithm_->next.wrench.force_N.x() = std::numeric_limits<double>::quiet_NaN();
@@ -219,12 +219,12 @@ TEST_F(MillingSessionTest, AfterAWrenchThatIsNotFiniteTheToolIsWhereItWasAndNotA
   EXPECT_EQ(algorithm_->steps.back().position_mm, Vec3(0, 0, 1.0));
 }
 
-TEST_F(MillingSessionTest, ABurrForceThatIsNotFiniteIsAFaultToo) {
+TEST_F(MillingSessionTest, ReportsANonFiniteBurrForceAsAFault) {
   algorithm_->next.burr_force_W_N.y() = std::numeric_limits<double>::infinity();
   EXPECT_EQ(tick().fault, WrenchFault::not_finite);
 }
 
-TEST_F(MillingSessionTest, ADeviceWithoutAPoseGetsNothing) {
+TEST_F(MillingSessionTest, SendsZeroForceIfTheDevicePoseIsNotFinite) {
   algorithm_->next.wrench.force_N = {0, 0, 3};
   tick();
   device_.put({{0, std::numeric_limits<double>::quiet_NaN(), 0}, Quat::Identity()});
@@ -247,7 +247,7 @@ class FailingDevice : public Device {
   }
 };
 
-TEST_F(MillingSessionTest, ADeviceThatThrowsIsLeftWithZeroAndFeelsNothingBeforeTheToolIsOut) {
+TEST_F(MillingSessionTest, SendsZeroAfterAWriteFailureUntilTheToolIsOutOfBone) {
   start(testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ())),
         {});
@@ -273,7 +273,7 @@ TEST_F(MillingSessionTest, ADeviceThatThrowsIsLeftWithZeroAndFeelsNothingBeforeT
   EXPECT_GT(device.posed.sent().force_N.z(), 0);
 }
 
-TEST_F(MillingSessionTest, ALengthThatIsNoTimeCountsAsAnOrdinaryTick) {
+TEST_F(MillingSessionTest, ReplacesAnInvalidTickLengthByTheNominalOne) {
   MillingSetup setup{.guard = GuardSettings::for_simulation()};
   setup.vibration.on = setup.contact_transient.on = true;
   start(testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
@@ -294,7 +294,7 @@ TEST_F(MillingSessionTest, ALengthThatIsNoTimeCountsAsAnOrdinaryTick) {
   EXPECT_GT(after.wrench.force_N.z(), 2);
 }
 
-TEST_F(MillingSessionTest, AGuardThatIsNoNumberIsRefused) {
+TEST_F(MillingSessionTest, RefusesNanOrNegativeGuardSettings) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto refuses = [&](auto set) {
     MillingSetup setup;
@@ -321,7 +321,7 @@ TEST_F(MillingSessionTest, AGuardThatIsNoNumberIsRefused) {
   EXPECT_FALSE(refuses([](GuardSettings&) {}));
 }
 
-TEST_F(MillingSessionTest, NoAlgorithmIsGivenAPoseFartherThanAnyWorkspace) {
+TEST_F(MillingSessionTest, RejectsAPoseFartherThanAnyWorkspace) {
   for (const double far_mm : {1e308, -1e308, 1.01 * kMaxPose_mm}) {
     device_.put({{0, far_mm, 0}, Quat::Identity()});
     const TickRecord record = tick();
@@ -331,7 +331,7 @@ TEST_F(MillingSessionTest, NoAlgorithmIsGivenAPoseFartherThanAnyWorkspace) {
   }
 }
 
-TEST_F(MillingSessionTest, BoneGoesWhileTheSpindleTurnsAndTheAlgorithmHearsOfIt) {
+TEST_F(MillingSessionTest, RemovesBoneOnlyWithTheSpindleOnAndNotifiesTheAlgorithm) {
   algorithm_->next.burr_force_W_N.z() = -2;
   EXPECT_EQ(tick(false).removed_mm3, 0);
   EXPECT_TRUE(algorithm_->changes.empty());

@@ -45,7 +45,7 @@ struct Wall {
   }
 };
 
-TEST(PassivityObserver, CountsTheWorkThatAHandleGains) {
+TEST(PassivityObserver, EnergyGivenMatchesTheEnergyThatTheHandleGains) {
   Wall wall;
   wall.press_N = 2;
   wall.run(400);
@@ -56,7 +56,7 @@ TEST(PassivityObserver, CountsTheWorkThatAHandleGains) {
               0.01 * wall.guard.energy_given_Nmm());
 }
 
-TEST(PassivityObserver, CountsTheWorkOfTurning) {
+TEST(PassivityObserver, CountsTheWorkOfATorque) {
   PassivityObserver observer;
   observer.move_to({});
   observer.send({Vec3::Zero(), {0, 0, 40}});
@@ -80,7 +80,7 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
   EXPECT_LT(controlled.deepest_mm, 1);
 }
 
-TEST(PassivityObserver, InFreeSpaceNothingIsFelt) {
+TEST(PassivityObserver, SendsZeroInFreeSpaceAndDampsTheNextContact) {
   WrenchGuard guard(GuardSettings::for_simulation({}, true));
   Pose X_WD;
   // Moves 1 mm along the force: 3 N mm of excess energy.
@@ -95,7 +95,7 @@ TEST(PassivityObserver, InFreeSpaceNothingIsFelt) {
   EXPECT_EQ(safe.fault, WrenchFault::rate_limited);
 }
 
-TEST(PassivityObserver, APoseThatIsNotFiniteBreaksOff) {
+TEST(PassivityObserver, SkipsTheMotionAcrossANonFinitePose) {
   PassivityObserver observer;
   observer.move_to({});
   observer.send({{1, 0, 0}, Vec3::Zero()});

@@ -35,7 +35,7 @@ class FailedDevice final : public Device {
   void write_wrench(const Wrench&) override { throw 1; }
 };
 
-TEST(Device, LettingGoOfOneThatThrowsHasSentNothing) {
+TEST(Device, DisengageReturnsFalseIfWritingTheWrenchThrows) {
   EXPECT_FALSE(FailedDevice().disengage());
 }
 

@@ -27,7 +27,7 @@ std::vector<TickRecord> replayed(bool milling) {
   return log;
 }
 
-TEST(Replay, IsATickARowWithTheRowsOwnTimeAndPose) {
+TEST(Replay, GivesOneTickPerRowWithItsTimeAndPose) {
   const auto log = replayed(false);
   ASSERT_EQ(log.size(), 800u);
   EXPECT_EQ(log[300].time_s, 300 * 1e-3);
@@ -36,12 +36,12 @@ TEST(Replay, IsATickARowWithTheRowsOwnTimeAndPose) {
   EXPECT_GT(log.back().wrench.force_N.z(), 0.1);
 }
 
-TEST(Replay, CutsOnlyWhereTheTrajectorySaysSo) {
+TEST(Replay, RemovesBoneOnlyIfTheTrajectoryIsMilling) {
   EXPECT_EQ(replayed(false).back().removed_mm3, 0);
   EXPECT_GT(replayed(true).back().removed_mm3, 0);
 }
 
-TEST(Replay, TheSameTwiceIsTheSameBitForBit) {
+TEST(Replay, SecondReplayIsBitIdentical) {
   const auto first = replayed(true);
   const auto second = replayed(true);
   for (std::size_t n = 0; n < first.size(); ++n) {

@@ -113,7 +113,7 @@ MillingSetup setup_of(const AlgorithmDescription& algorithm) {
   return {.algorithm = algorithm, .guard = GuardSettings::for_simulation()};
 }
 
-TEST(SettingRanges, EveryDefaultHoldsWithoutADoubt) {
+TEST(SettingRanges, DefaultsHoldTheToolWithoutWarnings) {
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     SCOPED_TRACE(algorithm.id.name);
     EXPECT_TRUE(setting_warnings(setup_of(algorithm), small_bone().geometry()).empty());
@@ -121,7 +121,7 @@ TEST(SettingRanges, EveryDefaultHoldsWithoutADoubt) {
   }
 }
 
-TEST(SettingRanges, EitherEndOfAnAlgorithmsSettingHoldsOrIsToldOf) {
+TEST(SettingRanges, AlgorithmSettingsAtTheirLimitsHoldTheToolOrWarn) {
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     for (const SettingDescription& setting : algorithm.settings) {
       for (const double value : {setting.range.min, setting.range.max}) {
@@ -134,7 +134,7 @@ TEST(SettingRanges, EitherEndOfAnAlgorithmsSettingHoldsOrIsToldOf) {
   }
 }
 
-TEST(SettingRanges, EitherEndOfToolCuttingAndLimitsHoldsOrIsToldOf) {
+TEST(SettingRanges, SetupFieldsAtTheirLimitsHoldTheToolOrWarn) {
   for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
     if (field.option.empty()) continue;
     for (const AlgorithmDescription& algorithm : all_algorithms()) {
@@ -149,7 +149,7 @@ TEST(SettingRanges, EitherEndOfToolCuttingAndLimitsHoldsOrIsToldOf) {
 }
 
 // Bone is removed under the burr, so this checks only the sent wrench.
-TEST(SettingRanges, EitherEndOfTheCuttingsSettingsCutsByFiniteNumbers) {
+TEST(SettingRanges, CuttingSettingsAtTheirLimitsGiveFiniteWrenches) {
   for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
     if (!field.has(kCuttingField) || field.option.empty()) continue;
     for (const double value : {field.range.min, field.range.max}) {
@@ -162,7 +162,7 @@ TEST(SettingRanges, EitherEndOfTheCuttingsSettingsCutsByFiniteNumbers) {
   }
 }
 
-TEST(SettingRanges, PointsLieAsCloseAsAThinToolNeeds) {
+TEST(SettingRanges, DefaultAlgorithmHoldsThinShortAndThickTools) {
   for (const MillingTool& tool :
        {MillingTool{0.2, 0.1, 25}, MillingTool{0.1, 1, 25}, MillingTool{1.5, 0.1, 25},
         MillingTool{1.5, 1, 0.3}, MillingTool{5, 3, 25}}) {

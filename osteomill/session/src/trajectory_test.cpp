@@ -38,7 +38,7 @@ class TrajectoryTest : public ::testing::Test {
   std::filesystem::path path_;
 };
 
-TEST_F(TrajectoryTest, ReadsPosesToTheLastBit) {
+TEST_F(TrajectoryTest, ReadsPositionsExactlyAndOrientationsWithinRounding) {
   const auto points = read(fmt::format("{}0,0.1,-2,3e-3,1,0,0,0,0\r\n0.001,1,2,3,0,0.6,0,0.8,1\n\n", kHead));
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[0].X_WD.position_mm, Vec3(0.1, -2, 3e-3));
@@ -48,31 +48,31 @@ TEST_F(TrajectoryTest, ReadsPosesToTheLastBit) {
   EXPECT_TRUE(points[1].X_WD.orientation.isApprox(Quat(0, 0.6, 0, 0.8), 1e-15));
 }
 
-TEST_F(TrajectoryTest, ColumnsAreFoundByName) {
+TEST_F(TrajectoryTest, FindsColumnsByNameInAnyOrder) {
   const auto points = read("milling,note,z_mm,y_mm,x_mm,qz,qy,qx,qw,time_s\n1,hello,3,2,1,0,0,0,1,5\n");
   ASSERT_EQ(points.size(), 1u);
   EXPECT_EQ(points[0].X_WD.position_mm, Vec3(1, 2, 3));
   EXPECT_EQ(points[0].time_s, 5);
 }
 
-TEST_F(TrajectoryTest, APoseFartherThanAnyWorkspaceIsRefusedAtItsRow) {
+TEST_F(TrajectoryTest, ReportsTheRowOfAPoseFartherThanAnyWorkspace) {
   EXPECT_EQ(read(kHead + std::string("0,300000,-300000,0,1,0,0,0,1\n")).size(), 1u);
   for (const char* far : {"0.001,1e308,10,20,1,0,0,0,1", "0.001,0,-300001,0,1,0,0,0,1"})
     EXPECT_EQ(fault_of(fmt::format("{}0,0,0,0,1,0,0,0,1\n{}\n", kHead, far)),
               "row 3: x_mm,y_mm,z_mm is farther than 300000 mm from the origin");
 }
 
-TEST_F(TrajectoryTest, AFileWithoutLineEndsIsReadNoFurtherThanARowCanBe) {
+TEST_F(TrajectoryTest, StopsReadingAFileWithoutLineEndsAtTheMaximumRowLength) {
   EXPECT_EQ(fault_of(std::string(5000, '\0')), "row 1: too long for a row of a trajectory");
   // An endless file.
   EXPECT_THROW(read_trajectory("/dev/zero"), InputError);
 }
 
-TEST_F(TrajectoryTest, AByteOrderMarkIsNoPartOfAName) {
+TEST_F(TrajectoryTest, IgnoresAByteOrderMark) {
   EXPECT_EQ(read("\xEF\xBB\xBF" + std::string(kHead) + "0,1,2,3,1,0,0,0,0\n").size(), 1u);
 }
 
-TEST_F(TrajectoryTest, FaultsNameTheRow) {
+TEST_F(TrajectoryTest, ReportsTheRowOfInvalidInput) {
   const std::string head = kHead;
   EXPECT_EQ(fault_of(""), "is empty");
   EXPECT_EQ(fault_of(head), "has no rows");
@@ -91,7 +91,7 @@ TEST_F(TrajectoryTest, FaultsNameTheRow) {
   EXPECT_EQ(fault_of(head + std::string(10000, '0')), "row 2: too long for a row of a trajectory");
 }
 
-TEST_F(TrajectoryTest, AMissingFileIsNamed) {
+TEST_F(TrajectoryTest, RefusesAMissingFile) {
   EXPECT_THROW(read_trajectory(path_ / "none.csv"), InputError);
 }
 

@@ -5,18 +5,18 @@
 namespace osteomill {
 namespace {
 
-TEST(Vibration, IsOffUnlessAskedFor) {
+TEST(Vibration, IsZeroByDefault) {
   Vibration none({});
   EXPECT_EQ(none.force_N({}, 5, 40000, 1e-3), Vec3::Zero());
 }
 
-TEST(Vibration, ItsFrequencyFollowsTheSpindleAndCanBeRendered) {
+TEST(Vibration, FrequencyFollowsTheSpindleUpTo250Hz) {
   EXPECT_DOUBLE_EQ(vibration_hz(3000), 50);
   EXPECT_DOUBLE_EQ(vibration_hz(6000), 100);
   EXPECT_NEAR(vibration_hz(1e6), 250, 1e-9);
 }
 
-TEST(Vibration, ItsFrequencyRisesWithTheSpindleAndJumpsNowhere) {
+TEST(Vibration, FrequencyRisesWithTheSpindleSpeedWithoutJumps) {
   double before_hz = vibration_hz(999);
   for (double rpm = 1000; rpm <= 1e6; ++rpm) {
     const double hz = vibration_hz(rpm);
@@ -26,7 +26,7 @@ TEST(Vibration, ItsFrequencyRisesWithTheSpindleAndJumpsNowhere) {
   }
 }
 
-TEST(Vibration, GoesRoundTheShaftAsStrongAsTheBurrPressesUpToItsLimit) {
+TEST(Vibration, RotatesAboutTheShaftScaledByBurrForceUpToItsLimit) {
   const Pose X_WT{{1, 2, 3}, quaternion_from_rotation_vector({0.5, -0.2, 0.1})};
   const VibrationSettings settings{.on = true};
   Vibration vibration(settings);

@@ -34,7 +34,7 @@ WrenchGuard holding(double force_N) {
   return guard;
 }
 
-TEST(WrenchGuard, FromFreeSpaceAContactIsFeltAtOnce) {
+TEST(WrenchGuard, SendsAContactFromFreeSpaceAtOnce) {
   WrenchGuard guard;
   guard.filter({}, kHere, kTick_s);
   const SafeWrench safe = guard.filter(down(3), kHere, kTick_s);
@@ -51,7 +51,7 @@ TEST(WrenchGuard, ATickOfNoLengthGivesNumbers) {
   }
 }
 
-TEST(WrenchGuard, WhereTheHandMayHaveSunkItComesUpSlowly) {
+TEST(WrenchGuard, RampsUpSlowlyAfterARestart) {
   WrenchGuard guard = holding(0);
   guard.restart();
   for (int n = 1; n <= 99; ++n) {
@@ -63,7 +63,7 @@ TEST(WrenchGuard, WhereTheHandMayHaveSunkItComesUpSlowly) {
   EXPECT_EQ(guard.filter(down(6), kHere, kTick_s).fault, WrenchFault::none);
 }
 
-TEST(WrenchGuard, AHandThatBeginsToBeDrivenFeelsNothingUntilItIsOutOfBone) {
+TEST(WrenchGuard, HoldsBackTheWrenchUntilTheToolIsOutOfBone) {
   const auto held = [](WrenchGuard& guard, const Wrench& asked, bool is_free) {
     const SafeWrench safe = guard.filter(asked, kHere, kTick_s, is_free);
     return is_zero(safe.wrench) && safe.fault == WrenchFault::held_back;
@@ -85,13 +85,13 @@ TEST(WrenchGuard, AHandThatBeginsToBeDrivenFeelsNothingUntilItIsOutOfBone) {
   }
 }
 
-TEST(WrenchGuard, WhatNoHandFeelsIsNotHeldBack) {
+TEST(WrenchGuard, DoesNotHoldBackInSimulation) {
   WrenchGuard guard(GuardSettings::for_simulation());
   guard.hold_back();
   EXPECT_EQ(guard.filter(down(6), kHere, kTick_s, false).wrench.force_N, down(6).force_N);
 }
 
-TEST(WrenchGuard, LateTicksComeUpInNoLargerSteps) {
+TEST(WrenchGuard, LateTicksDoNotEnlargeTheRampSteps) {
   WrenchGuard guard = holding(0);
   guard.restart();
   double before_N = 0;
@@ -102,7 +102,7 @@ TEST(WrenchGuard, LateTicksComeUpInNoLargerSteps) {
   }
 }
 
-TEST(WrenchGuard, NoStepIsLargerThanAHandMayFeel) {
+TEST(WrenchGuard, LimitsTheForceStepPerTick) {
   WrenchGuard guard = holding(0);
   Vec3 before_N = Vec3::Zero();
   for (const double force_N : {15.0, -15.0, 3.0, 20.0, -20.0, 0.0}) {
@@ -115,7 +115,7 @@ TEST(WrenchGuard, NoStepIsLargerThanAHandMayFeel) {
 }
 
 // Each fault is reported, 20 N fall to zero within 5 ms, and the wrench then rises slowly.
-TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
+TEST(WrenchGuard, FaultReducesTheForceToZeroWithin5ms) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   struct Fault {
     Wrench asked;
@@ -151,14 +151,14 @@ TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
   }
 }
 
-TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
+TEST(WrenchGuard, RampsUpSlowlyAfterAPause) {
   WrenchGuard guard = holding(6);
   for (int n = 0; n < 5; ++n) guard.filter_zero(kHere, kTick_s);
   EXPECT_TRUE(guard.is_at_rest());
   EXPECT_LT(guard.filter(down(10), kHere, kTick_s).wrench.force_N.norm(), 0.2);
 }
 
-TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
+TEST(WrenchGuard, BlendsFromTheWrenchSentByAnotherGuard) {
   WrenchGuard after(GuardSettings{{10, 500}});
   after.begin_from(holding(2).sent(), false);
   double before_N = 2;
@@ -171,7 +171,7 @@ TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
   EXPECT_NEAR(before_N, 10, 1e-9);
 }
 
-TEST(WrenchGuard, LetGoItComesDownToRest) {
+TEST(WrenchGuard, FadesOutToZeroInSmallSteps) {
   WrenchGuard guard = holding(6);
   guard.fade_out();
   double before_N = 6;
@@ -229,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, GuardedSession, ::testing::ValuesIn(alg
                          });
 
 // From free space, faster than a hand moves, up to the speed that the guard treats as a jump.
-TEST_P(GuardedSession, AsItIsNoTickBringsMoreThanAHandMayFeel) {
+TEST_P(GuardedSession, KeepsWrenchStepsWithinLimitsOnAFastApproach) {
   double felt_N = 0;
   for (const double mm_a_tick : {0.9, 4.9, 5.1}) {
     session_ = make(GetParam());
@@ -244,7 +244,7 @@ TEST_P(GuardedSession, AsItIsNoTickBringsMoreThanAHandMayFeel) {
   EXPECT_GT(felt_N, 4);
 }
 
-TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
+TEST_P(GuardedSession, RampsUpAfterAPauseInWhichTheHandSank) {
   press(0.8);
   for (int n = 0; n < 50; ++n) {
     put(0.8 - 0.1 * n);
@@ -257,7 +257,7 @@ TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
 }
 
 // Also if the algorithm gives no force there, and on the way out.
-TEST_P(GuardedSession, AStartInBoneIsNotFeltUntilTheToolIsOut) {
+TEST_P(GuardedSession, HoldsBackForceAfterAStartInBoneUntilTheToolIsOut) {
   for (const double height_mm : {0.5, -2.0, -6.0}) {
     session_ = make(GetParam());
     put(height_mm);
@@ -279,7 +279,7 @@ TEST_P(GuardedSession, AStartInBoneIsNotFeltUntilTheToolIsOut) {
   }
 }
 
-TEST_P(GuardedSession, ADeviceThatVanishesGetsZeroWithin5ms) {
+TEST_P(GuardedSession, SendsZeroWithin5msIfTheDeviceHasNoPose) {
   press(0.3);
   device_.put({Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Quat::Identity()});
   tick(5);
@@ -287,7 +287,7 @@ TEST_P(GuardedSession, ADeviceThatVanishesGetsZeroWithin5ms) {
   EXPECT_EQ(sent_.torque_Nmm, Vec3::Zero());
 }
 
-TEST_P(GuardedSession, AfterADeviceJumped50mmTheWrenchComesUpSlowly) {
+TEST_P(GuardedSession, RampsUpSlowlyAfterThePoseJumps) {
   press(0.3);
   for (const double height_mm : {-50.0, -0.5}) {
     put(height_mm);
@@ -299,7 +299,7 @@ TEST_P(GuardedSession, AfterADeviceJumped50mmTheWrenchComesUpSlowly) {
   }
 }
 
-TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
+TEST_P(GuardedSession, SwitchingAlgorithmsKeepsWrenchStepsWithinLimits) {
   for (const std::string& other : algorithm_names()) {
     put(3);
     tick(10);
@@ -317,7 +317,7 @@ TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
   }
 }
 
-TEST(SentFraction, IsOneForWhatIsTooSmallToBeSquared) {
+TEST(SentFraction, IsTheProjectedFractionAndOneIfTheRequestUnderflows) {
   EXPECT_EQ(sent_fraction(Vec3(0, 2, 0), Vec3(3, 1, 0)), 0.5);
   EXPECT_EQ(sent_fraction(Vec3::Zero(), Vec3(1, 0, 0)), 1);
   EXPECT_EQ(sent_fraction(Vec3(1e-170, -1e-200, 0), Vec3(1e-171, 0, 0)), 1);

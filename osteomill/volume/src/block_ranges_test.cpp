@@ -41,14 +41,14 @@ void expect_ranges_hold(const BlockRanges& bricks, const DensityGrid& grid, bool
   }
 }
 
-TEST(BlockRanges, AreTheExtremesOfEachBrickAndItsUpperNeighbours) {
+TEST(BlockRanges, MatchExtremesOfEachBrickAndItsUpperNeighbours) {
   const DensityGrid grid = random_grid();
   const BlockRanges bricks(grid);
   EXPECT_EQ(bricks.dims(), (std::array<int, 3>{3, 1, 4}));
   expect_ranges_hold(bricks, grid, true);
 }
 
-TEST(BlockRanges, TakeAWholeRowInAsOneByOne) {
+TEST(BlockRanges, HoldAfterRowsAreLowered) {
   Volume volume(random_grid(), 500);
   const std::vector<int> columns{0, 1, 7, 8, 11, 15, 16, 18};
   for (const int j : {0, 5}) {
@@ -76,7 +76,7 @@ TEST(BlockRanges, HoldWhileDensitiesFallAndAreExactAfterARefresh) {
   expect_ranges_hold(ranges, volume.grid(), true);
 }
 
-TEST(BlockRanges, SayWhereADensityWasTakenInAnew) {
+TEST(BlockRanges, ChangeCounterDiffersAfterEachUpdateInBox) {
   Volume volume(random_grid(), 500);
   const VoxelBox all = volume.geometry().all_voxels();
   const BlockRanges& ranges = volume.ranges();

@@ -39,20 +39,20 @@ Volume real_tooth(double slope = 1, double intercept = 0) {
   return Volume(DensityGrid(geometry, std::move(densities)), slope * 610 + intercept);
 }
 
-TEST(EstimateDensities, OfABallAreThoseOfItsTwoSides) {
+TEST(EstimateDensities, ReturnsDensitiesOutsideAndInsideBall) {
   const Volume volume = shape_volume(centred_cube(40, 0.25), ball(Vec3::Zero(), 3));
   const BoneDensities densities = estimate_densities(volume);
   EXPECT_EQ(densities.surroundings, 0);
   EXPECT_EQ(densities.reference, 1000);
 }
 
-TEST(EstimateDensities, OfTheBuiltinToothAreAirAndDentine) {
+TEST(EstimateDensities, FindsAirAndDentineInBuiltinTooth) {
   const BoneDensities densities = estimate_densities(Volume(builtin_tooth(), kBuiltinToothIsovalue));
   EXPECT_NEAR(densities.surroundings, 0, 1);
   EXPECT_NEAR(densities.reference, 1500, 1);
 }
 
-TEST(EstimateDensities, OfARealToothAreItsMediumAndDentine) {
+TEST(EstimateDensities, FindsMediumAndDentineInRealTooth) {
   OSTEOMILL_NEEDS_SHARED("tooth/original/tooth.raw");
   const BoneDensities counts = estimate_densities(real_tooth());
   EXPECT_NEAR(counts.surroundings, 392, 20);
@@ -62,7 +62,7 @@ TEST(EstimateDensities, OfARealToothAreItsMediumAndDentine) {
   EXPECT_NEAR(hounsfield.reference, 1507, 88);
 }
 
-TEST(EstimateDensities, KeepTheirOrderWhateverTheVolume) {
+TEST(EstimateDensities, BracketsIsovalueInUniformVolumes) {
   for (const Volume& volume : {uniform_volume(0, 500), uniform_volume(1000, 500), uniform_volume(500, 500),
                                uniform_volume(0, 0), uniform_volume(-1000, -1500)}) {
     const BoneDensities densities = estimate_densities(volume);

@@ -56,7 +56,7 @@ std::vector<std::size_t> filled_sizes(const DensityGrid& grid) {
   return sizes;
 }
 
-TEST(BonePieces, AreThoseOfAFloodFillAtEveryShareOfBone) {
+TEST(BonePieces, SizesMatchFloodFillAtAnyShareOfBone) {
   std::mt19937 random(7);
   GridGeometry geometry = centred_cube(1, 0.5);
   for (const auto& dims :
@@ -71,7 +71,7 @@ TEST(BonePieces, AreThoseOfAFloodFillAtEveryShareOfBone) {
 }
 
 // Covers every piece of random bones, chosen by each of its voxels, and each kind of removal.
-TEST(BonePieces, RemovedOnesAreThoseOfAFloodFill) {
+TEST(BonePieces, RemovalMatchesFloodFill) {
   std::mt19937 random(11);
   GridGeometry geometry = centred_cube(1, 0.5);
   std::size_t removals = 0;
@@ -122,7 +122,7 @@ TEST(BonePieces, RemovedOnesAreThoseOfAFloodFill) {
 }
 
 // A ball of 6 mm, one of 3 mm and a lone voxel in a grid of 0.25 mm.
-class TwoBalls : public testing::Test {
+class BonePiecesTest : public testing::Test {
  protected:
   static bool is_in(const Vec3& p, double x_mm, double radius_mm) {
     return (p - Vec3(x_mm, 0, 0)).norm() < radius_mm;
@@ -139,7 +139,7 @@ class TwoBalls : public testing::Test {
   VoxelIndex lone_{97, 97, 97};
 };
 
-TEST_F(TwoBalls, HaveTheVolumesOfBalls) {
+TEST_F(BonePiecesTest, SizesMatchVolumesOfBalls) {
   const std::vector<std::size_t> sizes = piece_sizes(grid(), kIsovalue);
   ASSERT_EQ(3u, sizes.size());
   EXPECT_NEAR(mm3(6), static_cast<double>(sizes[0]) * geometry_.voxel_volume_mm3(), 0.01 * mm3(6));
@@ -147,7 +147,7 @@ TEST_F(TwoBalls, HaveTheVolumesOfBalls) {
   EXPECT_EQ(1u, sizes[2]);
 }
 
-TEST_F(TwoBalls, OnlyTheLargestStays) {
+TEST_F(BonePiecesTest, DiscardsAllButTheLargestIfRequested) {
   DensityGrid left = grid();
   const DiscardedPieces out = discard_pieces(left, kIsovalue, {.only_largest = true});
   EXPECT_EQ(2u, out.pieces);
@@ -158,7 +158,7 @@ TEST_F(TwoBalls, OnlyTheLargestStays) {
   });
 }
 
-TEST_F(TwoBalls, PiecesBelowASizeGo) {
+TEST_F(BonePiecesTest, DiscardsPiecesBelowMinimumVolume) {
   const auto kept = [&](const PieceChoice& choice) {
     DensityGrid left = grid();
     return discard_pieces(left, kIsovalue, choice).kept;
@@ -170,7 +170,7 @@ TEST_F(TwoBalls, PiecesBelowASizeGo) {
   EXPECT_EQ(0u, kept({.min_mm3 = 1.02 * mm3(6)}));
 }
 
-TEST_F(TwoBalls, OfAnEmptyVoxelThereIsNoPieceAndTooManyBricksAreRefused) {
+TEST_F(BonePiecesTest, RefusesEmptyVoxelsAndTooManyBricks) {
   const VoxelIndex in_small{80, 49, 49};
   EXPECT_FALSE(piece_at(grid(), kIsovalue, {0, 0, 0}));
   EXPECT_THROW(bricks_without(grid(), kIsovalue, {PieceRemoval::Which::chosen, {0, 0, 0}}, 1000),
@@ -181,7 +181,7 @@ TEST_F(TwoBalls, OfAnEmptyVoxelThereIsNoPieceAndTooManyBricksAreRefused) {
   EXPECT_NO_THROW(bricks_without(grid(), kIsovalue, {PieceRemoval::Which::chosen, in_small}, bricks.size()));
 }
 
-TEST(BonePieces, OfGridWithoutBoneThereIsNone) {
+TEST(BonePieces, AreAbsentWithoutBone) {
   DensityGrid none = made_of(centred_cube(4, 1), [](const VoxelIndex&) { return false; });
   EXPECT_TRUE(piece_sizes(none, kIsovalue).empty());
   EXPECT_EQ(0u, discard_pieces(none, kIsovalue, {.only_largest = true}).pieces);

@@ -32,7 +32,7 @@ DensityGrid head(double soft, double bone, double noise, Vec3 spacing_mm = {0.5,
   return DensityGrid(geometry, std::move(densities));
 }
 
-TEST(Boundaries, SkinAndBoneAreBothFound) {
+TEST(Boundaries, FindsBothSkinAndBone) {
   for (const double scale : {1.0, 0.05, 40.0}) {
     for (const Vec3& spacing_mm : {Vec3(0.5, 0.5, 0.5), Vec3(0.4, 0.4, 0.8)}) {
       const auto found = boundaries_in(head(1000 * scale, 2500 * scale, 20 * scale, spacing_mm));
@@ -47,7 +47,7 @@ TEST(Boundaries, SkinAndBoneAreBothFound) {
   }
 }
 
-TEST(Boundaries, WhatIsAllOneHasNone) {
+TEST(Boundaries, UniformVolumeHasNoneAndOneMaterialHasOne) {
   EXPECT_TRUE(boundaries_in(head(0, 0, 0)).empty());
   EXPECT_EQ(boundaries_in(head(1000, 1000, 20)).size(), 1u);
 }

@@ -17,7 +17,7 @@ Volume phantom_named(std::string_view name) {
   return Volume(found->make(), found->isovalue);
 }
 
-TEST(BuiltinPhantom, LayersHaveTheirDensities) {
+TEST(BuiltinPhantom, LayersAlternateDenserAndSofterBone) {
   const Volume layers = phantom_named("layers");
   const auto at = [&](double z) { return density_at(layers.grid(), {0.3, -2, z}); };
   EXPECT_EQ(at(1), 0);
@@ -28,7 +28,7 @@ TEST(BuiltinPhantom, LayersHaveTheirDensities) {
   EXPECT_NEAR(first_crossing(layers, {0, 0, 3}, {0, 0, -3})->z(), 0, 0.13);
 }
 
-TEST(BuiltinPhantom, MastoidHasItsStructuresUnderSolidBoneAndCellsElsewhere) {
+TEST(BuiltinPhantom, MastoidEnclosesNerveInBoneAndHasAirCells) {
   const Volume mastoid = phantom_named("mastoid");
   const auto at = [&](const Vec3& point_W) { return density_at(mastoid.grid(), point_W); };
   EXPECT_EQ(at({-1, 0, -13}), 40);

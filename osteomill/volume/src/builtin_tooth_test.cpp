@@ -64,7 +64,7 @@ double bone_volume_mm3(const DensityGrid& grid) {
   return static_cast<double>(count) * grid.geometry().voxel_volume_mm3();
 }
 
-TEST(BuiltinTooth, HasTheGridOfThePaperAndStandsInItsMiddle) {
+TEST(BuiltinTooth, HasGridOfPaperAndIsCentred) {
   const GridGeometry& geometry = tooth().geometry();
   EXPECT_EQ(geometry.dims, (std::array<int, 3>{256, 256, 176}));
   EXPECT_EQ(geometry.spacing_mm, Vec3::Constant(0.125));
@@ -102,7 +102,7 @@ TEST(BuiltinTooth, EnclosesItsPulp) {
   EXPECT_EQ(count_pieces(tooth(), slice(tooth(), 60), empty), 3);
 }
 
-TEST(BuiltinTooth, HasAnEnamelCapOverDentineThatThinsToTheNeck) {
+TEST(BuiltinTooth, EnamelCapOverDentineThinsTowardsNeck) {
   const auto enamel_along = [](const Vec3& from, const Vec3& to) {
     double length_mm = 0;
     const int steps = 2000;
@@ -147,7 +147,7 @@ TEST(BuiltinTooth, IsTheSameToothAtAnyRefinement) {
   EXPECT_LT(sum / (88 * 128 * 128), 2);
 }
 
-TEST(BuiltinTooth, IsTheSameEveryTime) {
+TEST(BuiltinTooth, IsIdenticalOnEachCall) {
   EXPECT_EQ(builtin_tooth(0.25).densities(), builtin_tooth(0.25).densities());
 }
 

@@ -29,7 +29,7 @@ CopyOnWriteFloats dense(std::vector<float> values) {
   return CopyOnWriteFloats(std::move(values), layout);
 }
 
-TEST(CopyOnWriteFloats, HoldsWhatItWasGiven) {
+TEST(CopyOnWriteFloats, HoldsTheGivenValues) {
   for (const std::size_t count : {1, 15, 1023, 1024, 1025, 5'000'000}) {
     const std::vector<float> values = ascending(count);
     const CopyOnWriteFloats floats = dense(values);
@@ -38,7 +38,7 @@ TEST(CopyOnWriteFloats, HoldsWhatItWasGiven) {
   EXPECT_TRUE(CopyOnWriteFloats({}, RowLayout::with_padding(0, 1, 1)).empty());
 }
 
-TEST(RowLayout, GivesNeighbouringRowsSetsOfTheCacheToThemselvesWhateverTheScan) {
+TEST(RowLayout, SpreadsNeighbouringRowsOverCacheSets) {
   constexpr std::size_t kLine = 16, kSets = 64;
   for (const std::size_t width : {64u, 65u, 100u, 192u, 256u, 511u, 512u, 1024u}) {
     const RowLayout layout = RowLayout::with_padding(width, width, 20);
@@ -59,12 +59,12 @@ TEST(RowLayout, GivesNeighbouringRowsSetsOfTheCacheToThemselvesWhateverTheScan) 
   }
 }
 
-TEST(RowLayout, OfThinScansHasNoGaps) {
+TEST(RowLayout, HasNoPaddingForThinScans) {
   EXPECT_EQ(RowLayout::with_padding(2, 2, 10'000'000).size(), 40'000'000u);
   EXPECT_EQ(RowLayout::with_padding(512, 8, 512).size(), 512u * 8 * 512);
 }
 
-TEST(CopyOnWriteFloats, TakesRowsApartAndLeavesZerosBetween) {
+TEST(CopyOnWriteFloats, PadsRowsWithZeros) {
   const std::vector<float> values = ascending(2 * 70 * 100);
   const RowLayout layout = RowLayout::with_padding(100, 70, 2);
   const CopyOnWriteFloats floats(values, layout);
@@ -76,7 +76,7 @@ TEST(CopyOnWriteFloats, TakesRowsApartAndLeavesZerosBetween) {
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), floats.data(), floats.data() + floats.size()));
 }
 
-TEST(CopyOnWriteFloats, CopiesDifferInWhatWasWrittenAlone) {
+TEST(CopyOnWriteFloats, CopiesDifferOnlyInWrittenValues) {
   CopyOnWriteFloats first = dense(ascending(5000));
   first.set(4096, -1);
   CopyOnWriteFloats second = first;
@@ -105,7 +105,7 @@ TEST(CopyOnWriteFloats, CopiesDifferInWhatWasWrittenAlone) {
   EXPECT_EQ(second, first);
 }
 
-TEST(CopyOnWriteFloats, ACopyOutlivesWhatItWasCopiedFrom) {
+TEST(CopyOnWriteFloats, CopyOutlivesItsSource) {
   CopyOnWriteFloats copy;
   {
     CopyOnWriteFloats first = dense(ascending(3000));
@@ -116,7 +116,7 @@ TEST(CopyOnWriteFloats, ACopyOutlivesWhatItWasCopiedFrom) {
   EXPECT_EQ(copy[2999], 2999);
 }
 
-TEST(CopyOnWriteFloats, PreparingChangesNothingAndSharesNothingWritten) {
+TEST(CopyOnWriteFloats, PrefaultDuringWritesKeepsValuesOfBothCopies) {
   CopyOnWriteFloats first = dense(ascending(20'000));
   const CopyOnWriteFloats before = first;
   std::thread other([&] { first.prefault(0, 19'999); });
@@ -129,7 +129,7 @@ TEST(CopyOnWriteFloats, PreparingChangesNothingAndSharesNothingWritten) {
 }
 
 // 40 MB; the allocator's own overhead is well below a tenth of that.
-TEST(CopyOnWriteFloats, CopiesTakeTheMemoryOfWhatWasWritten) {
+TEST(CopyOnWriteFloats, CopiesTakeMemoryOnlyForWrittenValues) {
   const CopyOnWriteFloats first = dense(ascending(kCount));
   const double before_MiB = own_memory_MiB();
   std::vector<CopyOnWriteFloats> copies(10, first);

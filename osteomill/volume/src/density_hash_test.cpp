@@ -29,7 +29,7 @@ std::uint64_t difference_of_all(const Volume& bone, const Volume& scan) {
   return sum;
 }
 
-TEST(DensityHash, FollowsEveryWayOfWritingAndForgetsTheWay) {
+TEST(DensityHash, ChangeHashDependsOnlyOnResultOfEdits) {
   const Volume scan = small_ball();
   Volume bone = scan;
   EXPECT_EQ(bone.change_hash(), 0u);
@@ -57,13 +57,13 @@ TEST(DensityHash, FollowsEveryWayOfWritingAndForgetsTheWay) {
   EXPECT_EQ(copy.change_hash(), milled);
 }
 
-TEST(DensityHash, TellsOneDensityInAnotherVoxel) {
+TEST(DensityHash, DiffersByVoxelDensityAndSignOfZero) {
   EXPECT_NE(density_hash(1, 2), density_hash(2, 2));
   EXPECT_NE(density_hash(1, 2), density_hash(1, 3));
   EXPECT_NE(density_hash(0, 0.0F), density_hash(0, -0.0F));
 }
 
-TEST(DensityHash, FingerprintsOfScansAndLabelMapsDiffer) {
+TEST(DensityHash, FingerprintsChangeWithScanAndLabelMapContent) {
   Volume scan = small_ball();
   const std::uint64_t as_read = fingerprint_of(scan.grid());
   EXPECT_EQ(as_read, fingerprint_of(small_ball().grid()));

@@ -9,7 +9,7 @@ namespace osteomill {
 namespace {
 
 // Uniform densities 0 to 999 and one outlier.
-TEST(DensityHistogram, CountsEvenlyAndLeavesTheRarestOut) {
+TEST(DensityHistogram, IsFlatForUniformDensitiesAndIgnoresOutlier) {
   GridGeometry geometry;
   geometry.dims = {100, 100, 100};
   std::vector<float> densities;
@@ -22,7 +22,7 @@ TEST(DensityHistogram, CountsEvenlyAndLeavesTheRarestOut) {
   for (const float count : histogram.log_counts) EXPECT_NEAR(count, std::log1p(1e6 / 7 / 128), 0.15);
 }
 
-TEST(DensityHistogram, OneDensityAlone) {
+TEST(DensityHistogram, HasNonEmptyRangeForSingleDensity) {
   GridGeometry geometry;
   geometry.dims = {10, 10, 10};
   const DensityHistogram histogram = histogram_of(DensityGrid(geometry, std::vector<float>(1000, 40.0f)));

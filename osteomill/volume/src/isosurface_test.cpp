@@ -11,12 +11,12 @@ using testing_support::ball;
 using testing_support::centred_cube;
 using testing_support::shape_volume;
 
-class BallTest : public ::testing::Test {
+class IsosurfaceTest : public ::testing::Test {
  protected:
   Volume ball_ = shape_volume(centred_cube(48, 0.25), ball(Vec3::Zero(), 4.0));
 };
 
-TEST_F(BallTest, FirstCrossingIsOnTheBall) {
+TEST_F(IsosurfaceTest, FirstCrossingIsOnTheBall) {
   for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(1, 2, 3), Vec3(-1, 1, 0)}) {
     const auto crossing = first_crossing(ball_, 5.5 * direction.normalized(), Vec3::Zero());
     ASSERT_TRUE(crossing);
@@ -25,15 +25,15 @@ TEST_F(BallTest, FirstCrossingIsOnTheBall) {
   }
 }
 
-TEST_F(BallTest, PassingByIsNoCrossing) {
+TEST_F(IsosurfaceTest, SegmentThatMissesTheBallHasNoCrossing) {
   EXPECT_FALSE(first_crossing(ball_, {5, -5, 0}, {5, 5, 0}));
 }
 
-TEST_F(BallTest, AStartInsideIsItsOwnAnswer) {
+TEST_F(IsosurfaceTest, FirstCrossingIsTheStartIfInsideBone) {
   EXPECT_EQ(first_crossing(ball_, {1, 0, 0}, {9, 0, 0}), Vec3(1, 0, 0));
 }
 
-TEST_F(BallTest, TheNormalPointsOut) {
+TEST_F(IsosurfaceTest, NormalPointsOutwardsAndIsAbsentAtCentre) {
   const Vec3 point = 4.0 * Vec3(1, -2, 2).normalized();
   const auto normal = outward_normal(ball_, point);
   ASSERT_TRUE(normal);

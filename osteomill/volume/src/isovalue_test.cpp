@@ -64,7 +64,7 @@ DensityGrid first_half(const DensityGrid& grid) {
   return DensityGrid(geometry, std::move(densities));
 }
 
-TEST(SuggestIsovalue, WhatHasNoDensityChangesNothing) {
+TEST(SuggestIsovalue, IgnoresVoxelsWithoutDensity) {
   for (const double offset : {0.0, 700.0}) {
     const DensityGrid measured = first_half(head(offset, false));
     GridGeometry geometry = measured.geometry();
@@ -96,12 +96,12 @@ TEST(SuggestIsovalue, LiesHalfwayBetweenBoneAndItsSurroundings) {
 }
 
 // Neither the share of bone in the volume nor a denser part, such as enamel, biases the isovalue.
-TEST(SuggestIsovalue, OfTheBuiltinToothLiesBetweenAirAndDentineWhateverSurroundsIt) {
+TEST(SuggestIsovalue, LiesBetweenAirAndDentineInNoisyBuiltinTooth) {
   EXPECT_NEAR(suggest_isovalue(with_noise(builtin_tooth(0.5), 1, 0, 30)).value, kBuiltinToothIsovalue, 40);
   EXPECT_NEAR(suggest_isovalue(with_noise(builtin_tooth(0.25), 1, 0, 30)).value, kBuiltinToothIsovalue, 40);
 }
 
-TEST(SuggestIsovalue, OfABodyIsBoneAndNotSkin) {
+TEST(SuggestIsovalue, PicksBoneRatherThanSkinInABody) {
   EXPECT_EQ(suggest_isovalue(head(0, false), true).value, kBone_HU);
   EXPECT_EQ(suggest_isovalue(head(0, true), true).value, kBone_HU);
   // Unit not stated, without and with an offset.
@@ -115,7 +115,7 @@ TEST(SuggestIsovalue, OfABodyIsBoneAndNotSkin) {
   EXPECT_TRUE(has_another_zero(1024));
 }
 
-TEST(SuggestIsovalue, IsSaidToBeAGuessWhereThereIsAnotherBoundary) {
+TEST(SuggestIsovalue, IsMarkedAsGuessIfThereAreSeveralBoundaries) {
   const Volume outer = shape_volume(centred_cube(40, 0.25), ball(Vec3::Zero(), 4));
   const Volume inner = shape_volume(centred_cube(40, 0.25), ball(Vec3::Zero(), 2.5));
   const auto is_guess = [](const DensityGrid& grid) {
@@ -133,7 +133,7 @@ TEST(SuggestIsovalue, IsSaidToBeAGuessWhereThereIsAnotherBoundary) {
 }
 
 // Specimen in air without densities near 260 HU: halfway is above 260 and right.
-TEST(SuggestIsovalue, InHounsfieldUnitsIsNeverBelowBone) {
+TEST(SuggestIsovalue, IsNeverBelowBoneThresholdInHounsfieldUnits) {
   const Volume volume = shape_volume(centred_cube(40, 0.25), ball(Vec3::Zero(), 3));
   EXPECT_NEAR(suggest_isovalue(with_noise(volume.grid(), 1.5, 0, 30), true).value, 750, 40);
   EXPECT_EQ(suggest_isovalue(with_noise(volume.grid(), 1.8, -1000, 30), true).value, kBone_HU);

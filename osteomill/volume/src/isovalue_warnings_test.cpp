@@ -12,7 +12,7 @@ using testing_support::ball;
 using testing_support::centred_cube;
 using testing_support::shape_volume;
 
-TEST(IsovalueWarnings, NameTheFacesThatCutBoneOff) {
+TEST(IsovalueWarnings, NameGridFacesThatCutBone) {
   const GridGeometry geometry = centred_cube(40, 0.25);
   EXPECT_TRUE(isovalue_warnings(shape_volume(geometry, ball(Vec3::Zero(), 3)).grid(), 500).empty());
   const auto out_of_two = isovalue_warnings(shape_volume(geometry, ball({4, 0, -4}, 3)).grid(), 500);
@@ -28,7 +28,7 @@ TEST(IsovalueWarnings, NameTheFacesThatCutBoneOff) {
   EXPECT_NE(out_of_layer[0].find("(first k)"), std::string::npos) << out_of_layer[0];
 }
 
-TEST(IsovalueWarnings, AnIsovalueOutsideTheDensitiesLeavesNoBoneOrNothingElse) {
+TEST(IsovalueWarnings, ReportNoBoneOrAllBoneIfIsovalueIsOutOfRange) {
   const DensityGrid grid = shape_volume(centred_cube(10, 1), ball(Vec3::Zero(), 3)).grid();
   EXPECT_TRUE(is_within(grid, 0));
   EXPECT_FALSE(is_within(grid, 1000));

@@ -32,7 +32,7 @@ std::vector<LabelMap::LabelIndex> shell_and_core(const GridGeometry& grid) {
   return places;
 }
 
-TEST(LabelMap, OnTheScansOwnGridKeepsEveryVoxel) {
+TEST(LabelMap, KeepsEveryVoxelOnTheScansGrid) {
   const GridGeometry scan = centred_cube(21, 0.25);
   const std::vector<LabelMap::LabelIndex> places = shell_and_core(scan);
   const LabelMap map(three_labels(), scan, scan, places);
@@ -57,7 +57,7 @@ TEST(LabelMap, OnTheScansOwnGridKeepsEveryVoxel) {
 }
 
 // Compares with a brute-force search for the nearest voxel of the map.
-TEST(LabelMap, OnAnotherGridEveryVoxelHasTheLabelOfTheNearest) {
+TEST(LabelMap, TakesNearestLabelOnAnotherGrid) {
   GridGeometry scan = centred_cube(17, 0.31);
   scan.direction = quaternion_from_rotation_vector({0.3, -0.5, 0.2}).toRotationMatrix();
   GridGeometry own;
@@ -98,7 +98,7 @@ TEST(LabelMap, OnAnotherGridEveryVoxelHasTheLabelOfTheNearest) {
   EXPECT_GT(labelled, 500u);
 }
 
-TEST(LabelMap, BesideTheScanLabelsNothing) {
+TEST(LabelMap, LabelsNothingIfItDoesNotOverlapTheScan) {
   const GridGeometry scan = centred_cube(9, 0.5);
   GridGeometry own = scan;
   own.origin_mm += Vec3(1e6, 0, 0);
@@ -107,7 +107,7 @@ TEST(LabelMap, BesideTheScanLabelsNothing) {
   EXPECT_EQ(map.at({4, 4, 4}), 0);
 }
 
-TEST(LabelMap, RefusesPlacesThatAreNoLabels) {
+TEST(LabelMap, RefusesInvalidIndicesWrongSizeAndTooManyLabels) {
   const GridGeometry scan = centred_cube(2, 1);
   EXPECT_THROW(LabelMap(three_labels(), scan, scan, {0, 1, 2, 3, 4, 0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(LabelMap(three_labels(), scan, scan, {0, 1}), std::invalid_argument);

@@ -40,7 +40,7 @@ double brain(const Vec3& p) {
   return p.x() < 0 ? 2 : 41;
 }
 
-TEST(LabelScan, SegmentationsAndMasksLookLikeLabels) {
+TEST(LabelScan, RecognisesSegmentationsAndMasksAsLabels) {
   EXPECT_EQ(LabelGuess::labels, guess_labels(filled(brain)));
   for (const double inside : {1.0, 255.0})
     EXPECT_EQ(LabelGuess::labels,
@@ -63,7 +63,7 @@ DensityGrid strewn(std::size_t strays, double label) {
   return DensityGrid(kGrid, std::move(values));
 }
 
-TEST(LabelScan, AFewStrayVoxelsOfALabelDecideNothing) {
+TEST(LabelScan, StillRecognisesLabelsDespiteStrayVoxels) {
   for (const double label : {1.0, 12.0, 300.0, 3000.0}) {
     for (const std::size_t strays : {1u, 3u, 12u})
       EXPECT_EQ(LabelGuess::labels, guess_labels(strewn(strays, label))) << strays << " of " << label;
@@ -72,7 +72,7 @@ TEST(LabelScan, AFewStrayVoxelsOfALabelDecideNothing) {
 
 // A phantom's edges contain a few voxels of other levels, which must not make it look like touching
 // structures.
-TEST(LabelScan, AFewStrayVoxelsOfALevelDecideNothing) {
+TEST(LabelScan, StrayVoxelsDoNotMakeAPhantomLookLikeLabels) {
   int number = 0;
   const DensityGrid phantom = filled([&](const Vec3& p) {
     const double level = p.norm() < 2 ? 2000 : p.norm() < 5 ? 1000 : 0;
@@ -81,7 +81,7 @@ TEST(LabelScan, AFewStrayVoxelsOfALevelDecideNothing) {
   EXPECT_EQ(LabelGuess::unclear, guess_labels(phantom));
 }
 
-TEST(LabelScan, WhatMayBeLevelsOrLabelsIsUnclear) {
+TEST(LabelScan, IsUnclearIfLevelsCouldBeLabels) {
   const auto onion = [](const Vec3& p) { return p.norm() < 3 ? 2 : p.norm() < 5 ? 1 : 0; };
   EXPECT_EQ(LabelGuess::unclear, guess_labels(filled(onion)));
   // A thin shell between two structures.
@@ -95,7 +95,7 @@ TEST(LabelScan, WhatMayBeLevelsOrLabelsIsUnclear) {
 }
 
 // Air, a head of soft tissue and a skull, blurred over a voxel and quantised to a few levels.
-TEST(LabelScan, ACtOfFewLevelsIsNone) {
+TEST(LabelScan, DoesNotTakeACtOfFewLevelsForLabels) {
   const auto step = [](double from_mm) { return std::clamp(0.5 - from_mm, 0.0, 1.0); };
   for (const int levels : {3, 4, 8, 16}) {
     const DensityGrid ct = filled([&](const Vec3& p) {
@@ -106,7 +106,7 @@ TEST(LabelScan, ACtOfFewLevelsIsNone) {
   }
 }
 
-TEST(LabelScan, DensitiesAreNone) {
+TEST(LabelScan, DoesNotTakeDensitiesForLabels) {
   const auto phantom = [](const Vec3& p) { return p.norm() < 2 ? 1200 : p.norm() < 4 ? 40 : -1000; };
   EXPECT_EQ(LabelGuess::densities, guess_labels(filled(phantom)));
   EXPECT_NE(LabelGuess::labels, guess_labels(filled([&](const Vec3& p) { return phantom(p) + 1000.5; })));

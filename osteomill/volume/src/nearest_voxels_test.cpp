@@ -10,7 +10,7 @@
 namespace osteomill {
 namespace {
 
-TEST(NearestVoxels, FindsTheNearestOfAllVoxelsOnAGridOfUnequalSpacing) {
+TEST(NearestVoxels, MatchesBruteForceOnAnisotropicGrid) {
   const Vec3 spacing_mm(0.3, 0.45, 1.1);
   const VoxelBox box{{-3, 2, 0}, {12, 20, 8}};
   std::mt19937 random(4);

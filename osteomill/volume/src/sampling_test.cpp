@@ -34,13 +34,13 @@ DensityGrid linear_grid(const GridGeometry& geometry, const Vec3& slope) {
   return DensityGrid(geometry, densities);
 }
 
-TEST(GridGeometry, WorldAndVoxelUndoEachOther) {
+TEST(GridGeometry, WorldAndVoxelTransformsAreInverse) {
   const GridGeometry geometry = turned_geometry();
   const Vec3 voxel(3.25, -2, 17.5);
   EXPECT_LT((geometry.voxel_from_world(geometry.world_from_voxel(voxel)) - voxel).norm(), 1e-12);
 }
 
-TEST(Sampling, ALinearDensityIsExactOnATurnedAnisotropicGrid) {
+TEST(Sampling, LinearDensityIsExactOnRotatedAnisotropicGrid) {
   const Vec3 slope(3, -7, 2);
   const DensityGrid grid = linear_grid(turned_geometry(), slope);
   std::mt19937_64 random(1);
@@ -53,7 +53,7 @@ TEST(Sampling, ALinearDensityIsExactOnATurnedAnisotropicGrid) {
   }
 }
 
-TEST(Sampling, BeyondTheBorderThereIsTheOutsideDensity) {
+TEST(Sampling, ReturnsOutsideDensityBeyondBorder) {
   const DensityGrid grid = linear_grid(turned_geometry(), {1, 1, 1});
   const double outside = static_cast<double>(grid.outside_density());
   for (const Vec3& voxel : {Vec3(-1.5, 3, 3), Vec3(3, 11.0, 3), Vec3(1e300, 0, 0), Vec3(0, 0, -1e18)}) {
@@ -90,7 +90,7 @@ AngleError normal_error() {
   return error;
 }
 
-TEST(Sampling, TheNormalOfAPlaneIsWithinHalfADegreeOnAverage) {
+TEST(Sampling, PlaneNormalIsWithinHalfADegreeOnAverage) {
   const AngleError error = normal_error();
   EXPECT_LT(error.mean_deg, 0.5);
   EXPECT_LT(error.worst_deg, 1.6);

@@ -22,7 +22,7 @@ double to_the_cubes_mm(const std::vector<VoxelIndex>& voxels, const GridGeometry
   return least_mm;
 }
 
-TEST(StructureDistance, IsWithinHalfAVoxelOfABruteForceSearchAtTenThousandPoses) {
+TEST(StructureDistance, MatchesBruteForceWithinHalfAVoxel) {
   GridGeometry scan;
   scan.dims = {70, 60, 40};
   scan.spacing_mm = {0.3, 0.3, 0.5};
@@ -52,7 +52,7 @@ TEST(StructureDistance, IsWithinHalfAVoxelOfABruteForceSearchAtTenThousandPoses)
   EXPECT_LT(worst_mm, 0.15);
 }
 
-TEST(StructureDistance, InterpolatesWithoutStepsAndNoFartherThanItSays) {
+TEST(StructureDistance, IsContinuousAndWithinItsMaxExcess) {
   GridGeometry scan;
   scan.dims = {40, 40, 40};
   scan.spacing_mm = {0.3, 0.3, 0.5};
@@ -83,7 +83,7 @@ TEST(StructureDistance, InterpolatesWithoutStepsAndNoFartherThanItSays) {
   }
 }
 
-TEST(StructureDistance, HasTheSlopeOfItsDifferencesFromASolid) {
+TEST(StructureDistance, GradientFromSolidsMatchesFiniteDifferences) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> share(-4, 4);
   for (const StructureDistance& solid :
@@ -116,7 +116,7 @@ TEST(StructureDistance, MeasuresSolidsExactly) {
   EXPECT_THROW(StructureDistance(VoxelSet(), GridGeometry()), std::invalid_argument);
 }
 
-TEST(NoGoDistances, GiveThatOfTheNearestStructureLessTheBurrsRadius) {
+TEST(NoGoDistances, ReturnNearestDistanceMinusBurrRadius) {
   const NoGoDistances structures{{StructureDistance(SphereShape{{0, 0, 0}, 1})},
                                  {StructureDistance(BoxShape{{5, -1, -1}, {6, 1, 1}})}};
   EXPECT_DOUBLE_EQ(no_go_distance_mm(structures, {3.5, 0, 0}, 0.5), 1);

@@ -20,7 +20,7 @@ Volume half_of_bone() {
   return shape_volume(centred_cube(20, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
 }
 
-TEST(Volume, RowThatWouldRiseStaysAsItIs) {
+TEST(Volume, LowerRowNeverRaisesDensities) {
   Volume bone = half_of_bone();
   const int columns[] = {2, 3, 4};
   const float lower[] = {-100, -200, -300};
@@ -32,7 +32,7 @@ TEST(Volume, RowThatWouldRiseStaysAsItIs) {
   EXPECT_EQ(bone.change_hash(), milled.change_hash());
 }
 
-TEST(EditableVolume, BlockThatIsSwappedTwiceLeavesTheBoneAsItWas) {
+TEST(EditableVolume, SwappingABlockTwiceRestoresTheBone) {
   const Volume scan = half_of_bone();
   Volume bone = scan;
   // The last block extends beyond the grid.
@@ -48,7 +48,7 @@ TEST(EditableVolume, BlockThatIsSwappedTwiceLeavesTheBoneAsItWas) {
   }
 }
 
-TEST(EditableVolume, IsovalueThatIsNotFiniteIsRefused) {
+TEST(EditableVolume, RefusesNanIsovalueAndKeepsTheOldOne) {
   Volume bone = half_of_bone();
   const double before = bone.isovalue();
   EXPECT_THROW(EditableVolume(bone).set_isovalue(std::numeric_limits<double>::quiet_NaN()),

@@ -44,7 +44,7 @@ TEST_F(AtomicFileTest, WritesTheText) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(AtomicFileTest, AFailedWriteLeavesTheOldFileAndNoOther) {
+TEST_F(AtomicFileTest, FailedWriteKeepsTheOldFileAndLeavesNoOther) {
   write_text_atomically(folder_ / "a.csv", [](std::ostream& out) { out << "old"; });
   EXPECT_THROW(write_text_atomically(folder_ / "a.csv",
                                      [](std::ostream& out) {
@@ -56,7 +56,7 @@ TEST_F(AtomicFileTest, AFailedWriteLeavesTheOldFileAndNoOther) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(AtomicFileTest, ALinkStaysAndWhatItLeadsToIsWritten) {
+TEST_F(AtomicFileTest, WritesToTheTargetOfALinkInsteadOfReplacingIt) {
   std::ofstream(folder_ / "real.csv") << "old";
   fs::create_symlink("real.csv", folder_ / "link.csv");
   fs::create_symlink("later.csv", folder_ / "ahead.csv");
@@ -82,7 +82,7 @@ TEST_F(AtomicFileTest, WritesIntoAFifoInsteadOfReplacingIt) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(AtomicFileTest, AFolderIsNamed) {
+TEST_F(AtomicFileTest, RefusesAFolderAsTheFile) {
   EXPECT_THROW(write_text_atomically(folder_, [](std::ostream&) {}), InputError);
 }
 
@@ -95,7 +95,7 @@ TEST_F(AtomicFileTest, AFolderThatIsMissingIsNamed) {
   }
 }
 
-TEST_F(AtomicFileTest, APipeThatNobodyReadsIsRefused) {
+TEST_F(AtomicFileTest, RefusesAPipeWithoutAReader) {
   const fs::path pipe = folder_ / "pipe.csv";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_THROW(write_text_atomically(pipe, [](std::ostream&) { FAIL(); }), InputError);
@@ -123,7 +123,7 @@ TEST_F(AtomicFileTest, RefusesToOverwriteAnInputByAnyOfItsNames) {
   EXPECT_NO_THROW(output_path(folder_ / "other.nrrd"));
 }
 
-TEST_F(AtomicFileTest, FilesThatBelongTogetherAppearTogether) {
+TEST_F(AtomicFileTest, ReplacesFilesOnlyOnceTheWholeFolderIsWritten) {
   std::ofstream(folder_ / "kept.csv") << "kept";
   std::ofstream(folder_ / "a.csv") << "old";
   write_folder_atomically(folder_, [&](const fs::path& beside) {
@@ -137,7 +137,7 @@ TEST_F(AtomicFileTest, FilesThatBelongTogetherAppearTogether) {
   EXPECT_EQ(file_count(), 3);
 }
 
-TEST_F(AtomicFileTest, AFileThatFailsAmongOthersIsCalledByItsName) {
+TEST_F(AtomicFileTest, ReportsTheFinalPathOfAFileThatFails) {
   const fs::path new_folder = folder_ / "new";
   try {
     write_folder_atomically(new_folder, [](const fs::path& beside) {
@@ -169,7 +169,7 @@ TEST_F(AtomicFileTest, RemovesAllFilesOfAFolderIfOneFails) {
   EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(AtomicFileTest, AFolderKeepsNothingStaleOfAnEarlierOutput) {
+TEST_F(AtomicFileTest, RemovesStaleFilesOnlyAfterASuccessfulWrite) {
   for (const char* name : {"a.h5", "b.h5", "notes.txt"}) std::ofstream(folder_ / name) << "old";
   const auto stale = [](const std::string& name) { return name.ends_with(".h5"); };
   const auto write = [&](const fs::path& beside) {

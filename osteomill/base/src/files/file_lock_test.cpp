@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(FileLock, OneAtATimeHoldsAFile) {
+TEST(FileLock, LocksAFileExclusivelyUntilDestroyed) {
   const TemporaryFolder folder;
   const fs::path path = folder / "a.h5";
   EXPECT_FALSE(FileLock::try_lock(path));
@@ -45,7 +45,7 @@ TEST(FileLock, RenamesLeftoversButNotLockedFiles) {
   EXPECT_TRUE(lock.is_at(path));
 }
 
-TEST(OutputFolder, HasOneOwnerAndIsNotLeftEmpty) {
+TEST(OutputFolder, RefusesASecondOwnerAndIsRemovedIfEmpty) {
   const TemporaryFolder folder;
   const fs::path path = folder / "new" / "out";
   {

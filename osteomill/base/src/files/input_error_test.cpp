@@ -5,7 +5,7 @@
 namespace osteomill {
 namespace {
 
-TEST(InputError, IsOneLineWhateverTheFileHolds) {
+TEST(InputError, ReplacesALineBreakByAQuestionMark) {
   EXPECT_STREQ(InputError("c.toml", "line 1: expected 'true', saw 'tr\n'").what(),
                "c.toml: line 1: expected 'true', saw 'tr?'");
 }

@@ -25,13 +25,13 @@ class Machine : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Machine, WithoutControlGroupsAllIsAllowed) {
+TEST_F(Machine, HasPlausibleLimitsWithoutControlGroups) {
   EXPECT_GE(allowed_threads(root()), 1u);
   EXPECT_GT(allowed_memory_bytes(root()), 100'000'000u);
   EXPECT_LE(allowed_threads(), allowed_threads(root()));
 }
 
-TEST_F(Machine, TheNarrowestControlGroupCounts) {
+TEST_F(Machine, UsesTheLimitsOfTheNarrowestControlGroup) {
   write("proc/self/cgroup", "4:memory:/other\n0::/a/b\n");
   write("sys/fs/cgroup/a/b/memory.max", "max\n");
   write("sys/fs/cgroup/a/memory.max", "50000000\n");
@@ -44,7 +44,7 @@ TEST_F(Machine, TheNarrowestControlGroupCounts) {
 }
 
 // In a container with its own cgroup namespace, or with the host's path.
-TEST_F(Machine, AContainersLimitsAreFoundAtTheTop) {
+TEST_F(Machine, FindsContainerLimitsAtTheRootGroup) {
   for (const char* group : {"0::/\n", "0::/docker/0123\n", "0::/../..\n"}) {
     write("proc/self/cgroup", group);
     write("sys/fs/cgroup/memory.max", "70000000\n");
@@ -52,7 +52,7 @@ TEST_F(Machine, AContainersLimitsAreFoundAtTheTop) {
   }
 }
 
-TEST_F(Machine, OneProcessorTakesOneThread) {
+TEST_F(Machine, AllowsOneThreadOnOneProcessor) {
   cpu_set_t before;
   ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
   int first = 0;

@@ -7,7 +7,7 @@
 namespace osteomill {
 namespace {
 
-TEST(ReadLine, GivesLinesWithoutTheirEnds) {
+TEST(ReadLine, StripsTheNewlineButNotACarriageReturn) {
   std::istringstream in("one\n\nthree\r\nlast");
   std::string line;
   for (const char* expected : {"one", "", "three\r", "last"}) {
@@ -17,7 +17,7 @@ TEST(ReadLine, GivesLinesWithoutTheirEnds) {
   EXPECT_FALSE(read_line(in, line, 8));
 }
 
-TEST(ReadLine, RefusesWhatIsLongerThanItMayBe) {
+TEST(ReadLine, RefusesALineBeyondTheLimit) {
   std::istringstream in(std::string(8, 'a') + "\n" + std::string(100, 'b'));
   std::string line;
   EXPECT_TRUE(read_line(in, line, 8));

@@ -30,7 +30,7 @@ int status_of_child_ended_by(int signal, const Do& before) {
   return status;
 }
 
-TEST(Leftovers, GoWhenTheProgramIsAskedToEnd) {
+TEST(SignalCleanup, RemovesTemporaryFilesOnSigterm) {
   // Not a TemporaryFolder, which the child would remove too.
   const fs::path folder = fs::path(::testing::TempDir()) / "signal_cleanup";
   fs::remove_all(folder);
@@ -56,7 +56,7 @@ TEST(Leftovers, GoWhenTheProgramIsAskedToEnd) {
   fs::remove_all(folder);
 }
 
-TEST(Leftovers, AnIgnoredSignalStaysIgnored) {
+TEST(SignalCleanup, KeepsAnIgnoredSignalIgnored) {
   const auto ignore = [] {
     std::signal(SIGHUP, SIG_IGN);
     install_signal_cleanup();

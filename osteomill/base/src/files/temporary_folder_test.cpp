@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(TemporaryFolder, IsThereWithWhatIsPutIntoItAndGoesWithIt) {
+TEST(TemporaryFolder, IsRemovedWithItsContentsOnDestruction) {
   fs::path path;
   {
     const TemporaryFolder folder;
@@ -26,7 +26,7 @@ TEST(TemporaryFolder, IsThereWithWhatIsPutIntoItAndGoesWithIt) {
   EXPECT_FALSE(fs::exists(path));
 }
 
-TEST(TemporaryFolder, SaysWhereNoneCanBeMade) {
+TEST(TemporaryFolder, ThrowsIfTheTemporaryPathDoesNotExist) {
   const char* const before = std::getenv("TMPDIR");
   const std::string kept = before == nullptr ? "" : before;
   ::setenv("TMPDIR", "/nowhere", 1);

@@ -15,7 +15,7 @@ std::vector<double> one_to(std::size_t count) {
   return values;
 }
 
-TEST(Distribution, KnownValues) {
+TEST(Distribution, MatchesKnownMedianP99AndMaximum) {
   const Distribution d = distribution_of(one_to(1000));
   EXPECT_DOUBLE_EQ(d.median, 500.5);
   EXPECT_DOUBLE_EQ(d.p99, 990.5);
@@ -27,7 +27,7 @@ TEST(Distribution, KnownValues) {
 
 // Compares with integer arithmetic: the smallest k with 1000 k >= thousandths * n; if both sides are equal,
 // also its successor.
-TEST(Percentile, RanksAreExactOfEveryNumberOfValues) {
+TEST(Percentile, RanksAreExactForUpTo2000Values) {
   for (std::size_t n = 1; n <= 2000; ++n) {
     for (const std::size_t thousandths : {1u, 500u, 950u, 990u, 998u, 999u, 1000u}) {
       const std::size_t lower = (thousandths * n + 999) / 1000;
@@ -39,21 +39,21 @@ TEST(Percentile, RanksAreExactOfEveryNumberOfValues) {
   }
 }
 
-TEST(Percentile, OfHalfIsTheMedian) {
+TEST(Percentile, EqualsTheMedianAtOneHalf) {
   for (const std::vector<double>& values : {one_to(7), one_to(8), std::vector<double>{3, 1}, {5}}) {
     EXPECT_EQ(percentile(values, 0.5), distribution_of(values).median);
   }
   EXPECT_EQ(percentile(one_to(10), 0.5), 5.5);
 }
 
-TEST(Percentile, EndsAreTheLeastAndTheGreatest) {
+TEST(Percentile, EqualsTheMinimumAtZeroAndTheMaximumAtOne) {
   EXPECT_EQ(percentile(one_to(10), 0), 1);
   EXPECT_EQ(percentile(one_to(10), 1), 10);
   EXPECT_EQ(percentile(one_to(10), 0.91), 10);
   EXPECT_EQ(percentile({}, 0.5), 0);
 }
 
-TEST(SustainedRate, OnlyWhatIsLongerThanATickCosts) {
+TEST(SustainedRate, DropsOnlyForTicksLongerThanThePeriod) {
   const auto rate_of = [](std::initializer_list<double> busy_us, double period_us) {
     SustainedRate rate(period_us);
     for (const double busy : busy_us) rate.add(busy);

@@ -37,7 +37,7 @@ TEST(Field, NamesTheValuesOfChoicesAndSwitches) {
   EXPECT_EQ((FieldDescription{.range = NumberRange::count(0)}.name_of_value(1)), std::nullopt);
 }
 
-TEST(Field, NotANumberIsAllowedByNoRange) {
+TEST(Field, EveryRangeExcludesNan) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const NumberRange open{-kInfinity, kInfinity, false};
@@ -48,7 +48,7 @@ TEST(Field, NotANumberIsAllowedByNoRange) {
   EXPECT_FALSE(NumberRange::finite().contains(-kInfinity));
 }
 
-TEST(Field, ARangeHasBothItsEndsAndNothingBeside) {
+TEST(Field, RangeIncludesItsLimitsAndNothingBeyond) {
   EXPECT_FALSE(NumberRange::positive().contains(0));
   EXPECT_TRUE(NumberRange::not_negative().contains(0));
   EXPECT_FALSE(NumberRange::not_negative().contains(-1e-300));
@@ -58,7 +58,7 @@ TEST(Field, ARangeHasBothItsEndsAndNothingBeside) {
   EXPECT_FALSE(NumberRange::on_or_off().contains(2));
 }
 
-TEST(Field, ItReadsAndWritesNumbersSwitchesAndEnumerations) {
+TEST(Field, ReadsAndWritesNumbersAndEnumerations) {
   Sample sample;
   const auto count = field<Sample>({"count", "", NumberRange::count(0), ""}, &Sample::count);
   const auto kind = field<Sample>({"kind", "", NumberRange::count(0, 2), ""}, &Sample::kind);
@@ -74,7 +74,7 @@ TEST(Field, ItReadsAndWritesNumbersSwitchesAndEnumerations) {
   EXPECT_EQ(sample.ends, (std::array<double, 2>{4, -0.5}));
 }
 
-TEST(Field, FieldsOfAMemberBecomeFieldsOfTheStruct) {
+TEST(Field, MemberFieldsBecomeFieldsOfTheStruct) {
   const auto fields = fields_within<Sample>(&Sample::part, part_fields());
   ASSERT_EQ(fields.size(), 2u);
   Sample sample;
@@ -91,7 +91,7 @@ TEST(Field, FieldsOfAMemberBecomeFieldsOfTheStruct) {
   EXPECT_EQ(field_of_option(fields, ""), nullptr) << "although a field has an empty option";
 }
 
-TEST(Field, ARangeIsSaidInWords) {
+TEST(Field, DescribesARangeInWords) {
   EXPECT_EQ(range_text(NumberRange::positive()), "a number above 0");
   EXPECT_EQ(range_text(NumberRange::not_negative()), "a number of 0 or more");
   EXPECT_EQ(range_text(NumberRange::finite()), "a number");

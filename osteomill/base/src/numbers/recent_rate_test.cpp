@@ -5,7 +5,7 @@
 namespace osteomill {
 namespace {
 
-TEST(RecentRate, IsThatOfTheLastWholeSecond) {
+TEST(RecentRate, IsUpdatedOnceASecondHasPassed) {
   RecentRate rate;
   EXPECT_EQ(rate.per_s(100), 0);
   for (int n = 0; n < 50; ++n) rate.count();
@@ -18,7 +18,7 @@ TEST(RecentRate, IsThatOfTheLastWholeSecond) {
 }
 
 // Ignores events counted before the first call.
-TEST(RecentRate, TheFirstSecondBeginsWithTheFirstCall) {
+TEST(RecentRate, IgnoresEventsBeforeTheFirstQuery) {
   RecentRate rate;
   for (int n = 0; n < 50; ++n) rate.count();
   EXPECT_EQ(rate.per_s(0), 0);

@@ -5,7 +5,7 @@
 namespace osteomill {
 namespace {
 
-TEST(RowMajor, CountsEveryCellOnceInOrder) {
+TEST(RowMajor, MapsCellsToConsecutiveIndicesAndBack) {
   const std::array<int, 3> dims{3, 5, 4};
   std::size_t index = 0;
   for (int k = 0; k < dims[2]; ++k) {
@@ -20,7 +20,7 @@ TEST(RowMajor, CountsEveryCellOnceInOrder) {
 }
 
 // 2048^3 exceeds the range of an int.
-TEST(RowMajor, IsNotLimitedToAnInt) {
+TEST(RowMajor, IndexesGridsBeyondTheRangeOfInt) {
   const std::array<int, 3> dims{2048, 2048, 2048};
   EXPECT_EQ(row_major(dims, 2047, 2047, 2047), cell_count(dims) - 1);
   EXPECT_EQ(cell_at(dims, cell_count(dims) - 1), (std::array<int, 3>{2047, 2047, 2047}));

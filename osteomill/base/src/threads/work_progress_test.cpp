@@ -25,7 +25,7 @@ TEST(WorkProgress, DoesNothingWithoutAListener) {
   EXPECT_NO_THROW(work_in_two_parts());
 }
 
-TEST(WorkProgress, PartsMakeUpTheWhole) {
+TEST(WorkProgress, PartsAddUpToTheWhole) {
   std::vector<double> reported;
   {
     const WorkProgress progress([&](double share) { reported.push_back(share); });
@@ -37,7 +37,7 @@ TEST(WorkProgress, PartsMakeUpTheWhole) {
   EXPECT_EQ(reported.size(), expected.size());
 }
 
-TEST(WorkProgress, PartsWithinPartsAndSkippedOnesNeverFallBack) {
+TEST(WorkProgress, NestedAndSkippedPartsNeverDecreaseProgress) {
   std::vector<double> reported;
   const WorkProgress progress([&](double share) { reported.push_back(share); });
   {
@@ -50,7 +50,7 @@ TEST(WorkProgress, PartsWithinPartsAndSkippedOnesNeverFallBack) {
   EXPECT_EQ(reported, (std::vector<double>{0.0625, 0.125, 0.25, 0.375, 0.5, 1}));
 }
 
-TEST(WorkProgress, TheListenerStopsTheWork) {
+TEST(WorkProgress, ListenerStopsTheWorkByThrowing) {
   int reported = 0;
   const WorkProgress progress([&](double share) {
     ++reported;
@@ -60,7 +60,7 @@ TEST(WorkProgress, TheListenerStopsTheWork) {
   EXPECT_EQ(reported, 3);
 }
 
-TEST(WorkProgress, GoesOnInAThreadThatIsWaitedFor) {
+TEST(WorkProgress, ReportsTheWorkOfAnotherThread) {
   std::vector<double> reported;
   const WorkProgress progress([&](double share) { reported.push_back(share); });
   {

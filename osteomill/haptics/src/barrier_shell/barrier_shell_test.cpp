@@ -81,7 +81,7 @@ double bowl_force_N(double radius_mm, double rounding_mm, const Barrier& skin, d
   return force_N;
 }
 
-TEST(BarrierShell, ABurrOfAnySizeRestsInItsOwnHoleWhereItIsDrawn) {
+TEST(BarrierShell, BurrOfAnySizeRestsAtTheCentreOfItsOwnHole) {
   for (const double radius_mm : {0.5, 1.0, 1.5, 3.0}) {
     const MillingTool tool{radius_mm, 0.7 * radius_mm, 25};
     const auto plate = testing_support::plane(Vec3::Zero(), Vec3::UnitZ());
@@ -108,7 +108,7 @@ double angle_deg(const Vec3& a, const Vec3& b) {
   return 180 / std::numbers::pi * std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-TEST(BarrierShell, SlidingRoundABallTurnsTheForceWithTheNormal) {
+TEST(BarrierShell, ForceFollowsTheNormalWhenSlidingAroundABall) {
   constexpr double kBall_mm = 5, kDepth_mm = 0.5;
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(56, 0.25),
                                                       testing_support::ball(Vec3::Zero(), kBall_mm));
@@ -135,7 +135,7 @@ TEST(BarrierShell, SlidingRoundABallTurnsTheForceWithTheNormal) {
   EXPECT_LT(largest_step_N, 0.002);
 }
 
-TEST(BarrierShell, TheShaftOnAnEdgeTurnsByForceTimesLever) {
+TEST(BarrierShell, ShaftOnAnEdgeGivesTorqueOfForceTimesLever) {
   const Quat turn = quaternion_from_rotation_vector({0.3, 0.5, -0.4});
   const Vec3 left = turn * Vec3(1, 0, 1).normalized(), right = turn * Vec3(-1, 0, 1).normalized();
   const Volume volume =
@@ -203,7 +203,7 @@ double deepest_of_push(BarrierShell& algorithm, const std::vector<Vec3>& surface
   return deepest;
 }
 
-TEST(BarrierShell, NothingPushesThroughAThinSheet) {
+TEST(BarrierShell, ToolIsNotPushedThroughAThinSheet) {
   const Vec3 normal = Vec3(0.2, 0.5, 0.8).normalized();
   const Volume volume = testing_support::shape_volume(
       testing_support::centred_cube(48, 0.25), [&](const Vec3& p) { return std::abs(normal.dot(p)) - 0.25; });
@@ -229,7 +229,7 @@ TEST(BarrierShell, NothingPushesThroughAThinSheet) {
   EXPECT_GT(algorithm.counts().min_distance_share, 0);
 }
 
-TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
+TEST(BarrierShell, RandomPushesEnterSpongyBoneByLessThan300um) {
   const Volume volume = testing_support::shape_volume(
       testing_support::centred_cube(56, 0.2),
       [](const Vec3& p) {
@@ -257,7 +257,7 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
   EXPECT_GT(algorithm.counts().min_distance_share, 0);
 }
 
-TEST(BarrierShell, AToolThatBeginsInsideBoneIsCarriedOutAndThenHeld) {
+TEST(BarrierShell, ToolStartedInsideBoneMovesFreelyOutAndIsThenHeld) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   BarrierShell algorithm{Settings{}};
@@ -281,7 +281,7 @@ TEST(BarrierShell, AToolThatBeginsInsideBoneIsCarriedOutAndThenHeld) {
 }
 
 // Another algorithm left the tool slightly in the bone; the device is far inside.
-TEST(BarrierShell, AHandOverInsideAWallIsHeldAndTheWrenchRamps) {
+TEST(BarrierShell, TakeoverInsideBoneHoldsTheToolAndRampsTheWrench) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   for (const double overlap_mm : {0.0, 0.3, 1.0}) {
@@ -303,7 +303,7 @@ TEST(BarrierShell, AHandOverInsideAWallIsHeldAndTheWrenchRamps) {
   }
 }
 
-TEST(BarrierShell, ATickOfNoLengthReleasesNothing) {
+TEST(BarrierShell, ZeroLengthTickReleasesNoForceAndStaysFinite) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   BarrierShell algorithm{Settings{}};
@@ -324,7 +324,7 @@ TEST(BarrierShell, ATickOfNoLengthReleasesNothing) {
   EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
 }
 
-TEST(BarrierShell, ADeviceThatJumpsAcrossBoneIsHeldAndTheWrenchRamps) {
+TEST(BarrierShell, DeviceJumpAcrossBoneHoldsTheToolAndRampsTheWrench) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::ball(Vec3::Zero(), 4));
   BarrierShell algorithm{Settings{}};
@@ -345,7 +345,7 @@ TEST(BarrierShell, ADeviceThatJumpsAcrossBoneIsHeldAndTheWrenchRamps) {
   }
 }
 
-TEST(BarrierShell, TheSameInputGivesTheSameBitsAlsoAfterAReset) {
+TEST(BarrierShell, WrenchIsBitIdenticalForTheSameInputAndAfterReset) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                                       testing_support::ball(Vec3::Zero(), 3));
   const auto run = [](BarrierShell& algorithm) {
@@ -370,7 +370,7 @@ TEST(BarrierShell, TheSameInputGivesTheSameBitsAlsoAfterAReset) {
 }
 
 // Removes bone at random under a pressed burr, in islands too: the burr never drops suddenly, and follows.
-TEST(BarrierShell, ABurrPressedOnBoneThatIsMilledIsNeverLetGo) {
+TEST(BarrierShell, PressedBurrIsNeverReleasedWhileBoneIsMilled) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.1),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   const MillingTool tool;

@@ -28,7 +28,7 @@ Pose after(const Pose& X_WT, const Vector6& move, double t) {
 
 // For a million random cores, points and moves, small and large: everywhere on the path the point is at least
 // as far from the core as certified, and after the certified share it keeps a tenth of its distance.
-TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
+TEST(Certificate, NeverExceedsTheDistanceAlongThePath) {
   std::mt19937 bits(7);
   const Pose X_WT{{0.3, -0.2, 0.7}, quaternion_from_rotation_vector({0.4, 1.1, -0.3})};
   double worst = 0, min_kept = 1;
@@ -61,7 +61,7 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
 
 // A point that slides along a core uses up none of its distance, however near; one that moves straight
 // towards it uses up exactly the length of its path.
-TEST(Certificate, IsTightForSliding) {
+TEST(Certificate, IsExactForSlidingAndForDirectApproach) {
   const Cores cores{1.3, 0.8, 24.8};
   const Vec3 beside_ball(0, 0, -1.3001), beside_shaft(0.8001, 0, 12);
   const CoreDistance ball = distance_to_ball(cores, beside_ball);

@@ -16,7 +16,7 @@ using testing_support::uniform;
 
 constexpr Barrier kBarrier{0.25, 3.0};
 
-TEST(Barrier, PressureAndStiffnessAreTheEnergysDerivatives) {
+TEST(Barrier, PressureAndStiffnessMatchDerivativesOfTheEnergy) {
   constexpr double kStep = 1e-6;
   for (const double distance : {0.002, 0.01, 0.05, 0.12, 0.2, 0.249}) {
     const Barrier::Value here = kBarrier.at(distance);
@@ -27,7 +27,7 @@ TEST(Barrier, PressureAndStiffnessAreTheEnergysDerivatives) {
   }
 }
 
-TEST(Barrier, IsNothingBeyondItsWidthAndBeginsWithoutAKink) {
+TEST(Barrier, VanishesBeyondItsWidthAndStartsSmoothly) {
   EXPECT_EQ(kBarrier.at(0.25).energy, 0);
   EXPECT_EQ(kBarrier.at(1).pressure, 0);
   EXPECT_LT(kBarrier.at(0.25 - 1e-6).stiffness, 1e-3);
@@ -53,7 +53,7 @@ void expect_derivatives(const Pose& X_WT, const EnergySum& sum, const Energy& en
   }
 }
 
-TEST(EnergySum, DerivativesOfEveryPartOfBothCoresAreThoseOfTheEnergy) {
+TEST(EnergySum, DerivativesMatchTheEnergyForEveryPartOfBothCores) {
   std::mt19937 bits(3);
   const MillingTool tool{1.5, 1.0, 9};
   const Cores cores = Cores::within(tool, 0.2);
@@ -85,7 +85,7 @@ TEST(EnergySum, DerivativesOfEveryPartOfBothCoresAreThoseOfTheEnergy) {
   EXPECT_GE(std::min({side, end, rim, ball}), 20);
 }
 
-TEST(Coupling, DerivativesAreThoseOfTheEnergyAlsoBeyondItsMostForce) {
+TEST(Coupling, DerivativesMatchTheEnergyBelowAndAtTheForceLimit) {
   std::mt19937 bits(4);
   const Coupling coupling{2.0, 1000.0};
   for (int n = 0; n < 40; ++n) {

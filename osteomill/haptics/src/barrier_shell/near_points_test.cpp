@@ -69,7 +69,7 @@ void expect_near(const EnergySum& a, const EnergySum& b) {
             -1e-3 * a.convex.norm());
 }
 
-TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
+TEST(NearPoints, AllInstructionSetsAreBitIdenticalAndMatchScalarSums) {
   std::mt19937 bits(12);
   const Barrier barrier{0.25, 3};
   ASSERT_GE(available_instruction_sets(near_kernel_targets()).size(), 1u);

@@ -81,7 +81,7 @@ std::vector<Kind> kinds() {
            [=](const Vec3& p) { return nerve->distance_mm(p); }}};
 }
 
-TEST(NoGoBarriers, KeepEveryOneOfTenThousandPushesOffByTheirDistanceLessATwentieth) {
+TEST(NoGoBarriers, KeepTheBurrAtGuardDistanceWithin50umInRandomPushes) {
   std::mt19937 random(7);
   for (const Kind& kind : kinds()) {
     double nearest_mm = std::numeric_limits<double>::infinity(), strongest_N = 0;
@@ -123,7 +123,7 @@ TEST(NoGoBarriers, KeepEveryOneOfTenThousandPushesOffByTheirDistanceLessATwentie
   }
 }
 
-TEST(NoGoBarriers, GiveNoEnergyOnAClosedPathBeyondWhatSamplingLends) {
+TEST(NoGoBarriers, AddNoEnergyOnAClosedPathBeyondTheSamplingError) {
   std::mt19937 random(3);
   const Settings settings;
   for (const Kind& kind : kinds()) {
@@ -165,7 +165,7 @@ TEST(NoGoBarriers, GiveNoEnergyOnAClosedPathBeyondWhatSamplingLends) {
   }
 }
 
-TEST(NoGoBarriers, LeaveABurrAloneThatBeginsWithinThemAndHoldItOnceItHasLeft) {
+TEST(NoGoBarriers, IgnoreABurrThatStartsInsideUntilItHasLeft) {
   const SphereShape sphere{{0, 0, 0}, 1};
   const auto volume = with_structures({{StructureDistance(sphere), 1.0}});
   BarrierShell algorithm{Settings{}};
@@ -183,7 +183,7 @@ TEST(NoGoBarriers, LeaveABurrAloneThatBeginsWithinThemAndHoldItOnceItHasLeft) {
   EXPECT_EQ(step.burr_force_W_N, Vec3::Zero());
 }
 
-TEST(NoGoBarriers, ThatAreNotSetChangeNoBit) {
+TEST(NoGoBarriers, LeaveOutputBitIdenticalForUnguardedStructures) {
   const SphereShape sphere{{0, 0, -4}, 1};
   const auto plain = with_structures({}, -3), watched = with_structures({{StructureDistance(sphere)}}, -3);
   BarrierShell without{Settings{}}, with{Settings{}};

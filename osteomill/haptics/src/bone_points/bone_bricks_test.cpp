@@ -35,7 +35,7 @@ void make_all(BoneBricks& bricks) {
 
 // Bricks updated over several ticks end with the same points as newly built ones; meanwhile no part of the
 // old surface disappears before the new one is there.
-TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
+TEST(BoneBricks, BudgetedRefreshAfterMillingEndsEqualToARebuild) {
   for (const double voxel_mm : {0.06, 0.125, 0.4}) {
     Volume volume =
         testing_support::shape_volume(testing_support::centred_cube(static_cast<int>(6 / voxel_mm), voxel_mm),
@@ -89,7 +89,7 @@ VoxelBox mill_at_random(Volume& volume, std::mt19937& bits) {
 
 // Densities fall anywhere, also while earlier changes are pending: in the end all bricks equal newly built
 // ones, and meanwhile every point is finite.
-TEST(BoneBricks, EqualNewlyBuiltOnesAfterRandomMilling) {
+TEST(BoneBricks, EqualRebuiltOnesAfterRandomMilling) {
   GridGeometry geometry = testing_support::centred_cube(36, 0.2);
   geometry.spacing_mm = {0.2, 0.25, 0.3};
   for (const double spacing_mm : {0.13, 0.4}) {
@@ -117,7 +117,7 @@ TEST(BoneBricks, EqualNewlyBuiltOnesAfterRandomMilling) {
 }
 
 // The surface falls everywhere in every tick, faster than the other bricks take their turns.
-TEST(BoneBricks, ThoseThatSupportTheToolAreBroughtUpToDateWithinAFewTicks) {
+TEST(BoneBricks, RefreshSupportingBricksWithinFourTicks) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(90, 0.13),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   BoneBricks kept(volume, 0.13);
@@ -162,7 +162,7 @@ TEST(BoneBricks, ThoseThatSupportTheToolAreBroughtUpToDateWithinAFewTicks) {
 }
 
 // Returns false as long as bricks are missing.
-TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
+TEST(BoneBricks, BuildNoMorePointsPerTickThanTheBudgetAllows) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(150, 0.13),
                                                       testing_support::ball(Vec3::Zero(), 8));
   BoneBricks bricks(volume, 0.13);
@@ -182,7 +182,7 @@ TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
   EXPECT_EQ(bricks.fine().total(), at_once.fine().total());
 }
 
-TEST(BoneBricks, ACopyGoesOnByItself) {
+TEST(BoneBricks, RefreshingACopyLeavesTheOriginalUnchanged) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                 testing_support::ball(Vec3::Zero(), 4));
   BoneBricks kept(volume, 0.13);
@@ -197,7 +197,7 @@ TEST(BoneBricks, ACopyGoesOnByItself) {
 }
 
 // Requests at once all bricks of a scan that has bone in every brick.
-TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
+TEST(BoneBricks, BuildSkippedBricksOnceSpaceIsFreed) {
   const Volume volume =
       testing_support::shape_volume(testing_support::centred_cube(224, 0.13), [](const Vec3& p) {
         return 0.4 - std::abs(std::remainder(p.x(), 0.9)) - std::abs(std::remainder(p.y(), 0.9));
@@ -219,7 +219,7 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
 }
 
 // In bone a metre wide, bricks are evicted in time and rebuilt when the tool returns.
-TEST(BoneBricks, NeitherTimeNorRoomGrowsWithTheScan) {
+TEST(BoneBricks, KeepFindingPointsWithEvictionInAMetreWideScan) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(11, 100.0),
                                                       testing_support::plane({0, 0, 10}, {0, 0, 1}));
   BoneBricks bricks(volume, 0.13);

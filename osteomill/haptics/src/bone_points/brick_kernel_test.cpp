@@ -111,7 +111,7 @@ void expect_mean(const ShellPoint& point, const Sums& sums) {
   EXPECT_LT((point.normal() - normal.normalized()).norm(), 1e-6 * sums[3] / normal.norm() + 1e-5);
 }
 
-TEST(BrickKernel, EveryInstructionSetGivesTheSameBitsAndThePlainMeans) {
+TEST(BrickKernel, AllInstructionSetsAreBitIdenticalAndMatchScalarMeans) {
   std::mt19937 bits(7);
   const std::vector<std::int64_t> sets = available_instruction_sets(brick_kernel_targets());
   ASSERT_GE(sets.size(), 1u);
@@ -134,7 +134,7 @@ TEST(BrickKernel, EveryInstructionSetGivesTheSameBitsAndThePlainMeans) {
 }
 
 // Densities alternate from node to node, so that no gradient gives the surface's orientation.
-TEST(BrickKernel, WithoutANormalACrossingStillHasAnArea) {
+TEST(BrickKernel, CrossingWithoutAGradientStillHasAnArea) {
   std::vector<float> block(kSide * kSide * 5);
   for (std::size_t n = 0; n < block.size(); ++n) block[n] = static_cast<float>(n % 2);
   const CrossingRow row{&block[2 * kSide * kSide + 2 * kSide + 2], 0, 0, 0, {1, 0, 0}};
@@ -146,7 +146,7 @@ TEST(BrickKernel, WithoutANormalACrossingStillHasAnArea) {
   EXPECT_EQ(points.normal_x[0], 0.0f);
 }
 
-TEST(BrickKernel, TheBoundHoldsEveryPointAndIsNoWiderThanTheyAskFor) {
+TEST(BrickKernel, BoundContainsAllPointsAndIsTight) {
   std::mt19937 bits(8);
   for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{8}, std::size_t{100}}) {
     PointRows points(100);

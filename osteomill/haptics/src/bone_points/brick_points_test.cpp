@@ -6,7 +6,7 @@ namespace osteomill {
 namespace {
 
 // An exhausted pool drops points and counts them; they are stored again once there is space.
-TEST(BrickPoints, APoolThatRunsOutDropsPointsAndSaysSo) {
+TEST(BrickPoints, DropsAndCountsPointsBeyondThePoolUntilItIsFreed) {
   BrickPoints pool(2, 2);
   const ShellPoint one{1, 2, 3, 4};
   PointRows many(100), some(100);

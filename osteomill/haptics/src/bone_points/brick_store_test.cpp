@@ -7,7 +7,7 @@
 namespace osteomill {
 namespace {
 
-TEST(BrickStore, ABrickTakesASlotOnlyIfItHasPointsAndGivesItBackOnceItHasNone) {
+TEST(BrickStore, BrickHasASlotOnlyWhileItHasSurfacePoints) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(32, 0.13),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   const SurfaceLattice lattice(volume, 0.13);
@@ -29,7 +29,7 @@ TEST(BrickStore, ABrickTakesASlotOnlyIfItHasPointsAndGivesItBackOnceItHasNone) {
   EXPECT_EQ(store.fine().total(), 0u);
 }
 
-TEST(BrickStore, MakesRoomByForgettingWhatIsNotKept) {
+TEST(BrickStore, EvictsOnlyBricksThatAreNotKept) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(32, 0.13),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   const SurfaceLattice lattice(volume, 0.13);

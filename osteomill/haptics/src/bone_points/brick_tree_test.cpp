@@ -18,7 +18,7 @@ void open_all(BrickTree& tree) {
   });
 }
 
-TEST(BrickTree, AVisitSeesUnseenPlacesAndSlotsAloneAndChangesNothing) {
+TEST(BrickTree, VisitsOnlyUnknownBricksAndSlotsWithoutChangingThem) {
   BrickTree tree({4, 4, 4});
   open_all(tree);
   tree.set_content(tree.find({1, 2, 3}).first, 7);
@@ -41,7 +41,7 @@ TEST(BrickTree, AVisitSeesUnseenPlacesAndSlotsAloneAndChangesNothing) {
   }
 }
 
-TEST(BrickTree, FindsTheLeastPlaceThatIsThere) {
+TEST(BrickTree, FindsTheFinestExistingLevel) {
   BrickTree tree({8, 8, 8});
   EXPECT_EQ(tree.find({5, 6, 7}).second, 2);
   tree.add_node(tree.find({5, 6, 7}).first);
@@ -51,7 +51,7 @@ TEST(BrickTree, FindsTheLeastPlaceThatIsThere) {
   EXPECT_EQ(tree.find({5, 6, 7}).second, 0);
 }
 
-TEST(BrickTree, ForgetsNodesWithoutSlotsOnceFewAreFree) {
+TEST(BrickTree, EvictsNodesWithoutSlotsOnceFewAreFree) {
   BrickTree tree({64, 64, 64});
   open_all(tree);
   const auto [kept, level] = tree.find({0, 0, 0});

@@ -62,7 +62,7 @@ double area_of(BoneBricks& bricks) {
 }
 
 // Otherwise the cost of a tick would grow with the square of a scan's resolution.
-TEST(SurfaceLattice, AFineScanHasNoMorePointsThanACoarseOne) {
+TEST(SurfaceLattice, FinerScansHaveAtMostAQuarterMorePoints) {
   constexpr double kRadius_mm = 1.5;
   std::size_t coarse_points = 0;
   for (const double voxel_mm : {0.125, 0.0625, 0.03125}) {
@@ -77,7 +77,7 @@ TEST(SurfaceLattice, AFineScanHasNoMorePointsThanACoarseOne) {
   }
 }
 
-TEST(SurfaceLattice, TheAreaOfAPlaneDoesNotDependOnItsSlopeOrOnUnevenSpacing) {
+TEST(SurfaceLattice, PlaneAreaIsIndependentOfSlopeAndAnisotropicSpacing) {
   GridGeometry geometry = testing_support::centred_cube(48, 0.2);
   geometry.spacing_mm = {0.2, 0.15, 0.25};
   for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(1, 1, 1), Vec3(1, 2, -3), Vec3(0.1, 1, 0.3)}) {
@@ -101,7 +101,7 @@ TEST(SurfaceLattice, TheAreaOfAPlaneDoesNotDependOnItsSlopeOrOnUnevenSpacing) {
 }
 
 // A rod of bone no wider than the point spacing is found from all sides, at any position and slope.
-TEST(SurfaceLattice, AThinRodIsNotMissedInAFineScan) {
+TEST(SurfaceLattice, FindsARodThinnerThanThePointSpacing) {
   for (const double voxel_mm : {0.031, 0.0195}) {
     for (const Vec3& along : {Vec3(0, 0, 1), Vec3(1, 2, 3), Vec3(-1, 0.1, 0.05)}) {
       for (const double aside_mm : {0.0, 0.02, 0.05}) {
@@ -123,7 +123,7 @@ TEST(SurfaceLattice, AThinRodIsNotMissedInAFineScan) {
 }
 
 // Only densities at the scan's border are copied before they are sampled.
-TEST(SurfaceLattice, APointNearTheBorderIsFoundAsAnyOther) {
+TEST(SurfaceLattice, PointsNearTheBorderMatchThoseInALargerGrid) {
   for (const double voxel_mm : {0.125, 0.0625, 0.031}) {
     const auto slope = testing_support::plane({0.03, 0.1, -0.04}, {0.2, 0.1, 1});
     GridGeometry geometry = testing_support::centred_cube(64, voxel_mm);
@@ -157,7 +157,7 @@ TEST(SurfaceLattice, APointNearTheBorderIsFoundAsAnyOther) {
 }
 
 // A block of bone that fills the grid has a surface at the border, and one cut by a plane also at the plane.
-TEST(SurfaceLattice, TheGridsBorderIsASurface) {
+TEST(SurfaceLattice, BoneHasASurfaceAtTheGridBorder) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(21, 0.1),
                                                       testing_support::plane({0, 0, 0.45}, {0, 0, 1}));
   BoneBricks bricks(volume, 0.13);

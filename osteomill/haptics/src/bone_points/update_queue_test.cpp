@@ -7,7 +7,7 @@
 namespace osteomill {
 namespace {
 
-TEST(UpdateQueue, EveryBrickOfABoxHasItsTurnAndWhatIsAddedMeanwhileComesAfter) {
+TEST(UpdateQueue, ReturnsEachBrickOnceAndLaterAdditionsLast) {
   UpdateQueue queue;
   EXPECT_FALSE(queue.next());
   queue.add({{1, 1, 1}, {2, 2, 1}});
@@ -23,7 +23,7 @@ TEST(UpdateQueue, EveryBrickOfABoxHasItsTurnAndWhatIsAddedMeanwhileComesAfter) {
   EXPECT_EQ(queue.size(), 0u);
 }
 
-TEST(UpdateQueue, SupportingBricksThatBearLittleTakeTurnsOnceAllCostMoreThanATickDoes) {
+TEST(UpdateQueue, LightlyLoadedBricksTakeTurnsWhenOverBudget) {
   UpdateQueue queue;
   for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot, 0.001f);
   std::vector<int> turns(9);
@@ -65,7 +65,7 @@ TEST(UpdateQueue, UpdatesTheMostLoadedBricksAtEveryCallIfAllExceedTheBudget) {
   EXPECT_EQ(turns, std::vector<int>({4, 4, 4, 4, 4, kTicks, kTicks, kTicks}));
 }
 
-TEST(UpdateQueue, AShorterTickDoesAsMuchLess) {
+TEST(UpdateQueue, BudgetsScaleWithTheTickLength) {
   UpdateQueue queue(0.25e-3);
   for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_supporting(slot, 1);
   int uses = 0;
@@ -80,7 +80,7 @@ TEST(UpdateQueue, AShorterTickDoesAsMuchLess) {
   EXPECT_FALSE(queue.has_build_budget());
 }
 
-TEST(UpdateQueue, ATickMakesNoMoreThanItsShareAndGoesOnWithWhatWaits) {
+TEST(UpdateQueue, BeginTickResetsTheBudgetAndReportsPendingBricks) {
   UpdateQueue queue;
   queue.spend_build_budget(1000000);
   EXPECT_TRUE(queue.has_build_budget());

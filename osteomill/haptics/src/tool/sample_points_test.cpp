@@ -38,7 +38,7 @@ double min_angle_deg(const std::vector<Vec3>& vertices) {
   return min_deg;
 }
 
-TEST(SphereVertices, AreSpreadAsWidelyAs24PointsCanBe) {
+TEST(SphereVertices, ReachTheTammesOptimumFor24Points) {
   const auto vertices = sphere_vertices(kTool, 24);
   for (const Vec3& vertex : vertices) EXPECT_NEAR(vertex.norm(), 1.5, 1e-12);
   EXPECT_NEAR(min_angle_deg(vertices), 43.6908, 1e-4);  // the published answer of Tammes' problem for 24
@@ -48,7 +48,7 @@ TEST(SphereVertices, AreSpreadAsWidelyAs24PointsCanBe) {
 
 // Platonic solids with triangular faces are the known solutions of Thomson's problem for their numbers of
 // points.
-TEST(SphereVertices, OfOtherNumbersSpreadOut) {
+TEST(SphereVertices, SpreadEvenlyForOtherCounts) {
   EXPECT_NEAR(min_angle_deg(sphere_vertices(kTool, 4)), 109.4712, 0.01);
   EXPECT_NEAR(min_angle_deg(sphere_vertices(kTool, 6)), 90, 0.1);
   EXPECT_NEAR(min_angle_deg(sphere_vertices(kTool, 12)), 63.4349, 0.5);
@@ -95,7 +95,7 @@ TEST(SliceVertices, LieOnTheFreeShaft) {
   }
 }
 
-TEST(SliceVertices, AreAsManyAsAsked) {
+TEST(SliceVertices, MatchTheRequestedCountAndRefuseZero) {
   const ShaftSlice slice = slice_vertices(kTool, 20, 5).front();
   ASSERT_EQ(slice.vertices_T.size(), 5u);
   const double side_mm = (slice.vertices_T[1] - slice.vertices_T[0]).norm();
@@ -104,7 +104,7 @@ TEST(SliceVertices, AreAsManyAsAsked) {
   EXPECT_THROW(slice_vertices(kTool, 20, 0), std::invalid_argument);
 }
 
-TEST(SliceVertices, EachStandsForAnEqualLength) {
+TEST(SliceVertices, AreCentredOnSegmentsOfEqualLength) {
   const auto slices = slice_vertices(kTool, 20);
   const double start = std::sqrt(1.5 * 1.5 - 1.0);
   const double share = (25 - start) / 20;
@@ -112,7 +112,7 @@ TEST(SliceVertices, EachStandsForAnEqualLength) {
   EXPECT_NEAR(slices.back().centre_T.z(), 25 - 0.5 * share, 1e-12);
 }
 
-TEST(SliceVertices, AShaftInsideTheBurrHasNone) {
+TEST(SliceVertices, AreEmptyIfTheShaftLiesInsideTheBurr) {
   EXPECT_TRUE(slice_vertices({1.5, 1.0, 1.0}, 20).empty());
   EXPECT_EQ(shaft_start_mm({1.0, 2.0, 10}), 0);
   EXPECT_THROW(slice_vertices(kTool, 0), std::invalid_argument);

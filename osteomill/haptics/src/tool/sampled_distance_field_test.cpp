@@ -29,7 +29,7 @@ bool is_smooth_near(const Vec3& point, double reach_mm) {
   return true;
 }
 
-TEST(SampledDistanceField, AgreesWithTheClosedFormToItsSpacingSquared) {
+TEST(SampledDistanceField, MatchesTheClosedFormWithinItsSpacingSquared) {
   std::mt19937 bits(7);
   for (const double spacing_mm : {0.1, 0.05}) {
     const SampledDistanceField field(kTool, spacing_mm);
@@ -53,7 +53,7 @@ TEST(SampledDistanceField, AgreesWithTheClosedFormToItsSpacingSquared) {
   }
 }
 
-TEST(SampledDistanceField, HalfTheSpacingIsAQuarterOfTheError) {
+TEST(SampledDistanceField, HalvingTheSpacingQuartersTheError) {
   const auto worst_on_burr = [](double spacing_mm) {
     const SampledDistanceField field(kTool, spacing_mm);
     double worst = 0;
@@ -68,7 +68,7 @@ TEST(SampledDistanceField, HalfTheSpacingIsAQuarterOfTheError) {
   EXPECT_NEAR(worst_on_burr(0.1) / worst_on_burr(0.05), 4, 0.6);
 }
 
-TEST(SampledDistanceField, NodesAreExactAndTheToolLiesInside) {
+TEST(SampledDistanceField, IsExactAtNodesAndContainsTheTool) {
   const SampledDistanceField field(kTool, 0.25);
   const Vec3 node = field.box().min_mm + 0.25 * Vec3(4, 5, 6);
   EXPECT_NEAR(field.at(node)->distance_mm, tool_distance(kTool, node).distance_mm, 1e-6);
@@ -79,14 +79,14 @@ TEST(SampledDistanceField, NodesAreExactAndTheToolLiesInside) {
   EXPECT_FALSE(field.at({std::nan(""), 0, 0}));
 }
 
-TEST(SampledDistanceField, ASpacingOutOfRangeIsRefused) {
+TEST(SampledDistanceField, RefusesASpacingOutOfRange) {
   EXPECT_THROW(SampledDistanceField(kTool, 0), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField(kTool, std::nan("")), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField(kTool, 1e-4), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField({0, 1, 25}, 0.1), std::invalid_argument);
 }
 
-TEST(SampledDistanceField, TheSuitableSpacingSuitsEveryTool) {
+TEST(SampledDistanceField, SuitableSpacingIsAcceptedForAnExtremeTool) {
   EXPECT_NEAR(SampledDistanceField::suitable_spacing_mm(kTool), 0.04, 0.02);
   EXPECT_NO_THROW(
       SampledDistanceField({0.2, 3, 80}, SampledDistanceField::suitable_spacing_mm({0.2, 3, 80})));

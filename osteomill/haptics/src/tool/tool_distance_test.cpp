@@ -9,7 +9,7 @@ namespace {
 
 const MillingTool kTool{1.5, 1.0, 25.0};
 
-TEST(ToolDistance, KnownPoints) {
+TEST(ToolDistance, MatchesExpectedDistancesAtKnownPoints) {
   EXPECT_DOUBLE_EQ(tool_distance(kTool, {0, 0, 0}).distance_mm, -1.5);
   EXPECT_DOUBLE_EQ(tool_distance(kTool, {3, 0, 0}).distance_mm, 1.5);
   EXPECT_DOUBLE_EQ(tool_distance(kTool, {0, 0, -2}).distance_mm, 0.5);
@@ -20,7 +20,7 @@ TEST(ToolDistance, KnownPoints) {
 }
 
 // The distance changes by 1 mm per mm along its gradient, and no faster in any direction.
-TEST(ToolDistance, TheDirectionIsTheGradient) {
+TEST(ToolDistance, DirectionIsTheGradientOfTheDistance) {
   for (int n = 0; n < 500; ++n) {
     const Vec3 point = Vec3(3, 3, 14).cwiseProduct(Vec3::Random()) + Vec3(0, 0, 12);
     const ToolDistance here = tool_distance(kTool, point);
@@ -37,13 +37,13 @@ TEST(ToolDistance, TheDirectionIsTheGradient) {
   }
 }
 
-TEST(ToolDistance, OnTheAxisTheDirectionIsStillAUnitVector) {
+TEST(ToolDistance, DirectionIsAUnitVectorOnTheAxis) {
   for (const Vec3& point : {Vec3(0, 0, 0), Vec3(0, 0, 12), Vec3(0, 0, 25)}) {
     EXPECT_DOUBLE_EQ(tool_distance(kTool, point).outward_T.norm(), 1.0);
   }
 }
 
-TEST(MillingTool, ASizeThatIsNotPositiveIsRefused) {
+TEST(MillingTool, RefusesSizesThatAreNotPositiveAndFinite) {
   EXPECT_NO_THROW(require_valid(kTool));
   EXPECT_THROW(require_valid({0, 1, 25}), std::invalid_argument);
   EXPECT_THROW(require_valid({1.5, -1, 25}), std::invalid_argument);

@@ -54,7 +54,7 @@ class ConnectedDeviceTest : public ::testing::Test {
   bool trembles_ = true;
 };
 
-TEST_F(ConnectedDeviceTest, MovesTheToolFromWhereItWasPutAndTurnsTheWrenchBack) {
+TEST_F(ConnectedDeviceTest, MovesToolWithHandleAndRotatesWrenchToDevice) {
   trembles_ = false;
   run(2);
   const Vec3 before_mm = pose_.position_mm;
@@ -68,7 +68,7 @@ TEST_F(ConnectedDeviceTest, MovesTheToolFromWhereItWasPutAndTurnsTheWrenchBack) 
   EXPECT_EQ(device_.report().complaint(), "");
 }
 
-TEST_F(ConnectedDeviceTest, AHangingHapticThreadLeavesTheHandAtZeroWithin5ms) {
+TEST_F(ConnectedDeviceTest, SendsZeroWithin10msWhenTheHapticThreadHangs) {
   asked_.force_N = {0, 0, 19};
   run(20);
   EXPECT_NEAR(felt_N(), 19, 1e-9);
@@ -81,7 +81,7 @@ TEST_F(ConnectedDeviceTest, AHangingHapticThreadLeavesTheHandAtZeroWithin5ms) {
   expect_no_step();
 }
 
-TEST_F(ConnectedDeviceTest, WithoutInputThereIsNoPose) {
+TEST_F(ConnectedDeviceTest, ReturnsNoPoseWhileInputIsMissing) {
   hardware_.silent = true;
   run(5);
   EXPECT_TRUE(is_finite(pose_));
@@ -96,7 +96,7 @@ TEST_F(ConnectedDeviceTest, WithoutInputThereIsNoPose) {
 }
 
 // 20 inputs per second are too slow for haptics.
-TEST_F(ConnectedDeviceTest, SoIsItForADeviceThatIsTooSlow) {
+TEST_F(ConnectedDeviceTest, ReturnsNoPoseBetweenInputsOfASlowDevice) {
   int poses = 0;
   for (int n = 0; n < 1000; ++n) {
     hardware_.silent = n % 50 != 0;
@@ -107,7 +107,7 @@ TEST_F(ConnectedDeviceTest, SoIsItForADeviceThatIsTooSlow) {
   EXPECT_GE(device_.report().faults, 19u);
 }
 
-TEST_F(ConnectedDeviceTest, APoseThatIsNoneIsNotHandedOn) {
+TEST_F(ConnectedDeviceTest, ReturnsNoPoseForNonFiniteOrUnnormalizedInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Pose before = hardware_.input.X_BH;
   for (const Pose& wrong : {Pose{{nan, 0, 0}, Quat::Identity()}, Pose{{0, 0, 0}, Quat(0, 0, 0, 0)},
@@ -123,7 +123,7 @@ TEST_F(ConnectedDeviceTest, APoseThatIsNoneIsNotHandedOn) {
 }
 
 // A handle at rest returns identical readings because encoders have steps.
-TEST_F(ConnectedDeviceTest, AHandleThatIsHeldStillIsFelt) {
+TEST_F(ConnectedDeviceTest, KeepsForceWhileTheHandleIsHeldStill) {
   trembles_ = false;
   asked_.force_N = {0, 0, 2};
   run(1000);
@@ -132,14 +132,14 @@ TEST_F(ConnectedDeviceTest, AHandleThatIsHeldStillIsFelt) {
 }
 
 // In the first tick in contact with bone, milling uses the fraction delivered before.
-TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesNothingInTheAirEither) {
+TEST_F(ConnectedDeviceTest, DeliversZeroFractionInAirWhileNotDriven) {
   EXPECT_EQ(device_.delivered_fraction(), 1);
   hardware_.input.not_driven = "is not calibrated";
   run(2);
   EXPECT_EQ(device_.delivered_fraction(), 0);
 }
 
-TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesPosesAndGetsZeroUntilItMay) {
+TEST_F(ConnectedDeviceTest, ReadsPosesButSendsZeroWhileNotDriven) {
   asked_.force_N = {0, 0, 10};
   run(10);
   hardware_.input.not_driven = "is not calibrated";
@@ -159,7 +159,7 @@ TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesPosesAndGetsZeroUntilItMay) {
 }
 
 // The haptic thread is notified in the next tick, however short the interruption.
-TEST_F(ConnectedDeviceTest, WhetherItIsDrivenIsToldEveryTick) {
+TEST_F(ConnectedDeviceTest, ReportsEveryInterruptionOfDrivingByTheNextTick) {
   EXPECT_TRUE(device_.is_driven());
   const auto ticks_not_driven = [&](int ticks) {
     int count = 0;
@@ -188,7 +188,7 @@ TEST_F(ConnectedDeviceTest, WhetherItIsDrivenIsToldEveryTick) {
   EXPECT_EQ(ticks_not_driven(20), 19);
 }
 
-TEST_F(ConnectedDeviceTest, WhatItSaysOfItselfIsSaidThoughItIsALittleSlow) {
+TEST_F(ConnectedDeviceTest, KeepsReportingRemarkOfASlightlySlowDevice) {
   hardware_.input.remark = "answers after 9 ms";
   for (int n = 0; n < 200; ++n) {
     hardware_.silent = n % 9 != 0;
@@ -202,7 +202,7 @@ TEST_F(ConnectedDeviceTest, WhatItSaysOfItselfIsSaidThoughItIsALittleSlow) {
 }
 
 // The device's own watchdog switches to zero.
-TEST_F(ConnectedDeviceTest, AfterALapseOfItsOwnTheForceComesUpSlowly) {
+TEST_F(ConnectedDeviceTest, RampsForceUpAfterADeviceWatchdogLapse) {
   hardware_.can.watchdog_s = 5e-3;
   asked_.force_N = {0, 0, 10};
   run(200);
@@ -218,7 +218,7 @@ TEST_F(ConnectedDeviceTest, AfterALapseOfItsOwnTheForceComesUpSlowly) {
   EXPECT_NEAR(felt_N(), 10, 1e-9);
 }
 
-TEST_F(ConnectedDeviceTest, SoItIsForOneThatIsOpenedAgainUncalibrated) {
+TEST_F(ConnectedDeviceTest, SendsZeroAfterReopeningUncalibrated) {
   asked_.force_N = {0, 0, 10};
   run(10);
   hardware_.gone = true;
@@ -231,7 +231,7 @@ TEST_F(ConnectedDeviceTest, SoItIsForOneThatIsOpenedAgainUncalibrated) {
   for (const auto& got : hardware_.got) EXPECT_TRUE(is_zero(got.wrench_B));
 }
 
-TEST_F(ConnectedDeviceTest, WhatElseThereIsToKnowIsSaidWhileItIsFelt) {
+TEST_F(ConnectedDeviceTest, ReportsRemarkWhileForceIsDelivered) {
   hardware_.input.remark = "changes forces";
   asked_.force_N = {0, 0, 2};
   run(3);
@@ -240,7 +240,7 @@ TEST_F(ConnectedDeviceTest, WhatElseThereIsToKnowIsSaidWhileItIsFelt) {
 }
 
 // The device accepts every third wrench; the step limit applies between accepted ones.
-TEST_F(ConnectedDeviceTest, ADeviceThatIsBusyFeelsNoLargerSteps) {
+TEST_F(ConnectedDeviceTest, LimitsForceStepsToABusyDevice) {
   hardware_.got.clear();
   for (int n = 0; n < 300; ++n) {
     hardware_.busy = n % 3 != 0;
@@ -253,7 +253,7 @@ TEST_F(ConnectedDeviceTest, ADeviceThatIsBusyFeelsNoLargerSteps) {
   expect_no_step();
 }
 
-TEST_F(ConnectedDeviceTest, OneThatIsLostComesDownBeforeItIsClosed) {
+TEST_F(ConnectedDeviceTest, RampsForceToZeroWhenTheDeviceIsLost) {
   asked_.force_N = {0, 0, 19};
   run(20);
   EXPECT_NEAR(felt_N(), 19, 1e-9);
@@ -264,7 +264,7 @@ TEST_F(ConnectedDeviceTest, OneThatIsLostComesDownBeforeItIsClosed) {
   expect_no_step();
 }
 
-TEST_F(ConnectedDeviceTest, ALostDeviceIsOpenedAgainAndTheToolGoesOnFromWhereItIs) {
+TEST_F(ConnectedDeviceTest, ReopensALostDeviceAndKeepsTheToolPosition) {
   run(10);
   const Vec3 left_W = pose_.position_mm;
   hardware_.gone = true;
@@ -283,7 +283,7 @@ TEST_F(ConnectedDeviceTest, ALostDeviceIsOpenedAgainAndTheToolGoesOnFromWhereItI
   EXPECT_LT((pose_.position_mm - left_W).norm(), 0.01);
 }
 
-TEST_F(ConnectedDeviceTest, AnotherDeviceInItsPlaceIsNotTaken) {
+TEST_F(ConnectedDeviceTest, RefusesADifferentDeviceOnReopening) {
   hardware_.gone = true;
   run(10);
   hardware_.gone = false;
@@ -293,14 +293,14 @@ TEST_F(ConnectedDeviceTest, AnotherDeviceInItsPlaceIsNotTaken) {
   EXPECT_EQ(device_.report().reason, "another device is connected: another");
 }
 
-TEST_F(ConnectedDeviceTest, ABackEndThatThrowsIsALostDevice) {
+TEST_F(ConnectedDeviceTest, ReportsALostDeviceWhenTheConnectionThrows) {
   hardware_.throws = true;
   run(2);
   EXPECT_EQ(device_.report().state, State::lost);
   EXPECT_EQ(device_.report().reason, "the cable came off");
 }
 
-TEST_F(ConnectedDeviceTest, AClutchMovesTheHandleWithoutTheTool) {
+TEST_F(ConnectedDeviceTest, ClutchMovesTheHandleWithoutMovingTheTool) {
   trembles_ = false;
   hardware_.input.buttons = ConnectedDevice::kSpindleButton;
   run(3);
@@ -320,7 +320,7 @@ TEST_F(ConnectedDeviceTest, AClutchMovesTheHandleWithoutTheTool) {
   EXPECT_LT(pose_.orientation.angularDistance(held.orientation), 1e-7);
 }
 
-TEST_F(ConnectedDeviceTest, ATurnedViewTurnsTheHandsWayAndLeavesTheTool) {
+TEST_F(ConnectedDeviceTest, ViewChangeKeepsToolAndRedirectsHandMotion) {
   trembles_ = false;
   run(2);
   const Vec3 before_mm = pose_.position_mm;
@@ -332,7 +332,7 @@ TEST_F(ConnectedDeviceTest, ATurnedViewTurnsTheHandsWayAndLeavesTheTool) {
   EXPECT_LT((pose_.position_mm - before_mm - Vec3(0, 0, 2)).norm(), 1e-12);
 }
 
-TEST_F(ConnectedDeviceTest, NothingPassesTheDevicesLimits) {
+TEST_F(ConnectedDeviceTest, LimitsWrenchToDeviceCapabilities) {
   asked_ = {{0, 0, 500}, {0, 9000, 0}};
   run(50);
   EXPECT_NEAR(felt_N(), 20, 1e-9);
@@ -340,7 +340,7 @@ TEST_F(ConnectedDeviceTest, NothingPassesTheDevicesLimits) {
   expect_no_step();
 }
 
-TEST_F(ConnectedDeviceTest, LetGoOfItGetsZeroForGood) {
+TEST_F(ConnectedDeviceTest, SendsZeroAfterDisengagingUntilEngagedAgain) {
   asked_.force_N = {0, 0, 10};
   run(20);
   EXPECT_FALSE(device_.disengage());
@@ -392,7 +392,7 @@ class RunningDevice : public ::testing::Test {
   std::atomic<double> max_N_{0};
 };
 
-TEST_F(RunningDevice, ComesDownToZeroBeforeItIsClosed) {
+TEST_F(RunningDevice, ReceivesZeroForceBeforeItIsClosed) {
   {
     ConnectedDevice device(way(), {});
     device.start();
@@ -405,7 +405,7 @@ TEST_F(RunningDevice, ComesDownToZeroBeforeItIsClosed) {
   EXPECT_EQ(max_N_, 8);
 }
 
-TEST_F(RunningDevice, ADeviceThatGivesNoPoseIsRefused) {
+TEST_F(RunningDevice, IsRefusedWhenItGivesNoPose) {
   dumb_ = true;
   ConnectedDevice device(way(), {});
   EXPECT_THROW(device.start(), InputError);

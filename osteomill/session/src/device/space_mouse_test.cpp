@@ -49,7 +49,7 @@ class Daemon {
   int client_ = -1;
 };
 
-TEST(SpaceMouse, PushesTwistsAndButtonsComeThrough) {
+TEST(SpaceMouse, ReadsPushTwistAndButtonPresses) {
   Daemon daemon;
   SpaceMouse mouse;
   ASSERT_TRUE(mouse.is_present());
@@ -68,7 +68,7 @@ TEST(SpaceMouse, PushesTwistsAndButtonsComeThrough) {
   EXPECT_EQ(mouse.read().presses, 0);
 }
 
-TEST(SpaceMouse, WithoutADaemonThereIsNone) {
+TEST(SpaceMouse, IsNotPresentWithoutADaemon) {
   setenv("SPNAV_SOCKET", "/nowhere/at/all", 1);
   SpaceMouse mouse;
   EXPECT_FALSE(mouse.is_present());

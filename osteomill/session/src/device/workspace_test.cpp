@@ -33,7 +33,7 @@ Workspace anchored(int driven, const WorkspaceSettings& settings) {
 }
 
 // Compares the work of small hand motions at the hand and at the tool.
-TEST(Workspace, PowerAtTheHandIsThatAtTheToolTimesTheSetting) {
+TEST(Workspace, HandPowerIsToolPowerTimesThePowerSetting) {
   const WorkspaceSettings settings{0.4, 1.7, {10, 20, -30}};
   const Workspace workspace = anchored(6, settings);
   const Wrench wrench_W{{1, -2, 0.5}, {30, 10, -20}};
@@ -57,7 +57,7 @@ TEST(Workspace, PowerAtTheHandIsThatAtTheToolTimesTheSetting) {
   }
 }
 
-TEST(Workspace, AnAnchorLeavesTheToolWhereItIsAndWhatFollowsMovesIt) {
+TEST(Workspace, AnchorKeepsTheToolPoseAndLaterHandMotionMovesIt) {
   Workspace workspace = anchored(6, {2});
   EXPECT_NEAR((workspace.tool_pose(kHandleStart).position_mm - kToolStart.position_mm).norm(), 0, 1e-12);
   const Pose elsewhere{{-7, 5, 9}, quaternion_from_rotation_vector({0.9, 0.2, 0.1})};
@@ -70,7 +70,7 @@ TEST(Workspace, AnAnchorLeavesTheToolWhereItIsAndWhatFollowsMovesIt) {
   EXPECT_NEAR(moved.orientation.angularDistance(kToolStart.orientation), 0, 1e-7);
 }
 
-TEST(Workspace, WithoutAWindowUpIsUpAndTheOperatorLooksAtTheFront) {
+TEST(Workspace, DefaultViewIsFromThePatientsFrontWithTheHeadUp) {
   DeviceCapabilities can;
   Workspace workspace(can, {});
   workspace.anchor({}, {});
@@ -81,7 +81,7 @@ TEST(Workspace, WithoutAWindowUpIsUpAndTheOperatorLooksAtTheFront) {
 }
 
 // A rotated device, and hand motions that are not quite perpendicular.
-TEST(Workspace, TwoMovesTellHowADeviceStands) {
+TEST(Workspace, ComputesDevicePlacementFromTwoMovesAndRefusesBadMoves) {
   const DeviceCapabilities can = device(6);
   const Vec3 turned_deg(20, -110, 45);
   const Quat R_VB = quaternion_from_rotation_vector(std::numbers::pi / 180 * turned_deg) * can.R_VB;
@@ -94,7 +94,7 @@ TEST(Workspace, TwoMovesTellHowADeviceStands) {
   EXPECT_FALSE(turn_by_moves_deg(can, Vec3(30, 0, 0), Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0)));
 }
 
-TEST(Workspace, LimitsAreTheDevicesAtTheTool) {
+TEST(Workspace, CapsLimitsAtTheDeviceLimitsMappedToTheTool) {
   const WrenchLimits session{20, 500};
   EXPECT_DOUBLE_EQ(anchored(6, {0.5, 2}).limits_W(session).force_N, 6);
   EXPECT_DOUBLE_EQ(anchored(6, {0.5, 2}).limits_W(session).torque_Nmm, 50);
@@ -103,7 +103,7 @@ TEST(Workspace, LimitsAreTheDevicesAtTheTool) {
   EXPECT_DOUBLE_EQ(anchored(3, {1, 2}).limits_W(session).torque_Nmm, 500);
 }
 
-TEST(Workspace, ADeviceOfForceAloneGetsNoTorqueAndWhatTurnsTheShaftOnlyWhenAsked) {
+TEST(Workspace, ForceOnlyDeviceRendersTorqueAsForceOnlyWithAShaftLever) {
   const Vec3 shaft_W(0, 0, 1);
   // Bone 10 mm up the shaft pushes it to the right with 2 N.
   const Wrench leaning{{2, 0, 0}, Vec3(0, 0, 10).cross(Vec3(2, 0, 0))};
@@ -138,7 +138,7 @@ class WorkspaceFile : public ::testing::Test {
   }
 };
 
-TEST_F(WorkspaceFile, IsKeptForEachDeviceByItsName) {
+TEST_F(WorkspaceFile, StoresSettingsPerDeviceName) {
   const std::string name = "Lab/stylus\n";
   const std::filesystem::path path = workspace_path(name);
   EXPECT_EQ(path.filename(), "Lab-stylus-.toml");
@@ -149,7 +149,7 @@ TEST_F(WorkspaceFile, IsKeptForEachDeviceByItsName) {
   EXPECT_FALSE(read_workspace(workspace_path("another")));
 }
 
-TEST_F(WorkspaceFile, FaultsNameTheFile) {
+TEST_F(WorkspaceFile, ReportsTheFileOfInvalidSettings) {
   const std::filesystem::path path = workspace_path("lab");
   save_workspace(path, {});
   for (const char* text :

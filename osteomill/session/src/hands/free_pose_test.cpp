@@ -36,7 +36,7 @@ void expect_free(const Volume& volume, const Vec3& point_W, const Vec3& towards_
   EXPECT_GE((X_WT.orientation * Vec3::UnitZ()).dot(towards_W), 0.5);
 }
 
-TEST(FreePose, StandsBeforeABallWithTheShaftUpwards) {
+TEST(FreePose, IsThreeMillimetresBeforeABallWithTheShaftTiltedUp) {
   const Volume bone = shape_volume(centred_cube(41, 0.5), testing_support::ball(Vec3::Zero(), 6));
   expect_free(bone, {0, -6, 0}, -Vec3::UnitY(), Vec3::UnitZ());
   const Pose X_WT = free_pose_before(bone, {}, {0, -6, 0}, -Vec3::UnitY(), Vec3::UnitZ());
@@ -45,7 +45,7 @@ TEST(FreePose, StandsBeforeABallWithTheShaftUpwards) {
 }
 
 // For a point at the bottom of a narrow hole, the tool is in front of the hole or straight in it.
-TEST(FreePose, ComesOutOfWhatIsTooNarrow) {
+TEST(FreePose, IsClearOfBoneForPointsInNarrowAndWideHoles) {
   for (const double radius_mm : {2.0, 3.0, 6.0}) {
     const Volume bone = shape_volume(centred_cube(61, 0.4), [&](const Vec3& p) {
       const double block = p.cwiseAbs().maxCoeff() - 11;
@@ -56,7 +56,7 @@ TEST(FreePose, ComesOutOfWhatIsTooNarrow) {
   }
 }
 
-TEST(FreePose, NoAlgorithmFeelsAnythingThere) {
+TEST(FreePose, GivesZeroForceWithEveryAlgorithm) {
   const Volume bone = shape_volume(centred_cube(41, 0.5), testing_support::ball(Vec3::Zero(), 6));
   const Pose X_WT = free_pose_before(bone, {}, {0, -6, 0}, -Vec3::UnitY(), Vec3::UnitZ());
   for (const AlgorithmDescription& description : all_algorithms()) {

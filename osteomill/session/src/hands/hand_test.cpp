@@ -12,7 +12,7 @@ Pose turned(const Vec3& position_mm, const Vec3& rotation) {
   return {position_mm, quaternion_from_rotation_vector(rotation)};
 }
 
-TEST(Hand, PullsTowardsTheTargetByItsStiffness) {
+TEST(Hand, PullsTowardsTheTargetWithItsStiffness) {
   const Wrench wrench = hand_wrench({}, turned({1, 0, -2}, {0, 0.01, 0}), {}, {}, {});
   EXPECT_TRUE(wrench.force_N.isApprox(Vec3(0.5, 0, -1), 1e-12));
   EXPECT_TRUE(wrench.torque_Nmm.isApprox(Vec3(0, 5, 0), 1e-9));
@@ -28,7 +28,7 @@ TEST(Hand, DampsTheMotionRelativeToTheTarget) {
   EXPECT_EQ(together.torque_Nmm, Vec3::Zero());
 }
 
-TEST(Hand, TheSpringNeverPushesHarderThanItsLimitAndKeepsItsDirection) {
+TEST(Hand, ClampsTheSpringForceToThePushLimitWithoutTurningIt) {
   const HandSettings hand;
   EXPECT_DOUBLE_EQ(torque_limit_Nmm(hand), 15.0);
   for (double stretch_mm : {0.5, 2.9, 3.1, 30.0, 3000.0}) {
@@ -46,7 +46,7 @@ TEST(Hand, TheSpringNeverPushesHarderThanItsLimitAndKeepsItsDirection) {
 }
 
 // Rotating the scene must rotate the wrench.
-TEST(Hand, TurningEverythingTurnsTheWrench) {
+TEST(Hand, RotatingTheSceneRotatesTheWrench) {
   const Pose turn = turned({3, -4, 5}, {0.4, -0.8, 0.3});
   const Pose target = turned({1, 2, 0.5}, {0.01, 0.02, -0.005});
   const Pose device = turned({0.5, 1.5, 1}, {0.005, 0.01, 0.02});
@@ -69,7 +69,7 @@ TEST(Hand, ASettingOutOfRangeIsRefused) {
   EXPECT_THROW(require_valid(hand), std::invalid_argument);
 }
 
-TEST(RandomHand, StaysInThePublishedRangesAndFillsThem) {
+TEST(RandomHand, StaysInThePublishedRangesAndSpansTheStiffnessRange) {
   double min = 1e9;
   double max = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -90,7 +90,7 @@ TEST(RandomHand, StaysInThePublishedRangesAndFillsThem) {
 
 // A study names its hands by their seeds, so a seed must mean the same hand on every machine and in every
 // version.
-TEST(RandomHand, ASeedMeansTheSameHandEverywhere) {
+TEST(RandomHand, SeedGivesTheSameStiffnessOnEveryMachine) {
   EXPECT_EQ(random_hand(1).stiffness_N_per_mm, random_hand(1).stiffness_N_per_mm);
   EXPECT_NE(random_hand(1).stiffness_N_per_mm, random_hand(2).stiffness_N_per_mm);
   // The known first output of the 64-bit Mersenne twister for its default seed.

@@ -30,7 +30,7 @@ std::string reason_of(const std::function<void()>& call) {
   return "";
 }
 
-TEST(PlaceEntry, WithoutWishesItIsTheTopOfTheBoneDownwards) {
+TEST(PlaceEntry, DefaultsToTheTopOfTheBoneDownwards) {
   const Volume volume = shape_volume(centred_cube(60, 0.5), ball({1, -2, 3}, 8));
   const MillingEntry entry = place_entry(volume, kTool);
   EXPECT_LT((entry.point_W - Vec3(1, -2, 11)).norm(), 0.05) << entry.point_W.transpose();
@@ -39,7 +39,7 @@ TEST(PlaceEntry, WithoutWishesItIsTheTopOfTheBoneDownwards) {
   EXPECT_NEAR(entry.lateral_W.dot(entry.direction_W), 0, 1e-12);
 }
 
-TEST(PlaceEntry, ADirectionAloneEntersWhereItMeetsTheBoneFirst) {
+TEST(PlaceEntry, DirectionAloneEntersAtTheFirstBoneAlongIt) {
   const Volume volume = shape_volume(centred_cube(60, 0.5), ball({1, -2, 3}, 8));
   const Vec3 direction = Vec3(3, 0, -4);
   const MillingEntry entry = place_entry(volume, kTool, std::nullopt, direction);
@@ -48,7 +48,7 @@ TEST(PlaceEntry, ADirectionAloneEntersWhereItMeetsTheBoneFirst) {
   EXPECT_TRUE(entry.direction_W.isApprox(direction / 5, 1e-12));
 }
 
-TEST(PlaceEntry, AGivenEntryIsTakenToTheSurfaceFromAboveFromInsideAndFromFarAway) {
+TEST(PlaceEntry, ProjectsAGivenPointOntoTheSurfaceAlongTheDirection) {
   const Volume volume = shape_volume(centred_cube(60, 0.5), ball(Vec3::Zero(), 8));
   const Vec3 direction(-1, 0, 0);
   const double height = std::sqrt(64.0 - 4.0 - 1.0);  // of the ball over y = 2, z = -1
@@ -60,14 +60,14 @@ TEST(PlaceEntry, AGivenEntryIsTakenToTheSurfaceFromAboveFromInsideAndFromFarAway
   }
 }
 
-TEST(PlaceEntry, TheLateralSideIsTheHighestRim) {
+TEST(PlaceEntry, LateralDirectionPointsToTheHighestRim) {
   // Bone that rises towards +y: the shaft is to be leant against that side.
   const Volume slope = shape_volume(centred_cube(60, 0.5), plane({0, 0, 0}, {0, -0.4, 1}));
   const MillingEntry entry = place_entry(slope, kTool, Vec3(0, 0, 4), Vec3(0, 0, -1));
   EXPECT_GT(entry.lateral_W.y(), std::cos(0.2));
 }
 
-TEST(PlaceEntry, ARingIsEnteredFromItsHighestVoxel) {
+TEST(PlaceEntry, EntersARingNearItsHighestPoint) {
   // A ring about z: a line down through its centre meets no bone.
   const auto ring = [](const Vec3& p) {
     return std::hypot(std::hypot(p.x(), p.y()) - 6, p.z() - 0.05 * p.x()) - 2;
@@ -78,7 +78,7 @@ TEST(PlaceEntry, ARingIsEnteredFromItsHighestVoxel) {
   EXPECT_GT(entry.point_W.z(), 2.0);
 }
 
-TEST(PlaceEntry, APitTooNarrowForTheToolIsEnteredFromItsHighestVoxel) {
+TEST(PlaceEntry, EntersThePitIfTheBurrFitsAndTheRimOtherwise) {
   const auto pit = [](const Vec3& p) {
     return std::max(p.z() - 8, std::min(2.2 - std::hypot(p.x(), p.y()), 1.0 + p.z() - 4.2));
   };
@@ -89,7 +89,7 @@ TEST(PlaceEntry, APitTooNarrowForTheToolIsEnteredFromItsHighestVoxel) {
   EXPECT_GT(place_entry(volume, {3.0, 1.0, 25.0}).point_W.z(), 7.4);
 }
 
-TEST(PlaceEntry, SaysWhyThereIsNoEntry) {
+TEST(PlaceEntry, ReportsTheReasonIfThereIsNoEntry) {
   const Volume empty = shape_volume(centred_cube(20, 1.0), [](const Vec3&) { return 100.0; });
   EXPECT_EQ(
       reason_of([&] { place_entry(empty, kTool, {}, {}, "knee.nrrd"); }),
@@ -108,7 +108,7 @@ TEST(PlaceEntry, SaysWhyThereIsNoEntry) {
             std::string::npos);
 }
 
-TEST(PlaceEntry, BoneInTheWayOfTheToolIsSaid) {
+TEST(PlaceEntry, RefusesAnEntryIfBoneIsInTheWayOfTheTool) {
   // Two balls, one above the other; the entry is between them, and the upper one blocks the tool.
   const auto two = [](const Vec3& p) {
     return std::min((p - Vec3(0, 0, 8)).norm(), (p + Vec3(0, 0, 8)).norm()) - 5;
@@ -120,7 +120,7 @@ TEST(PlaceEntry, BoneInTheWayOfTheToolIsSaid) {
 }
 
 // Rotating scan and direction must rotate the entry.
-TEST(PlaceEntry, TurningTheScanTurnsTheEntry) {
+TEST(PlaceEntry, RotatingTheScanRotatesTheEntryPoint) {
   GridGeometry turned = centred_cube(60, 0.5);
   const Quat turn = quaternion_from_rotation_vector({0.5, -0.3, 0.9});
   turned.origin_mm = turn * turned.origin_mm;
@@ -135,7 +135,7 @@ TEST(PlaceEntry, TurningTheScanTurnsTheEntry) {
   EXPECT_LT((turn * plain.point_W - other.point_W).norm(), 1e-3);
 }
 
-TEST(PlaceEntry, TheToolStandsAboveTheEntryAlongTheDirection) {
+TEST(PlaceEntry, PoseAboveHasTheGivenClearanceAndShaftDirection) {
   const MillingEntry entry{{1, 2, 3}, {0, 0, 1}, {1, 0, 0}};
   const Pose pose = pose_above(entry, kTool, 3.0);
   EXPECT_TRUE(pose.position_mm.isApprox(Vec3(1, 2, 3 - 4.5), 1e-12));
@@ -143,7 +143,7 @@ TEST(PlaceEntry, TheToolStandsAboveTheEntryAlongTheDirection) {
 }
 
 // A skull vault whose top is outside the scan: the highest voxels are on the cut edge of a wall.
-TEST(PlaceEntry, WhereTheVolumeCutsTheBoneOffAnotherPlaceIsFound) {
+TEST(PlaceEntry, AvoidsBoneCutOffByTheVolumeUnlessGivenExplicitly) {
   const auto vault = [](const Vec3& p) { return std::abs(p.norm() - 20) - 3; };
   GridGeometry geometry = centred_cube(60, 1);
   geometry.dims[2] = 42;
@@ -159,7 +159,7 @@ TEST(PlaceEntry, WhereTheVolumeCutsTheBoneOffAnotherPlaceIsFound) {
   EXPECT_NE(entry_warnings(volume, kTool, edge).front().find("cuts the bone off"), std::string::npos);
 }
 
-TEST(PlaceEntry, AThinEdgeIsNotWhereAToolStays) {
+TEST(PlaceEntry, SkipsAThinFinForTheBlockBelowIt) {
   // A fin on a block: the fin is the top.
   const auto finned = [](const Vec3& p) {
     const double block = std::max({std::abs(p.x()) - 12, std::abs(p.y()) - 12, p.z()});
@@ -172,7 +172,7 @@ TEST(PlaceEntry, AThinEdgeIsNotWhereAToolStays) {
   EXPECT_TRUE(entry_warnings(volume, kTool, entry).empty());
 }
 
-TEST(PlaceEntry, SlicesThatAreThickerThanTheBurrsRadiusAreSaid) {
+TEST(PlaceEntry, WarnsOfSlicesThickerThanTheBurrRadius) {
   GridGeometry geometry = centred_cube(40, 0.5);
   geometry.spacing_mm.z() = 3;
   geometry.origin_mm.z() = -58.5;
@@ -184,7 +184,7 @@ TEST(PlaceEntry, SlicesThatAreThickerThanTheBurrsRadiusAreSaid) {
   }
 }
 
-TEST(PlaceEntry, WhereNoPlaceIsGoodTheTopIsTakenAndSaid) {
+TEST(PlaceEntry, WarnsIfThereIsNoGoodEntry) {
   // A lattice of thin rods.
   const auto rods = [](const Vec3& p) {
     const auto off = [](double x) { return std::abs(x - 4 * std::round(x / 4)); };

@@ -88,7 +88,7 @@ double mean_between(const std::vector<Sample>& samples, double from_s, double to
   return sum / count;
 }
 
-TEST(MillingScript, StartsThreeMillimetresAboveTheEntryAndTouchesAfterAboutASecond) {
+TEST(MillingScript, StartsThreeMillimetresAboveBoneAndTouchesAfterASecond) {
   for (const MillingEntry& entry : {on_a_plane(), on_a_ball()}) {
     const auto samples = run(without_tremor(), entry, yielding_hole(entry));
     EXPECT_NEAR(samples.front().shown_tip_mm, -3.0, 0.01);
@@ -101,7 +101,7 @@ TEST(MillingScript, StartsThreeMillimetresAboveTheEntryAndTouchesAfterAboutASeco
   }
 }
 
-TEST(MillingScript, FeedsWithNineTenthsOfThePushUntilTheHoleIsThreeMillimetresDeep) {
+TEST(MillingScript, FeedsWithNineTenthsOfThePushUntilThreeMillimetresDeep) {
   for (double push_N : {1.5, 3.0}) {
     OperatorSettings settings = without_tremor();
     settings.hand.push_N = push_N;
@@ -120,7 +120,7 @@ TEST(MillingScript, FeedsWithNineTenthsOfThePushUntilTheHoleIsThreeMillimetresDe
   }
 }
 
-TEST(MillingScript, LeansAtItsRateUntilTheTorqueIsThereAndKeepsItWithTheSpindleOn) {
+TEST(MillingScript, LeansUntilTheTargetTorqueAndKeepsItWithTheSpindleOn) {
   const MillingEntry entry = on_a_ball();
   const auto samples = run(without_tremor(), entry, yielding_hole(entry));
   const double from_s = samples[first_of(samples, ScriptStage::lean)].time_s;
@@ -158,7 +158,7 @@ TEST(MillingScript, HoldsStillWithTheSpindleOffAndTheShaftAgainstTheRim) {
 }
 
 // The hand leans into a yielding wall no farther than into a firm one, although it does not reach the torque.
-TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
+TEST(MillingScript, BoundsTheLeanIntoFirmAndYieldingWalls) {
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 8;
   settings.script.holding_s = 4;
@@ -187,7 +187,7 @@ TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
 }
 
 // The floor disappears under the tool while it leans, as if it left the tooth sideways.
-TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
+TEST(MillingScript, EndsMillingAndReportsALostToolThatLeavesTheBone) {
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 8;
   settings.script.holding_s = 4;
@@ -214,7 +214,7 @@ TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
 
 // The first algorithm touches bone with the device's centre, 1.5 mm deeper than the shown burr, and then
 // sinks in by force / stiffness. The script judges the hole by the shown burr.
-TEST(MillingScript, JudgesTheHoleByTheShownToolAndNotByTheDevice) {
+TEST(MillingScript, MeasuresTheHoleByTheShownToolNotTheDevice) {
   const MillingEntry entry = on_a_plane();
   const auto samples = run(without_tremor(), entry, yielding_hole(entry, AnalyticHole::Kind::line_proxy));
   const std::size_t lean = first_of(samples, ScriptStage::lean);
@@ -225,7 +225,7 @@ TEST(MillingScript, JudgesTheHoleByTheShownToolAndNotByTheDevice) {
   EXPECT_NEAR(mean_between(samples, samples[lean].time_s - 1, samples[lean].time_s, along), 0.87 * 1.5, 0.06);
 }
 
-TEST(MillingScript, BoneThatDoesNotYieldIsLeantOnAfterSixTenthsOfThePhaseAndNothingWandersOff) {
+TEST(MillingScript, StartsLeaningAfterSixTenthsOfMillingIfBoneDoesNotYield) {
   const MillingEntry entry = on_a_plane();
   const auto samples =
       run(without_tremor(), entry, {entry, kTool.burr_radius_mm, AnalyticHole::Kind::direct, 0.0});
@@ -236,7 +236,7 @@ TEST(MillingScript, BoneThatDoesNotYieldIsLeantOnAfterSixTenthsOfThePhaseAndNoth
   }
 }
 
-TEST(MillingScript, InEmptyAirTheTargetKeepsWithinItsBounds) {
+TEST(MillingScript, TargetStaysWithinBoundsInFreeAir) {
   MillingEntry entry;  // no bone at all
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 4;
@@ -250,7 +250,7 @@ TEST(MillingScript, InEmptyAirTheTargetKeepsWithinItsBounds) {
 }
 
 // Without feeling the wall the hand mills and settles for the maximum time, otherwise for the minimum.
-TEST(MillingScript, MillsUntilTheShaftHasLeantAndHoldsWhatItFeels) {
+TEST(MillingScript, MillsAndSettlesLongerIfTheShaftMeetsNoWall) {
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 8;
   settings.script.holding_s = 4;
@@ -279,7 +279,7 @@ TEST(MillingScript, MillsUntilTheShaftHasLeantAndHoldsWhatItFeels) {
   EXPECT_NEAR(held_in_air_s, 4 - settings.script.settle_s + 0.5 * 4, 0.01);
 }
 
-TEST(MillingScript, TurningEverythingTurnsTheIntent) {
+TEST(MillingScript, RotatingTheSceneRotatesTheIntent) {
   const Pose turn{{5, -3, 2}, quaternion_from_rotation_vector({0.7, 0.2, -0.4})};
   const MillingEntry plain = on_a_ball();
   const MillingEntry other{turn * plain.point_W, turn.orientation * plain.direction_W,

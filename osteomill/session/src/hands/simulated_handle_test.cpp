@@ -26,7 +26,7 @@ void advance_many(SimulatedHandle& handle, const Wrench& other, int substeps) {
   for (int n = 0; n < substeps; ++n) handle.advance(other);
 }
 
-TEST(SimulatedHandle, AConstantForceGivesHalfATimesTSquared) {
+TEST(SimulatedHandle, AcceleratesUniformlyUnderAConstantWrench) {
   SimulatedHandle handle(exact_encoder(), {});
   const Wrench push{{0.6, 0, -0.3}, {0, 3.0, 0}};
   advance_many(handle, push, 10000);  // 0.5 s
@@ -53,7 +53,7 @@ struct Oscillator {
   }
 };
 
-TEST(SimulatedHandle, InAHandItSwingsAsTheAnalyticSpringMassDamperDoes) {
+TEST(SimulatedHandle, MatchesTheAnalyticSpringMassDamperInAHand) {
   const HandSettings hand;
   // Both motions of the default hand and handle: sqrt(500 N/m / 0.3 kg) and 5 / (2 sqrt(500 * 0.3)).
   const Oscillator oscillator{std::sqrt(500 / 0.3), 5 / (2 * std::sqrt(150.0))};
@@ -68,7 +68,7 @@ TEST(SimulatedHandle, InAHandItSwingsAsTheAnalyticSpringMassDamperDoes) {
 }
 
 // The integrator must not add or remove energy, so that growth in a measurement is due to the loop.
-TEST(SimulatedHandle, AnUndampedSpringKeepsItsEnergyForAMinute) {
+TEST(SimulatedHandle, KeepsEnergyOnAnUndampedSpringWithin2PercentForAMinute) {
   constexpr double kStiffness = 40.0;  // N/mm
   SimulatedHandle handle(exact_encoder(), {{0.1, 0, 0}, Quat::Identity()});
   const auto energy = [&] {
@@ -86,7 +86,7 @@ TEST(SimulatedHandle, AnUndampedSpringKeepsItsEnergyForAMinute) {
   EXPECT_LT(max, 1.02 * at_first);
 }
 
-TEST(SimulatedHandle, ACommandActsThreeTenthsOfAMillisecondLaterAndUntilTheNext) {
+TEST(SimulatedHandle, CommandActsAfterTheForceDelayUntilTheNextOne) {
   SimulatedHandle handle(HandleSettings{}, {});
   std::vector<double> acting_N;
   for (int tick = 0; tick < 3; ++tick) {
@@ -103,7 +103,7 @@ TEST(SimulatedHandle, ACommandActsThreeTenthsOfAMillisecondLaterAndUntilTheNext)
   }
 }
 
-TEST(SimulatedHandle, ADelayLongerThanATickKeepsEveryCommand) {
+TEST(SimulatedHandle, KeepsEveryCommandIfTheDelayExceedsATick) {
   HandleSettings settings;
   settings.force_delay_s = 2.5e-3;
   SimulatedHandle handle(settings, {});
@@ -115,7 +115,7 @@ TEST(SimulatedHandle, ADelayLongerThanATickKeepsEveryCommand) {
   }
 }
 
-TEST(SimulatedHandle, TheMotorsGiveNoMoreThanTheirLimits) {
+TEST(SimulatedHandle, ClampsTheMotorWrenchAndZeroesANonFiniteOne) {
   SimulatedHandle handle(HandleSettings{}, {});
   handle.command({{300, 0, -400}, {0, 6000, 0}});
   advance_many(handle, {}, 7);
@@ -126,7 +126,7 @@ TEST(SimulatedHandle, TheMotorsGiveNoMoreThanTheirLimits) {
   EXPECT_EQ(handle.motor_wrench().force_N, Vec3::Zero());
 }
 
-TEST(SimulatedHandle, TheEncoderReadsWholeSteps) {
+TEST(SimulatedHandle, EncoderRoundsToWholeSteps) {
   const Pose start{{0, 0, 0}, quaternion_from_rotation_vector({0, 2.5, 0.3})};
   SimulatedHandle handle(HandleSettings{}, start);
   EXPECT_LT(rotation_vector(handle.read().orientation * start.orientation.conjugate()).norm(), 1e-12);
@@ -181,7 +181,7 @@ class ReleasedHandle {
 constexpr double kDamping_Ns_per_m = 5.0;
 constexpr double kPassiveLimit_N_per_mm = 2 * kDamping_Ns_per_m / (1e-3 + 2 * 0.3e-3) / 1000;
 
-TEST(SimulatedHandle, APassiveWallNeverGivesBackMoreEnergyThanCame) {
+TEST(SimulatedHandle, PassiveWallReturnsLessEnergyThanItReceives) {
   for (int drop = 0; drop < 50; ++drop) {
     // Height steps incommensurate with the motion per tick, so that impacts occur at every sampling phase.
     ReleasedHandle released({}, kDamping_Ns_per_m, 0.5 + 0.0037 * drop, 60);
@@ -207,12 +207,12 @@ double swing_after(double wall_N_per_mm, int ticks) {
   return max_mm;
 }
 
-TEST(SimulatedHandle, ASwingAgainstTheWallDiesBelowTheKnownLimitAndGrowsAboveIt) {
+TEST(SimulatedHandle, OscillationDecaysBelowThePassivityLimitAndGrowsAboveIt) {
   EXPECT_LT(swing_after(0.9 * kPassiveLimit_N_per_mm, 4000), 0.001);
   EXPECT_GT(swing_after(1.1 * kPassiveLimit_N_per_mm, 4000), 0.02);
 }
 
-TEST(SimulatedHandle, ResetBringsBackTheFirstRun) {
+TEST(SimulatedHandle, RunAfterResetIsBitIdenticalToTheFirst) {
   const Pose start{{1, 2, 3}, quaternion_from_rotation_vector({0.1, 0.2, 0.3})};
   SimulatedHandle handle(HandleSettings{}, start);
   const auto run = [&] {

@@ -65,7 +65,7 @@ std::vector<Pose> poses_of_a_run(const OperatorSettings& settings, double tick_s
   return poses;
 }
 
-TEST(SimulatedOperator, TheSameSettingsGiveTheSameBitsAndAnotherSeedDoesNot) {
+TEST(SimulatedOperator, IsBitIdenticalForTheSameSettingsAndDiffersForAnotherSeed) {
   const auto one = poses_of_a_run(short_run(3), 1e-3);
   const auto same = poses_of_a_run(short_run(3), 1e-3);
   const auto other = poses_of_a_run(short_run(4), 1e-3);
@@ -79,7 +79,7 @@ TEST(SimulatedOperator, TheSameSettingsGiveTheSameBitsAndAnotherSeedDoesNot) {
   EXPECT_GT(different, 5000);
 }
 
-TEST(SimulatedOperator, TheHandDoesTheSameWhateverTheTicksRate) {
+TEST(SimulatedOperator, HandMotionDoesNotDependOnTheTickRate) {
   // In free space, before contact: 1 kHz, 500 Hz, 4 kHz.
   for (double tick_s : {2e-3, 0.25e-3}) {
     SimulatedOperator one(short_run(), kTool, {});
@@ -96,7 +96,7 @@ TEST(SimulatedOperator, TheHandDoesTheSameWhateverTheTicksRate) {
   }
 }
 
-TEST(SimulatedOperator, TimeThatFillsNoSubstepIsKeptForLater) {
+TEST(SimulatedOperator, KeepsPartialSubstepsAndIgnoresInvalidTickLengths) {
   SimulatedOperator person(short_run(), kTool, {});
   for (int n = 0; n < 10; ++n) person.tick_done(person.read_pose(), 0.03e-3);
   EXPECT_NEAR(person.time_s(), 0.3e-3, 1e-12);
@@ -106,7 +106,7 @@ TEST(SimulatedOperator, TimeThatFillsNoSubstepIsKeptForLater) {
   EXPECT_TRUE(is_finite(person.read_pose()));
 }
 
-TEST(SimulatedOperator, ATickTakesTwentySubstepsAndTheForceItsDelay) {
+TEST(SimulatedOperator, WrenchActsAfterTheForceDelay) {
   SimulatedOperator person(short_run(), kTool, {});
   person.write_wrench({{0, 0, 5}, Vec3::Zero()});
   person.tick_done(person.read_pose(), 0.3e-3);
@@ -116,7 +116,7 @@ TEST(SimulatedOperator, ATickTakesTwentySubstepsAndTheForceItsDelay) {
   EXPECT_NEAR(person.time_s(), 0.35e-3, 1e-12);
 }
 
-TEST(SimulatedOperator, TremblesByTheTremorAskedForWhileItHolds) {
+TEST(SimulatedOperator, TremorHasItsRmsAlongEachAxisWhileHolding) {
   OperatorSettings settings = short_run();
   settings.script.milling_s = 0;
   settings.script.settle_s = 0;
@@ -139,7 +139,7 @@ TEST(SimulatedOperator, TremblesByTheTremorAskedForWhileItHolds) {
   }
 }
 
-TEST(SimulatedOperator, ATickAllocatesNothing) {
+TEST(SimulatedOperator, TickAllocatesNoMemory) {
   const MillingEntry entry;
   AnalyticHole hole = hole_at(entry);
   SimulatedOperator person(short_run(), kTool, entry);
@@ -155,7 +155,7 @@ TEST(SimulatedOperator, ATickAllocatesNothing) {
   EXPECT_GT(allocations - before, 0);
 }
 
-TEST(SimulatedOperator, RandomHandsAllFinishTheScriptCalmly) {
+TEST(SimulatedOperator, RandomHandsAreStillAtTheEndOfTheScript) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     OperatorSettings settings = short_run(seed);
     settings.hand = random_hand(seed);

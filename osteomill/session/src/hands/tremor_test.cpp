@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRms_mm = 0.02;
 
-TEST(Tremor, HasTheRootMeanSquareAskedForAlongEachAxis) {
+TEST(Tremor, HasTheRequestedRmsAlongEachAxis) {
   for (std::uint64_t seed : {1u, 2u, 77u}) {
     const Tremor tremor(seed, kRms_mm);
     Vec3 sum = Vec3::Zero();
@@ -48,7 +48,7 @@ double power_between(const std::vector<double>& signal, double rate_hz, double l
   return power;
 }
 
-TEST(Tremor, LiesMostlyBetween8And12HzWithALittleUpTo30) {
+TEST(Tremor, HasMostPowerFrom8To12HzAndAlmostNoneAbove32Hz) {
   const Tremor tremor(5, kRms_mm);
   constexpr double kRate_hz = 100;
   std::vector<double> signal;
@@ -59,7 +59,7 @@ TEST(Tremor, LiesMostlyBetween8And12HzWithALittleUpTo30) {
   EXPECT_LT(power_between(signal, kRate_hz, 32, 50), 0.01 * all);
 }
 
-TEST(Tremor, TheSeedAloneSaysWhatItIs) {
+TEST(Tremor, IsBitIdenticalForTheSameSeedAndDiffersForAnother) {
   const Tremor one(9, kRms_mm);
   const Tremor same(9, kRms_mm);
   const Tremor other(10, kRms_mm);
@@ -72,7 +72,7 @@ TEST(Tremor, TheSeedAloneSaysWhatItIs) {
 }
 
 // The value at a time does not depend on the sampling rate or order.
-TEST(Tremor, IsTheSameSignalAtAnyRate) {
+TEST(Tremor, DoesNotDependOnSamplingRateOrOrder) {
   const Tremor tremor(3, kRms_mm);
   std::vector<Vec3> fine;
   for (int n = 0; n < 2000; ++n) fine.push_back(tremor.at(n * 1e-3));
@@ -81,7 +81,7 @@ TEST(Tremor, IsTheSameSignalAtAnyRate) {
   }
 }
 
-TEST(Tremor, MovesNoFasterThanTheHandCan) {
+TEST(Tremor, MovesSlowerThan12MillimetresPerSecond) {
   const Tremor tremor(4, kRms_mm);
   double fastest_mm_s = 0;
   for (int n = 0; n < 60000; ++n) {
@@ -91,11 +91,11 @@ TEST(Tremor, MovesNoFasterThanTheHandCan) {
   EXPECT_LT(fastest_mm_s, 12.0);
 }
 
-TEST(Tremor, NoneIsExactlyNone) {
+TEST(Tremor, IsExactlyZeroForZeroRms) {
   EXPECT_EQ(Tremor(1, 0.0).at(0.123), Vec3::Zero());
 }
 
-TEST(Tremor, ANegativeSizeIsRefused) {
+TEST(Tremor, RefusesANegativeOrInfiniteRms) {
   EXPECT_THROW(Tremor(1, -0.01), std::invalid_argument);
   EXPECT_THROW(Tremor(1, std::numeric_limits<double>::infinity()), std::invalid_argument);
 }

@@ -16,7 +16,7 @@ void let_pass(VirtualHand& hand, double seconds) {
   }
 }
 
-TEST(VirtualHand, GoesWhereItIsPulledWithoutSwingingOver) {
+TEST(VirtualHand, ReachesThePullTargetWithinOnePercentOvershoot) {
   VirtualHand hand({}, pointing_hand(), kStart);
   const Pose target{{6, 2, 3}, quaternion_from_rotation_vector({0, 0.4, 0})};
   hand.pull_to(target);
@@ -46,7 +46,7 @@ TEST(VirtualHand, PushesNoHarderThanItsLimit) {
   }
 }
 
-TEST(VirtualHand, StaysWhereItIsWhenNothingIsAsked) {
+TEST(VirtualHand, IgnoresANonFinitePullTarget) {
   VirtualHand hand({}, pointing_hand(), kStart);
   hand.pull_to({{NAN, 0, 0}, Quat::Identity()});
   let_pass(hand, 0.5);

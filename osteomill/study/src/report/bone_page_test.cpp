@@ -37,7 +37,7 @@ double volume_mm3(const BrickMesh& mesh) {
   return volume_mm3;
 }
 
-TEST(BonePage, ASimplifiedBallKeepsItsVolumeAndFullDetailInTheGivenBall) {
+TEST(BonePage, SimplifiedBallKeepsItsVolumeAndMoreDetailInTheSphere) {
   const BrickMesh whole = ball();
   const Sphere near{{0, 0, kRadius_mm}, 1};
   const BrickMesh simple = simplified(whole, whole.vertices.size() / 4, 0.2, near);
@@ -54,7 +54,7 @@ TEST(BonePage, ASimplifiedBallKeepsItsVolumeAndFullDetailInTheGivenBall) {
   EXPECT_EQ(simplified(whole, whole.vertices.size(), 0.2, near).vertices.size(), whole.vertices.size());
 }
 
-TEST(BonePage, ABodyHoldsItsPlacesWithinAStepOfItsBox) {
+TEST(BonePage, BodyStoresVerticesAsSixteenBitStepsOfItsBoundingBox) {
   const BrickMesh mesh = simplified(ball(), 500, 0.2, {{0, 0, 0}, 1});
   const nlohmann::json body = body_of({.name = "a", .choice = "b"}, mesh);
   EXPECT_NEAR(body["origin"][0].get<double>(), -kRadius_mm, 0.4);
@@ -64,7 +64,7 @@ TEST(BonePage, ABodyHoldsItsPlacesWithinAStepOfItsBox) {
   EXPECT_EQ(body["choice"], "b");
 }
 
-TEST(BonePage, TheScriptOfThreeDimensionsComesOnlyWithBodies) {
+TEST(BonePage, IncludesTheWebGlScriptsOnlyIfThereAreBodies) {
   Page with, without;
   put_data(with, {{"bodies", nlohmann::json::array()}});
   put_data(without, {{"curves", nlohmann::json::array()}});

@@ -19,7 +19,7 @@ std::string failure_of(const TemporaryFolder& work, const std::string& script, c
   return "";
 }
 
-TEST(Gnuplot, RunsInItsFolder) {
+TEST(Gnuplot, RunsInTheGivenFolder) {
   const TemporaryFolder work;
   run_gnuplot(work.path(), "set print 'said'\nprint 6*7\n");
   std::string said;
@@ -27,13 +27,13 @@ TEST(Gnuplot, RunsInItsFolder) {
   EXPECT_EQ(said, "42");
 }
 
-TEST(Gnuplot, WhenItIsMissingItSaysSo) {
+TEST(Gnuplot, ReportsAMissingProgram) {
   const TemporaryFolder work;
   const std::string failure = failure_of(work, "", "gnuplot-that-is-not-there");
   EXPECT_TRUE(failure.starts_with("gnuplot-that-is-not-there: is not installed")) << failure;
 }
 
-TEST(Gnuplot, ItsOwnErrorIsPassedOnInOneLine) {
+TEST(Gnuplot, ReportsItsErrorMessageInOneLine) {
   const TemporaryFolder work;
   const std::string failure = failure_of(work, "set terminal nosuchterminal\n", "gnuplot");
   EXPECT_NE(failure.find("unknown or ambiguous terminal"), std::string::npos) << failure;
@@ -41,7 +41,7 @@ TEST(Gnuplot, ItsOwnErrorIsPassedOnInOneLine) {
 }
 
 // A quoted text must be printed unchanged, whatever its content.
-TEST(Gnuplot, QuotedTextIsOnlyText) {
+TEST(Gnuplot, QuotedTextIsPrintedUnchangedAndNotExecuted) {
   const TemporaryFolder work;
   const std::string hostile = R"(it's "a" `touch owned` \n @x ')";
   run_gnuplot(work.path(), "set print 'said'\nprint " + gnuplot_quoted(hostile + "\n\t") + "\n");

@@ -16,7 +16,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(LabelSection, SaysWhatWasCutOfEachLabel) {
+TEST(LabelSection, ListsTheCutVolumeOfEachLabelWithNoGoFirst) {
   std::vector<Recording> runs{sample_run("point-shell", "milling", 4000)};
   EXPECT_FALSE(label_section(group_runs(runs)));
   runs[0].description.labels = {

@@ -9,7 +9,7 @@
 namespace osteomill {
 namespace {
 
-TEST(SummaryCsv, HasItsColumnsInOrder) {
+TEST(SummaryCsv, WritesColumnsAndFieldsInTheSameOrder) {
   RunMetrics m;
   m.steps = 1;
   m.step_us = {2, 3, 4};
@@ -50,7 +50,7 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
 }
 
 // A figure without a field would be lost between a trial and its study.
-TEST(RunMetrics, EveryFigureIsAField) {
+TEST(RunMetrics, EveryMemberIsADistinctField) {
   RunMetrics m;
   double next = 0;
   for (const Field<RunMetrics>& figure : fields_of<RunMetrics>())

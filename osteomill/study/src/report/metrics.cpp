@@ -175,9 +175,9 @@ Reason reason_of(const ContactShares& contact) {
 }
 
 std::string words_of(const Reason& reason) {
-  const std::string share = reason.number < 0.005
-                                ? "for less than 1 % of the time"
-                                : fmt::format("for {:.0f} % of the time", 100 * reason.number);
+  const std::string share =
+      reason.number < 0.005 ? "for less than 1 % of the time"
+                            : fmt::format("for {:.0f} % of the time", std::floor(100 * reason.number + 1e-9));
   return fmt::format(fmt::runtime(reason.words), fmt::arg("share", share),
                      fmt::arg("seconds", fmt::format("{:.1f} s", reason.number)));
 }

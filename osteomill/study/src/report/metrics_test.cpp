@@ -18,7 +18,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 // 3 N in a slowly turning direction, plus 0.2 N at 100 Hz.
-TEST(VectorMetrics, ASteadyForceWithABuzzOnIt) {
+TEST(VectorMetrics, MatchesAnalyticFiguresOfASteadyForceWithABuzz) {
   std::vector<Vec3> force;
   for (int n = 0; n < 10000; ++n) {
     const double t = 0.001 * n;
@@ -32,7 +32,7 @@ TEST(VectorMetrics, ASteadyForceWithABuzzOnIt) {
 }
 
 // The magnitude stays the same; only the vector difference shows the jump.
-TEST(VectorMetrics, AFlipOfDirectionIsAStep) {
+TEST(VectorMetrics, CountsAReversalOfDirectionAsAStep) {
   std::vector<Vec3> force(1000, Vec3(0, 0, 2));
   for (std::size_t n = 500; n < force.size(); ++n) force[n] = {0, 0, -2};
   EXPECT_DOUBLE_EQ(vector_metrics(force, 1000).step_max, 4);
@@ -40,7 +40,7 @@ TEST(VectorMetrics, AFlipOfDirectionIsAStep) {
 }
 
 // Directions on a cone of 2 degrees about any axis: each deviates by 2 degrees.
-TEST(DirectionMetrics, ACone) {
+TEST(DirectionMetrics, SpreadAndExcursionOfAConeAreItsHalfAngle) {
   for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 2, -0.5)}) {
     const Quat turn = smallest_rotation(Vec3::UnitZ(), axis);
     std::vector<Vec3> directions;
@@ -56,7 +56,7 @@ TEST(DirectionMetrics, ACone) {
   }
 }
 
-TEST(DirectionMetrics, ASineInOnePlane) {
+TEST(DirectionMetrics, SpreadOfASineIsItsRmsAndExcursionItsAmplitude) {
   std::vector<Vec3> directions;
   for (int n = 0; n < 1000; ++n) {
     const double angle = 1e-3 * std::sin(2 * kPi * n / 1000);
@@ -82,7 +82,7 @@ Recording simple_recording(int ticks) {
   return recording;
 }
 
-TEST(RunMetrics, PutsTheFiguresOfARecordingTogether) {
+TEST(RunMetrics, ComputesTimesForcesAndRemovalOfARecording) {
   const RunMetrics m = run_metrics(simple_recording(1000));
   EXPECT_EQ(m.steps, 1000);
   EXPECT_DOUBLE_EQ(m.step_us.max, 800);
@@ -95,7 +95,7 @@ TEST(RunMetrics, PutsTheFiguresOfARecordingTogether) {
 }
 
 // Preemption lengthens a tick's wall-clock time, not its CPU time.
-TEST(RunMetrics, TheRateIsThatOfTheThreadsOwnTimeWhereItIsKnown) {
+TEST(RunMetrics, RateUsesTheThreadsCpuTimeIfRecorded) {
   Recording preempted = simple_recording(1000);
   EXPECT_DOUBLE_EQ(run_metrics(preempted).tick_us.max, 2000) << "by the clock";
   for (TickRecord& record : preempted.records) record.tick_cpu_us = record.time_s < 0.5 ? 100 : 1250;
@@ -105,7 +105,7 @@ TEST(RunMetrics, TheRateIsThatOfTheThreadsOwnTimeWhereItIsKnown) {
   EXPECT_NEAR(m.rate_hz, 1e6 / (0.5 * (1000 + 1250)), 1e-9);
 }
 
-TEST(RunMetrics, APathIsHowFarTheBurrGotAndNotHowMuchItTrembled) {
+TEST(RunMetrics, PathLengthExcludesTremor) {
   Recording moving = simple_recording(1001);
   for (std::size_t n = 0; n < moving.records.size(); ++n) {
     moving.records[n].X_WT.position_mm = {0.01 * static_cast<double>(n), n % 2 == 0 ? 0.0 : 0.05, 0};
@@ -113,7 +113,7 @@ TEST(RunMetrics, APathIsHowFarTheBurrGotAndNotHowMuchItTrembled) {
   EXPECT_NEAR(run_metrics(moving).path_mm, 10, 0.25);
 }
 
-TEST(RunMetrics, ABurrThatBuzzesInOnePlaceDoesNotGetFar) {
+TEST(RunMetrics, BurrExcursionExcludesBuzzingInPlace) {
   Recording moving = simple_recording(1000);
   for (std::size_t n = 0; n < moving.records.size(); ++n)
     moving.records[n].X_WT.position_mm = {n % 40 < 20 ? 0.3 : -0.3, 0, 0};
@@ -125,7 +125,7 @@ TEST(RunMetrics, ABurrThatBuzzesInOnePlaceDoesNotGetFar) {
 
 // Handle and tool tilt by 20 degrees together; then, half of the time, the tool tilts 2 degrees less than the
 // handle.
-TEST(RunMetrics, TheLeanThatTheHandCommandsIsNoSpreadAgainstTheHandle) {
+TEST(RunMetrics, SpreadFromTheHandleExcludesTheCommandedLean) {
   Recording leaning = simple_recording(1000);
   const auto leant = [](double degrees) {
     return quaternion_from_rotation_vector({degrees * kPi / 180, 0, 0});
@@ -142,7 +142,7 @@ TEST(RunMetrics, TheLeanThatTheHandCommandsIsNoSpreadAgainstTheHandle) {
   EXPECT_NEAR(run_metrics(leaning).shaft_from_handle_deg, 1, 1e-6);
 }
 
-TEST(RunMetrics, BoneIsRemovedPerSecondOfCutting) {
+TEST(RunMetrics, RemovalRateCountsOnlyTheTimeOfCutting) {
   Recording cutting = simple_recording(1000);
   for (std::size_t n = 0; n < 1000; ++n) {
     TickRecord& record = cutting.records[n];
@@ -157,7 +157,7 @@ TEST(RunMetrics, BoneIsRemovedPerSecondOfCutting) {
 }
 
 // Mills five mm^3, undoes and redoes it, and mills three more.
-TEST(RunMetrics, ACutMadeAgainIsNotCountedTwice) {
+TEST(RunMetrics, CountsARedoneCutOnlyOnce) {
   Recording recording = simple_recording(1000);
   for (std::size_t n = 0; n < 1000; ++n) {
     TickRecord& record = recording.records[n];
@@ -176,7 +176,7 @@ TEST(RunMetrics, ACutMadeAgainIsNotCountedTwice) {
 }
 
 // Free air before and after changes only the contact shares: felt quantities are measured in contact.
-TEST(RunMetrics, FreeAirIsNotMeasured) {
+TEST(RunMetrics, ExcludesFreeAirFromForceAndTorque) {
   const RunMetrics touching = run_metrics(simple_recording(4000));
   Recording longer = simple_recording(10000);
   for (std::size_t n = 4000; n < 10000; ++n) longer.records[n].wrench = {};
@@ -192,7 +192,7 @@ TEST(RunMetrics, FreeAirIsNotMeasured) {
 }
 
 // A pressed burr has no torque to be steady, and a shaft without contact has no direction of its own.
-TEST(RunMetrics, ATorqueIsMeasuredWhereThereIsOne) {
+TEST(RunMetrics, MeasuresForceAndTorqueOnlyIfEachIsFelt) {
   Recording burr_alone = simple_recording(4000);
   for (TickRecord& record : burr_alone.records) record.wrench.torque_Nmm *= 1e-6;
   const RunMetrics m = run_metrics(burr_alone);
@@ -208,7 +208,7 @@ TEST(RunMetrics, ATorqueIsMeasuredWhereThereIsOne) {
   EXPECT_FALSE(std::isnan(of_torque.torque_Nmm.mean) || std::isnan(of_torque.shaft.spread_deg));
 }
 
-TEST(ContactWords, OfSeveralHandsCountEachReason) {
+TEST(ContactWords, CountsTheHandsOfEachReason) {
   ContactShares shaft_free{1, 1, 0.04, 1, 1}, lost{0.3, 0.3, 0.3, 0.3, 0.3, 2};
   const ContactShares more_free{1, 1, 0.08, 1, 1};
   EXPECT_EQ(
@@ -217,7 +217,7 @@ TEST(ContactWords, OfSeveralHandsCountEachReason) {
   EXPECT_EQ(contact_words(std::vector<ContactShares>{}, 8), "");
 }
 
-TEST(RunMetrics, WhatCuttingAddsIsNoContactOfTheShaft) {
+TEST(RunMetrics, DoesNotCountCuttingTorqueAsShaftContact) {
   Recording cutting = simple_recording(4000);
   for (TickRecord& record : cutting.records) record.cutting_torque_W_Nmm = record.wrench.torque_Nmm;
   const RunMetrics m = run_metrics(cutting);
@@ -227,7 +227,7 @@ TEST(RunMetrics, WhatCuttingAddsIsNoContactOfTheShaft) {
   EXPECT_TRUE(std::isnan(m.shaft.spread_deg));
 }
 
-TEST(RunMetrics, WithoutContactThereIsNothingToMeasure) {
+TEST(RunMetrics, GivesNanAndEmptyFieldsWithoutContact) {
   Recording air = simple_recording(4000);
   for (TickRecord& record : air.records) record.wrench = {};
   const RunMetrics m = run_metrics(air);
@@ -247,7 +247,7 @@ void expect_refused(const Recording& recording, const std::string& reason) {
   }
 }
 
-TEST(RunMetrics, WhatCannotBeMeasuredIsNamed) {
+TEST(RunMetrics, ReportsWhyARecordingCannotBeMeasured) {
   expect_refused(simple_recording(1), "fewer than two ticks");
   Recording still = simple_recording(10);
   still.records[4].time_s = still.records[3].time_s;
@@ -260,7 +260,7 @@ TEST(RunMetrics, WhatCannotBeMeasuredIsNamed) {
   expect_refused(slow, "resolve 20 Hz");
 }
 
-TEST(RunMetrics, ADeviceThatGaveNoPoseIsMeasuredAllTheSame) {
+TEST(RunMetrics, MeasuresForceDespiteATickWithoutADevicePose) {
   Recording gaps = simple_recording(10);
   gaps.records[7].X_WD.position_mm.y() = std::numeric_limits<double>::quiet_NaN();
   gaps.records[7].fault = WrenchFault::pose_not_finite;

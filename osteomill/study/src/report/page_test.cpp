@@ -10,7 +10,7 @@ namespace osteomill {
 
 namespace {
 
-TEST(Html, Base64OfTheStandardsExamples) {  // RFC 4648, section 10
+TEST(Html, EncodesBase64AsInRfc4648) {  // RFC 4648, section 10
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
   EXPECT_EQ(base64("fo"), "Zm8=");
@@ -21,11 +21,11 @@ TEST(Html, Base64OfTheStandardsExamples) {  // RFC 4648, section 10
   EXPECT_EQ(base64(std::string("\xff\x00\xfe", 3)), "/wD+");
 }
 
-TEST(Html, TextIsEscaped) {
+TEST(Html, EscapesMarkupInText) {
   EXPECT_EQ(html_escaped("<b a=\"1\">&amp;</b>"), "&lt;b a=&quot;1&quot;&gt;&amp;amp;&lt;/b&gt;");
 }
 
-TEST(Html, ACellIsTextInPieces) {
+TEST(Html, RendersCellPartsWithTheirStyles) {
   const Section section{
       .tables = {{{"<a>"}, {{"x & y", Cell({{"1 > 2", CellStyle::strong}, {"\nno", CellStyle::faint}})}}}}};
   const std::string page = html(section);
@@ -36,7 +36,7 @@ TEST(Html, ACellIsTextInPieces) {
       << page;
 }
 
-TEST(Html, ATextAmongThePagesDataCannotEndItsScript) {
+TEST(Html, EscapesPageDataThatWouldEndItsScript) {
   const Page page{.title = "Task",
                   .sections = {{.title = "Course", .id = "course"}},
                   .style = ".x > .y {}",
@@ -51,24 +51,24 @@ TEST(Html, ATextAmongThePagesDataCannotEndItsScript) {
   EXPECT_NE(text.find(".x > .y {}</style>"), std::string::npos) << text;
 }
 
-TEST(PlainText, HasItsColumnsBelowEachOther) {
+TEST(PlainText, AlignsColumnsOfUtf8AndMultilineCells) {
   const Table table{{"a", "bb"}, {{"µm", "x\ny"}, {"long", Cell({{"1"}, {"2"}})}}};
   EXPECT_EQ(plain_text(table), "a     bb\nµm    x\n      y\nlong  12\n");
 }
 
-TEST(PlainText, BreaksWhatIsTooWide) {
+TEST(PlainText, WrapsLinesThatAreTooWide) {
   const std::string text = plain_text({{"", ""}, {{"a", std::string(70, 'b') + " " + std::string(70, 'c')}}});
   EXPECT_NE(text.find("a  bbb"), std::string::npos) << text;
   EXPECT_NE(text.find("b\n   ccc"), std::string::npos) << text;
 }
 
-TEST(Shown, NumbersHaveFourDigitsAndNoExponent) {
+TEST(Shown, RoundsFractionsToFourDigitsAndUsesNoExponent) {
   EXPECT_EQ(shown(0.12345), "0.1235");
   EXPECT_EQ(shown(312500.4), "312500");
   EXPECT_EQ(shown(std::numeric_limits<double>::quiet_NaN()), "–");
 }
 
-TEST(Html, AFigureThatIsMissingIsNamed) {
+TEST(Html, RefusesAMissingFigure) {
   EXPECT_THROW(html(Section{.figures = {{"/no/such/figure.svg", "x"}}}), InputError);
 }
 
@@ -76,12 +76,12 @@ TEST(Html, AFigureThatIsMissingIsNamed) {
 
 namespace {
 
-TEST(ValidUtf8, WhatIsSoundStays) {
+TEST(ValidUtf8, KeepsValidText) {
   for (const char* text : {"", "Zahn", "\xC3\xBC \xE2\x82\xAC \xF0\x9F\xA6\xB7", "\xED\x9F\xBF\xEE\x80\x80"})
     EXPECT_EQ(valid_utf8(text), text);
 }
 
-TEST(ValidUtf8, EachByteThatIsNotIsReplaced) {
+TEST(ValidUtf8, ReplacesEachInvalidByte) {
   const std::string one = "\xEF\xBF\xBD";
   EXPECT_EQ(valid_utf8("Z\xFC"
                        "g"),
@@ -93,7 +93,7 @@ TEST(ValidUtf8, EachByteThatIsNotIsReplaced) {
   EXPECT_EQ(valid_utf8("\xF4\x90\x80\x80"), one + one + one + one);
 }
 
-TEST(ValidUtf8, APageIs) {
+TEST(ValidUtf8, HtmlPageIsValidEvenIfItsTitleIsNot) {
   const std::string page = html(Page{"Z\xFC", {}});
   EXPECT_EQ(page, valid_utf8(page));
 }

@@ -17,7 +17,7 @@ std::string value_of(const Table& table, const std::string& key) {
   return "(none)";
 }
 
-TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
+TEST(SettingsTable, ListsCommonValuesOnceAndDifferingValuesPerRun) {
   std::vector<Recording> runs = sample_runs(10);
   runs[3].description.settings.push_back({"only_here", std::string("<x>"), ""});
   for (Recording& run : runs) {
@@ -53,7 +53,7 @@ std::vector<std::string> differing(std::vector<Recording>& runs) {
   return {table.header.begin() + 1, table.header.end()};
 }
 
-TEST(DifferencesTable, HasAColumnForWhateverIsNotTheSameInAll) {
+TEST(DifferencesTable, HasAColumnForEachDifferingSetting) {
   std::vector<Recording> runs = sample_runs(10);
   EXPECT_EQ(differing(runs), std::vector<std::string>());
   runs[0].description.settings.push_back({std::string(kComparisonKey), std::string("a"), ""});
@@ -71,7 +71,7 @@ TEST(DifferencesTable, HasAColumnForWhateverIsNotTheSameInAll) {
                                       "hand_stiffness (N/m)", "script.entry (mm)"}));
 }
 
-TEST(DifferencesTable, AnAlgorithmsSettingsAreComparedWithItsOwn) {
+TEST(DifferencesTable, ComparesAlgorithmSettingsOnlyWithinAnAlgorithm) {
   std::vector<Recording> runs = sample_runs(10);
   runs[1].description.settings.front().value = 3.0;
   EXPECT_EQ(differing(runs), std::vector<std::string>({"algorithm.stiffness (N/mm)"}));

@@ -29,11 +29,11 @@ double max_inside(const std::vector<Vec3>& samples) {
   return max;
 }
 
-TEST(HighPass, TakesAwayASlowSine) {
+TEST(HighPass, RemovesASlowSine) {
   EXPECT_LT(max_inside(high_pass(sine(5, {1, 0, 0}), kRate_hz, 20)), 0.01);
 }
 
-TEST(HighPass, LeavesAFastSineWhereItIsInTime) {
+TEST(HighPass, KeepsAFastSineWithoutPhaseShift) {
   const auto in = sine(100, {3, -2, 1}, {10, 20, 30});
   const auto out = high_pass(in, kRate_hz, 20);
   for (std::size_t n = 500; n + 500 < in.size(); ++n) {
@@ -41,12 +41,12 @@ TEST(HighPass, LeavesAFastSineWhereItIsInTime) {
   }
 }
 
-TEST(HighPass, LetsHalfThePowerThroughAtTheCutoff) {
+TEST(HighPass, PassesHalfThePowerAtTheCutoff) {
   EXPECT_NEAR(max_inside(high_pass(sine(20, {0, 1, 0}), kRate_hz, 20)), std::sqrt(0.5), 0.002);
 }
 
 // The ends must not ring, or every recording that starts under load would look unsteady.
-TEST(HighPass, AConstantAndARampVanishUpToTheEnds) {
+TEST(HighPass, RemovesAConstantAndARampUpToTheEnds) {
   std::vector<Vec3> ramp;
   for (int n = 0; n < 3000; ++n) ramp.emplace_back(100 + 0.01 * n, -7, 3 - 0.02 * n);
   for (const Vec3& sample : high_pass(ramp, kRate_hz, 20)) ASSERT_LT(sample.norm(), 0.05);
@@ -55,7 +55,7 @@ TEST(HighPass, AConstantAndARampVanishUpToTheEnds) {
   }
 }
 
-TEST(HighPass, IsTheSameBackwards) {
+TEST(HighPass, IsSymmetricInTime) {
   auto in = sine(33, {1, 0, 0}, {0, 0, 0}, 777);
   auto out = high_pass(in, kRate_hz, 20);
   std::reverse(in.begin(), in.end());
@@ -64,7 +64,7 @@ TEST(HighPass, IsTheSameBackwards) {
   for (std::size_t n = 200; n + 200 < out.size(); ++n) ASSERT_LT((out[n] - backwards[n]).norm(), 1e-4) << n;
 }
 
-TEST(HighPass, FewSamplesAndImpossibleCutoffs) {
+TEST(HighPass, AcceptsFewSamplesAndRefusesImpossibleCutoffs) {
   EXPECT_TRUE(high_pass({}, kRate_hz, 20).empty());
   EXPECT_EQ(high_pass(std::vector{Vec3(1, 2, 3)}, kRate_hz, 20).at(0), Vec3::Zero());
   EXPECT_EQ(high_pass(std::vector<Vec3>(2, Vec3::Ones()), kRate_hz, 20).size(), 2u);
@@ -90,7 +90,7 @@ double follows(const std::vector<Vec3>& follower, const std::vector<Vec3>& leade
   return multiple_correlation(follower, leader, kReach, std::vector<bool>(leader.size(), true));
 }
 
-TEST(MultipleCorrelation, IsOneWhereAFilterOfTheLeaderIsFollowedAndNearNothingForStrangers) {
+TEST(MultipleCorrelation, IsOneForAFilteredLeaderAndNearZeroForNoise) {
   const std::vector<Vec3> leader = noise(1);
   std::vector<Vec3> late(leader.size(), Vec3::Zero());
   for (std::size_t n = 2; n < leader.size(); ++n) {
@@ -101,14 +101,14 @@ TEST(MultipleCorrelation, IsOneWhereAFilterOfTheLeaderIsFollowedAndNearNothingFo
   EXPECT_NEAR(follows(noise(2), leader), std::sqrt(15.0 / 5000), 0.02);
 }
 
-TEST(MultipleCorrelation, SaysWhatShareIsFollowed) {
+TEST(MultipleCorrelation, EqualsTheLeadersShareOfAMixture) {
   const std::vector<Vec3> leader = noise(1), other = noise(2);
   std::vector<Vec3> mixed;
   for (std::size_t n = 0; n < leader.size(); ++n) mixed.push_back(0.6 * leader[n] + 0.8 * other[n]);
   EXPECT_NEAR(follows(mixed, leader), 0.6, 0.02);
 }
 
-TEST(MultipleCorrelation, LooksOnlyAtWhatIsCountedAndSaysNothingOfTooLittle) {
+TEST(MultipleCorrelation, UsesOnlyCountedSamplesAndIsNanForTooFewOrZero) {
   const std::vector<Vec3> leader = noise(1);
   std::vector<Vec3> follower = leader;
   std::vector<bool> counted(leader.size(), true);

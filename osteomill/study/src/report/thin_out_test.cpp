@@ -31,7 +31,7 @@ TEST(ThinOutCurve, FewSamplesAreAllKept) {
   EXPECT_TRUE(thin_out_curve({}, 10).empty());
 }
 
-TEST(ThinOutCloud, KeepsTheFarthest) {
+TEST(ThinOutCloud, KeepsTheFarthestDirection) {
   std::vector<Vec3> directions(3000, Vec3::UnitZ());
   directions[1777] = Vec3::UnitX();
   const auto kept = thin_out_cloud(directions, Vec3::UnitZ(), 100);

@@ -75,7 +75,7 @@ class ReportTest : public ::testing::Test {
   fs::path out_;
 };
 
-TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
+TEST_F(ReportTest, WritesAComparisonAsOneSelfContainedPage) {
   const fs::path page = write_comparison_report(sample_runs(), out_);
   EXPECT_EQ(page, out_ / "report.html");
   EXPECT_EQ(operands_of(out_), (std::vector<std::string>{"figures", "report.html", "summary.csv"}));
@@ -104,7 +104,7 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
 }
 
 // Runs of different length remove different volumes at the same rate.
-TEST_F(ReportTest, RatesStandBesideVolumes) {
+TEST_F(ReportTest, ShowsRemovalRatesBesideVolumes) {
   std::vector<Recording> runs = sample_runs(4000);
   runs.front().records.resize(3000);
   for (Recording& run : runs)
@@ -127,7 +127,7 @@ TEST_F(ReportTest, RatesStandBesideVolumes) {
   EXPECT_NE(html.find("The milling took 3 to 4 s."), std::string::npos);
 }
 
-TEST_F(ReportTest, AnAlgorithmThatCouldNotBeMatchedIsNamedWithTheReason) {
+TEST_F(ReportTest, ReportsWhyAnAlgorithmWasNotMatched) {
   std::vector<Recording> runs = sample_runs(200);
   for (Recording& run : runs) {
     run.description.settings.push_back({std::string(kMatchedStiffnessKey), 1.5, "N/mm"});
@@ -139,7 +139,7 @@ TEST_F(ReportTest, AnAlgorithmThatCouldNotBeMatchedIsNamedWithTheReason) {
 }
 
 // A report of a session in the window describes what the person did, and does not mention trials.
-TEST_F(ReportTest, ASessionSpeaksOfItself) {
+TEST_F(ReportTest, DescribesASessionWithoutMentioningTrials) {
   Recording run = sample_run("point-shell", "milling");
   run.description.phase = "";
   for (TickRecord& record : run.records) record.spindle_on = record.time_s < 5, record.dt_s = 0.001;
@@ -153,7 +153,7 @@ TEST_F(ReportTest, ASessionSpeaksOfItself) {
   EXPECT_LT(html.find("The bone before and after"), html.find(">Force<"));
 }
 
-TEST_F(ReportTest, ACutThatWasTakenBackIsNoBoneRemovedBelowNothing) {
+TEST_F(ReportTest, ReportsAnUndoneCutAsRestoredBone) {
   Recording run = sample_run("point-shell", "milling");
   run.description.phase = "";
   run.records.back().removed_mm3 = run.records.front().removed_mm3;
@@ -165,7 +165,7 @@ TEST_F(ReportTest, ACutThatWasTakenBackIsNoBoneRemovedBelowNothing) {
       std::string::npos);
 }
 
-TEST_F(ReportTest, OneRecordingIsEnough) {
+TEST_F(ReportTest, AcceptsASingleRecording) {
   Recording run = sample_run("surface-points", kHolding, 500);
   const std::string html = bytes_of(write_comparison_report({run}, out_));
   EXPECT_NE(html.find("8 further findings belong to algorithms, phases or grips that were not tried here"),
@@ -175,7 +175,7 @@ TEST_F(ReportTest, OneRecordingIsEnough) {
   EXPECT_FALSE(fs::exists(out_ / "figures/bone.svg"));
 }
 
-TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
+TEST_F(ReportTest, WritesAReportOfAToolThatNeverMovesOrTouches) {
   Recording run;
   run.description.algorithm = algorithm_named("line-proxy").id;
   for (int n = 0; n < 100; ++n) {
@@ -187,7 +187,7 @@ TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
   EXPECT_TRUE(fs::exists(out_ / "report.html"));
 }
 
-TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
+TEST_F(ReportTest, NotesIncompleteAndDifferingRecordings) {
   std::vector<Recording> runs;
   for (const std::string& algorithm : algorithm_names()) {
     runs.push_back(sample_run(algorithm, kHolding, 200));
@@ -204,7 +204,7 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
 }
 
 // The burr of the samples moves down from z = 20 mm at 0.2 mm/s.
-TEST_F(ReportTest, ThePushAndTheDepthAreSaidAndABurrThatWentTooDeep) {
+TEST_F(ReportTest, ReportsPushAndDepthAndABurrThatWentTooDeep) {
   for (const double entry_z_mm : {20.0, 21.0}) {
     std::vector<Recording> runs = sample_runs();
     for (Recording& run : runs) {
@@ -233,7 +233,7 @@ TEST_F(ReportTest, ThePushAndTheDepthAreSaidAndABurrThatWentTooDeep) {
 }
 
 // Two comparisons with different burr, push and seed, and the remains of a third.
-TEST_F(ReportTest, NothingIsConcludedFromRecordingsThatDoNotBelongTogether) {
+TEST_F(ReportTest, DrawsNoConclusionFromDifferingRecordings) {
   std::vector<Recording> runs = sample_runs(200);
   const std::string together = bytes_of(write_comparison_report(runs, out_));
   EXPECT_NE(together.find("milled the same bone"), std::string::npos);
@@ -250,7 +250,7 @@ TEST_F(ReportTest, NothingIsConcludedFromRecordingsThatDoNotBelongTogether) {
     EXPECT_EQ(mix.find(untrue), std::string::npos) << untrue;
 }
 
-TEST_F(ReportTest, NothingIsConcludedWhereAnAlgorithmLacksAPhase) {
+TEST_F(ReportTest, DrawsNoConclusionIfAnAlgorithmLacksAPhase) {
   std::vector<Recording> runs = sample_runs(200);
   runs.pop_back();
   const std::string html = bytes_of(write_comparison_report(runs, out_));
@@ -258,7 +258,7 @@ TEST_F(ReportTest, NothingIsConcludedWhereAnAlgorithmLacksAPhase) {
   EXPECT_EQ(html.find("the same bone"), std::string::npos);
 }
 
-TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
+TEST_F(ReportTest, NotesMissingPicturesInTheirPlace) {
   std::vector<Recording> runs{sample_run("line-proxy", kMilling, 100)};
   const std::string_view told = "No pictures of the bone: OpenGL was not available";
   EXPECT_EQ(bytes_of(write_comparison_report(runs, out_)).find(told), std::string::npos);
@@ -269,7 +269,7 @@ TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
   EXPECT_LT(html.find(told), html.find("<figure>"));
 }
 
-TEST_F(ReportTest, DamagedPicturesAreNamed) {
+TEST_F(ReportTest, RefusesAndNamesADamagedPicture) {
   std::vector<Recording> runs{sample_run("line-proxy", kMilling, 100)};
   runs[0].pictures[0].png = {1, 2, 3};
   expect_refused(runs, "line-proxy-milling.h5: the picture 'after' is not a complete PNG");
@@ -278,12 +278,12 @@ TEST_F(ReportTest, DamagedPicturesAreNamed) {
   expect_refused(runs, "is not a complete PNG");
 }
 
-TEST_F(ReportTest, AFolderThatCannotBeMadeIsNamed) {
+TEST_F(ReportTest, NamesAFolderThatCannotBeCreated) {
   std::ofstream(out_) << "a file";
   expect_refused(sample_runs(100), out_.string());
 }
 
-TEST_F(ReportTest, RatesStandBesideThePapers) {
+TEST_F(ReportTest, ShowsRatesBesideThoseOfThePaper) {
   MeasuredRates measured{sample_rates(), {}};
   measured.rows.front().paced_rate_hz = 940;
   const fs::path page = write_rates_report(measured, out_);
@@ -305,7 +305,7 @@ TEST_F(ReportTest, RatesStandBesideThePapers) {
   EXPECT_EQ(testing_support::without_namespaces(html).find("http"), std::string::npos);
 }
 
-TEST_F(ReportTest, RatesOfAnyNameAndWithoutThePapersAreDrawn) {
+TEST_F(ReportTest, DrawsRatesOfAnyNameAndRefusesMissingRates) {
   MeasuredRates measured{
       {{algorithm_named("point-shell").id, "it's \"coarse\", `x`", 10, 5, 6, 1000, 2e5, 0, 999}}, {}};
   const fs::path page = write_rates_report(measured, out_);
@@ -316,7 +316,7 @@ TEST_F(ReportTest, RatesOfAnyNameAndWithoutThePapersAreDrawn) {
   EXPECT_THROW(write_rates_report(measured, out_), InputError);
 }
 
-TEST_F(ReportTest, TheLeastVerticesStandBesideThePapers) {
+TEST_F(ReportTest, ShowsMinimumVerticesBesideThoseOfThePaper) {
   MeasuredRates measured{sample_rates(), {}};
   for (const int count : {12, 24, 32})
     measured.vertices.push_back({"sphere", count, 2, 5, 0.1, 0.15, count > 12});

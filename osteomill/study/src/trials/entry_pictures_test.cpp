@@ -29,7 +29,7 @@ double seen_of_hole(double ridge_mm) {
   return visible_fraction(before, milled, camera);
 }
 
-TEST(EntryPictures, TellWhetherAHoleIsSeen) {
+TEST(EntryPictures, VisibleFractionIsHighForAnOpenHoleAndLowBehindARidge) {
   EXPECT_GT(seen_of_hole(0), 0.8);
   EXPECT_LT(seen_of_hole(6), 0.4);
 }

@@ -82,10 +82,13 @@ Table verdicts_table(const Study& study) {
 Section findings_section(const Study& study) {
   const std::vector<StudyFinding> findings = recorded_findings(study);
   if (findings.empty()) return {};
-  Section section{.title = "The paper's findings",
-                  .paragraphs = {"The findings of the paper's section 8.2, each tested on the measurements "
-                                 "by a rule of this project. The paper does not give its hand, push "
-                                 "and bone, so a finding that does not hold here may hold there."}};
+  Section section{
+      .title = "The paper's findings",
+      .paragraphs = {"The findings of section 8.2 of the paper (M. G. Eriksson, Three 6-DOF "
+                     "Haptic Algorithms Compared for Use in a Milling Surgery Simulator "
+                     "Prototype, TRITA-MMK 2012:05, KTH, Stockholm, 2012), each tested on the "
+                     "measurements by a rule of this project. The paper does not give its hand, push "
+                     "and bone, so a finding that does not hold here may hold there."}};
   if (const std::size_t missing = check_study_findings(study).size() - findings.size(); missing > 0) {
     section.paragraphs.push_back(
         fmt::format("{} further finding{} to algorithms, phases or grips that were not tried here.", missing,

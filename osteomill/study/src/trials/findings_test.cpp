@@ -76,11 +76,11 @@ class FindingsTest : public ::testing::Test {
 
 using Numbers = std::vector<std::size_t>;
 
-TEST_F(FindingsTest, WhatThePaperFoundAgrees) {
+TEST_F(FindingsTest, AgreesWithFiguresAsInThePaper) {
   EXPECT_EQ(findings_that(Verdict::agrees), (Numbers{1, 2, 3, 4, 5, 6, 7, 8, 9}));
 }
 
-TEST_F(FindingsTest, WhoLostContactIsNeitherBestNorWorst) {
+TEST_F(FindingsTest, DoesNotRankAnAlgorithmThatLostContact) {
   RunMetrics& m = metrics("surface-points", kHolding);
   m.contact.any = m.contact.force = 0.05;
   m.contact.lost_after_s = 3.2;
@@ -106,7 +106,7 @@ TEST_F(FindingsTest, WhoLostContactIsNeitherBestNorWorst) {
             std::string::npos);
 }
 
-TEST_F(FindingsTest, EachRuleCanFail) {
+TEST_F(FindingsTest, EachRuleFailsOnAContradictingFigure) {
   const auto fails_with = [&](double& place, double value) {
     const double before = std::exchange(place, value);
     const Numbers failing = disagreeing();
@@ -135,7 +135,7 @@ TEST_F(FindingsTest, EachRuleCanFail) {
   EXPECT_EQ(fails_with(three.contacts_mean, 209), Numbers{9});
 }
 
-TEST_F(FindingsTest, WhatWasNotRecordedIsNotJudged) {
+TEST_F(FindingsTest, MarksFindingsOnMissingRunsAsNotRecorded) {
   const auto gone = [](const MeasuredRun& run) { return run.algorithm == "surface-points"; };
   group_.runs.erase(std::remove_if(group_.runs.begin(), group_.runs.end(), gone), group_.runs.end());
   grips_.clear();
@@ -143,7 +143,7 @@ TEST_F(FindingsTest, WhatWasNotRecordedIsNotJudged) {
   EXPECT_EQ(findings_that(Verdict::not_recorded), (Numbers{2, 3, 4, 5, 7, 8}));
 }
 
-TEST(GroupRuns, TwoOfAKindAreRefusedAndNamed) {
+TEST(GroupRuns, RefusesAndNamesTwoRunsOfTheSameAlgorithmAndPhase) {
   std::vector<Recording> recordings{short_run("line-proxy", kMilling), short_run("line-proxy", kMilling)};
   recordings[1].path = "again.h5";
   try {

@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Algorithms, MatchStiffness, ::testing::ValuesIn(cases()
   return name;
 });
 
-TEST_P(MatchStiffness, IsFeltAsAskedFor) {
+TEST_P(MatchStiffness, FeltStiffnessIsWithinTenPercentOfTheRequested) {
   const AlgorithmDescription& algorithm = algorithm_named(GetParam());
   HapticSettings haptics;
   const double felt_N_per_mm = 0.8;
@@ -78,13 +78,13 @@ TEST_P(MatchStiffness, IsFeltAsAskedFor) {
       << "at " << haptics.named.back().value;
 }
 
-TEST(MatchStiffness, ASpringToTheSurfaceIsFeltAsItsStiffness) {
+TEST(MatchStiffness, LineProxySettingEqualsTheFeltStiffness) {
   const auto named = match_felt_stiffness(1.3, setup_of(algorithm_named("line-proxy")), wall());
   EXPECT_EQ(named.setting, "stiffness");
   EXPECT_NEAR(named.value, 1.3, 0.02 * 1.3);
 }
 
-TEST(MatchStiffness, WhatNoSettingGivesIsRefused) {
+TEST(MatchStiffness, RefusesAStiffnessThatNoSettingReaches) {
   for (const std::string& name : algorithm_names()) {
     const MillingSetup setup = setup_of(algorithm_named(name));
     EXPECT_THROW(match_felt_stiffness(1e4, setup, wall()), std::invalid_argument) << name;
@@ -93,7 +93,7 @@ TEST(MatchStiffness, WhatNoSettingGivesIsRefused) {
 }
 
 // Surface-points adds one ring of vertices after another, each saturating once it is entirely in bone.
-TEST(MatchStiffness, ASlopeThatIsLeaptOverIsRefused) {
+TEST(MatchStiffness, RefusesAStiffnessThatTheForceCurveSkips) {
   try {
     match_felt_stiffness(1.5, setup_of(algorithm_named("surface-points")), wall());
     ADD_FAILURE();

@@ -68,7 +68,7 @@ double exact_limit_N_per_mm(const WallPress& press) {
   return press.damping_Ns_per_mm * low / std::sin(low) / late_s;
 }
 
-TEST(Passivity, AnIdealSpringKeepsToTheRule) {
+TEST(Passivity, LimitOfAnIdealSpringMatchesTheRule) {
   for (const TrialSettings& setup : passivity_cases({algorithm_named("line-proxy")})) {
     const double damping = setup.device_damping_Ns_per_mm;
     const double delay_s = setup.hand_and_device.handle.force_delay_s;
@@ -83,11 +83,11 @@ TEST(Passivity, AnIdealSpringKeepsToTheRule) {
   }
 }
 
-TEST(Passivity, ADeviceWithoutDampingKeepsNothingPassive) {
+TEST(Passivity, NoStiffnessIsPassiveOnADeviceWithoutDamping) {
   EXPECT_EQ(ideal_limit(device(0, 0.3e-3)).kind, StiffnessLimit::Kind::below_all);
 }
 
-TEST(Passivity, AWallThatGivesWayIsNotCalledPassive) {
+TEST(Passivity, MotionYieldsOnAWallThatIsTooSoft) {
   // It would carry the force only at 5 mm.
   IdealWall soft(0.1);
   EXPECT_EQ(press_on_wall(soft, kRadius_mm, device(0.005, 0)).motion, WallMotion::yields);
@@ -95,14 +95,14 @@ TEST(Passivity, AWallThatGivesWayIsNotCalledPassive) {
   EXPECT_EQ(press_on_wall(none, kRadius_mm, device(0.005, 0)).motion, WallMotion::yields);
 }
 
-TEST(Passivity, ADeviceTooWeakToHoldTheWallIsNotCalledPassive) {
+TEST(Passivity, MotionPersistsIfTheDeviceIsTooWeakForTheWall) {
   WallPress press = device(0.005, 0.3e-3);
   press.handle.limits.force_N = 0.3;
   IdealWall wall(1);
   EXPECT_EQ(press_on_wall(wall, kRadius_mm, press).motion, WallMotion::persists);
 }
 
-TEST(Passivity, AnOverdampedDeviceThatCreepsToRestIsPassive) {
+TEST(Passivity, MotionDecaysOnAnOverdampedDevice) {
   IdealWall wall(0.5);
   EXPECT_EQ(press_on_wall(wall, kRadius_mm, device(0.1, 0)).motion, WallMotion::decays);
 }
@@ -122,12 +122,12 @@ class Relay final : public HapticAlgorithm {
   int sample_point_count() const override { return 1; }
 };
 
-TEST(Passivity, WhatNeitherGrowsNorDiesIsNotCalledPassive) {
+TEST(Passivity, MotionPersistsInALimitCycle) {
   Relay relay;
   EXPECT_EQ(press_on_wall(relay, kRadius_mm, device(0.002, 2e-3)).motion, WallMotion::persists);
 }
 
-TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
+TEST(Passivity, MotionDoesNotDecayIfTheForceIsNotFinite) {
   class Broken final : public HapticAlgorithm {
    public:
     void prepare(const AlgorithmInputs& /*inputs*/) override {}
@@ -150,7 +150,7 @@ TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
   EXPECT_NE(press_on_wall(broken, kRadius_mm, device(0.005, 0)).motion, WallMotion::decays);
 }
 
-TEST(Passivity, TheSearchSaysWhereItEnds) {
+TEST(Passivity, SearchFindsTheLimitOrReportsBelowOrAboveAll) {
   const auto limit_at = [](double true_limit, double softest, double start) {
     return seek_stiffness_limit(
         [=](double k) {
@@ -176,7 +176,7 @@ TEST(Passivity, TheSearchSaysWhereItEnds) {
   EXPECT_EQ(limit_at(1, 1, 5).kind, StiffnessLimit::Kind::below_all);
 }
 
-TEST(Passivity, TheWallIsWhereTheHandleIsPressed) {
+TEST(Passivity, FeltStiffnessOfLineProxyOnAFlatWallMatchesItsSetting) {
   const MillingTool tool;
   const Volume wall = flat_wall(tool);
   HapticSettings settings;

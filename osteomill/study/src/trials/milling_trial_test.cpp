@@ -65,7 +65,7 @@ void expect_same_bits(const std::vector<TickRecord>& a, const std::vector<TickRe
   }
 }
 
-TEST_P(MillingTrialTest, TheSameSeedGivesTheSameBits) {
+TEST_P(MillingTrialTest, IsBitIdenticalForTheSameSeedAndDiffersForAnother) {
   const Run first = run(1);
   const Run second = run(1);
   expect_same_bits(first.milling, second.milling);
@@ -91,7 +91,7 @@ TEST_P(MillingTrialTest, HoldsInAHoleThatAnotherAlgorithmMilled) {
   EXPECT_GT(std::ranges::count_if(holding, [](const TickRecord& r) { return contact_of(r).any(); }), 900);
 }
 
-TEST_P(MillingTrialTest, LeavesAHoleAndStandsInItWithItsShaftAgainstTheWall) {
+TEST_P(MillingTrialTest, MillsAHoleAndHoldsInItWithoutFaults) {
   EXPECT_GT(density_at(bone_.grid(), place_in_hole()), bone_.isovalue());
   const Run run = this->run(1);
   EXPECT_LT(run.density_in_hole, bone_.isovalue());
@@ -111,7 +111,7 @@ TEST_P(MillingTrialTest, LeavesAHoleAndStandsInItWithItsShaftAgainstTheWall) {
   }
 }
 
-TEST_P(MillingTrialTest, TakesWhatTheForceHasPaidFor) {
+TEST_P(MillingTrialTest, RemovesBoneInProportionToTheBurrForce) {
   const Run run = this->run(1);
   double pressed_mm3 = 0;
   for (const TickRecord& record : run.milling) {

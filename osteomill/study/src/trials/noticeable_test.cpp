@@ -7,7 +7,7 @@
 namespace osteomill {
 namespace {
 
-TEST(Noticeable, AHandNoticesAShareOfForceAndTorqueAndAnAngle) {
+TEST(Noticeable, ThresholdIsAShareOfForceAndTorqueAndAFixedAngle) {
   EXPECT_DOUBLE_EQ(least_noticeable(metric("force_mean_N"), 2), 0.14);
   EXPECT_DOUBLE_EQ(least_noticeable(metric("torque_mean_Nmm"), 2), 0.26);
   EXPECT_DOUBLE_EQ(least_noticeable(metric("force_hp_rms_N"), 2), 0.4);

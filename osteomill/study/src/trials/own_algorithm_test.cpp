@@ -56,7 +56,7 @@ AlgorithmDescription cushion(double height_mm) {
   return description;
 }
 
-TEST(OwnAlgorithm, IsRunRecordedAndReportedBesideThePapers) {
+TEST(OwnAlgorithm, IsRunRecordedAndReportedBesideAPublishedOne) {
   const Volume bone(builtin_tooth(0.5), kBuiltinToothIsovalue);
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = 4;

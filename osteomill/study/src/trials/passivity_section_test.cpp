@@ -57,7 +57,7 @@ class PassivitySectionTest : public ::testing::Test {
   fs::path out_;
 };
 
-TEST_F(PassivitySectionTest, AColumnIsOfItsAlgorithmInWhateverOrderTheyWereMeasured) {
+TEST_F(PassivitySectionTest, TableDoesNotDependOnTheOrderOfMeasurement) {
   auto rows = sample_rows();
   const Figure figure = draw_passivity_figure(rows, out_);
   const std::string page = html(passivity_section(rows, figure));
@@ -72,7 +72,7 @@ TEST_F(PassivitySectionTest, AColumnIsOfItsAlgorithmInWhateverOrderTheyWereMeasu
   EXPECT_NE(reversed.find(first_row(page)), std::string::npos) << first_row(page) << " not in " << reversed;
 }
 
-TEST_F(PassivitySectionTest, TheTableHasEveryDeviceOnce) {
+TEST_F(PassivitySectionTest, CsvHasOneRowPerAlgorithmAndDevice) {
   const auto rows = sample_rows();
   write_passivity_csv(out_ / "stability.csv", rows);
   const std::string csv = bytes_of(out_ / "stability.csv");
@@ -86,7 +86,7 @@ TEST_F(PassivitySectionTest, TheTableHasEveryDeviceOnce) {
   EXPECT_NE(csv.find("point-shell,10,0.002,above,200,9,4\n"), std::string::npos) << csv;
 }
 
-TEST_F(PassivitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
+TEST_F(PassivitySectionTest, TextGivesTheRangeRelativeToTheRule) {
   const auto rows = sample_rows();
   const std::string page = html(passivity_section(rows, draw_passivity_figure(rows, out_)));
   EXPECT_NE(
@@ -98,7 +98,7 @@ TEST_F(PassivitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
   EXPECT_TRUE(bytes_of(out_ / "stability.svg").ends_with("</svg>\n\n"));
 }
 
-TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
+TEST_F(PassivitySectionTest, DescribesASingleAlgorithmThatIsNeverPassive) {
   std::vector<PassivityRow> rows = sample_rows();
   std::erase_if(rows, [](const PassivityRow& row) { return row.algorithm != "line-proxy"; });
   for (PassivityRow& row : rows) row.limit = {};
@@ -106,7 +106,7 @@ TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
   EXPECT_NE(page.find("1 line-proxy passive at no stiffness on 12 of 12 devices."), std::string::npos);
 }
 
-TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
+TEST_F(PassivitySectionTest, StudyReportHasItsFilesAndSectionsInOrder) {
   ReportExtras extras{.passivity = sample_rows()};
   auto runs = testing_support::sample_runs(500);
   for (Recording& run : runs) run.path = out_ / run.path;

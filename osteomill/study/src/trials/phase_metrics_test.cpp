@@ -26,7 +26,7 @@ Recording late_holding() {
   return recording;
 }
 
-TEST(PhaseMetrics, AHoldingIsMeasuredForAsLongAsItWasToLast) {
+TEST(PhaseMetrics, MeasuresOnlyThePlannedDurationOfAHolding) {
   const Recording holding = late_holding();
   EXPECT_EQ(phase_metrics(holding).steps, 2000u);
   EXPECT_DOUBLE_EQ(phase_metrics(holding).force_N.max, 1);
@@ -47,7 +47,7 @@ Recording steady_holding() {
   return recording;
 }
 
-TEST(PhaseMetrics, AHoldThatIsNoneIsNamed) {
+TEST(PhaseMetrics, ReportsWhyAHoldingWasNotReached) {
   EXPECT_EQ(measured_phase(steady_holding()).not_reached, "");
   Recording away = steady_holding();
   for (std::size_t n = 0; n < 1200; ++n) away.records[n + 100].wrench = {};
@@ -73,7 +73,7 @@ TEST(PhaseMetrics, AHoldThatIsNoneIsNamed) {
   EXPECT_EQ(measured_phase(wanders).not_reached, "the tool was lost");
 }
 
-TEST(PhaseMetrics, WhoLostContactIsNotMeasured) {
+TEST(PhaseMetrics, GivesNanIfContactWasLost) {
   Recording lost = late_holding();
   for (std::size_t n = 1900; n < lost.records.size(); ++n) lost.records[n].wrench = {};
   const RunMetrics m = phase_metrics(lost);

@@ -9,7 +9,7 @@
 namespace osteomill {
 namespace {
 
-TEST(Probe, TheDefaultAlgorithmsTorqueIsLeverTimesForceWhateverTheTool) {
+TEST(Probe, DefaultAlgorithmsTorqueIsLeverTimesForceForEveryTool) {
   for (const MillingTool& tool : {MillingTool{}, MillingTool{0.6, 0.4, 15}, MillingTool{3, 1.5, 40}}) {
     MillingSetup setup;
     setup.tool = tool;

@@ -56,7 +56,7 @@ TrialSettings settings_of(const RunDescription& run) {
   return settings;
 }
 
-TEST_F(RecordedTrialTest, EveryFieldOfHandDeviceScriptAndSessionIsRestored) {
+TEST_F(RecordedTrialTest, RestoresEveryFieldOfHandDeviceScriptAndSession) {
   TrialSettings settings;
   change<MillingSetup>(settings);
   change(settings.hand_and_device);
@@ -74,7 +74,7 @@ TEST_F(RecordedTrialTest, EveryFieldOfHandDeviceScriptAndSessionIsRestored) {
   EXPECT_EQ(session_settings(run, "a.h5").densities.surroundings, 0.5);
 }
 
-TEST_F(RecordedTrialTest, AnotherTremorIsOneOfTheSameHand) {
+TEST_F(RecordedTrialTest, OtherTremorsKeepTheStiffnessAndChangeThePath) {
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 0.5;
   const TrialPlan plan = with_seed(plan_of(settings), 5);
@@ -94,7 +94,7 @@ TEST_F(RecordedTrialTest, AnotherTremorIsOneOfTheSameHand) {
 }
 
 // The algorithms are exchanged in the first second, in which the force may jump.
-TEST_F(RecordedTrialTest, AHoldingInOneHoleCountsFromASecondAfterTheExchange) {
+TEST_F(RecordedTrialTest, ExcludesTheStartOfAHoldingAfterTheExchange) {
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 1.5;
   const TrialPlan plan = plan_of(settings);
@@ -104,7 +104,7 @@ TEST_F(RecordedTrialTest, AHoldingInOneHoleCountsFromASecondAfterTheExchange) {
 }
 
 // The hand is in the loop: any difference in it would change what is felt and milled.
-TEST_F(RecordedTrialTest, MillsAgainWhatWasRecorded) {
+TEST_F(RecordedTrialTest, RerunFromARecordingIsBitIdentical) {
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 1.5;
   settings.hand_and_device.hand.push_N = 2;

@@ -24,7 +24,7 @@ std::vector<double> with_negative_sum(std::size_t n, std::size_t sum) {
 
 // Largest sum that is significant at 5 %, two-sided: Wilcoxon and Wilcox (1964), table 2, as reprinted in
 // textbooks.
-TEST(SignedRank, CriticalValuesAreThoseOfTheTables) {
+TEST(SignedRank, MatchesTabulatedCriticalValues) {
   const struct {
     std::size_t n, critical;
   } known[] = {{6, 0},   {7, 2},   {8, 3},   {9, 5},   {10, 8},  {11, 10}, {12, 13},
@@ -37,7 +37,7 @@ TEST(SignedRank, CriticalValuesAreThoseOfTheTables) {
   }
 }
 
-TEST(SignedRank, KnownProbabilities) {
+TEST(SignedRank, MatchesKnownPValues) {
   // 2 * (number of subsets of 1..n with at most this sum) / 2^n, counted by hand.
   EXPECT_DOUBLE_EQ(signed_rank(with_negative_sum(5, 0)).p, 2.0 / 32);
   EXPECT_DOUBLE_EQ(signed_rank(with_negative_sum(5, 3)).p, 2.0 * 5 / 32);
@@ -53,7 +53,7 @@ TEST(SignedRank, KnownProbabilities) {
   EXPECT_DOUBLE_EQ(test.p, 0.0390625);
 }
 
-TEST(SignedRank, ZerosAreLeftOutAndTiesShareTheirRanks) {
+TEST(SignedRank, DropsZerosAndAveragesRanksOfTies) {
   EXPECT_EQ(signed_rank(std::vector<double>{0, 0}).p, 1);
   EXPECT_EQ(signed_rank({}).p, 1);
   const SignedRank test = signed_rank(std::vector<double>{0, 2, -2, 2, 2});
@@ -64,7 +64,7 @@ TEST(SignedRank, ZerosAreLeftOutAndTiesShareTheirRanks) {
   EXPECT_DOUBLE_EQ(test.p, 2.0 * 5 / 16);
 }
 
-TEST(SignedRank, AllOnOneSideGivesTheLeastP) {
+TEST(SignedRank, ReturnsMinPIfAllDifferencesArePositive) {
   for (const std::size_t n : {1u, 3u, 8u, 30u, 200u}) {
     EXPECT_DOUBLE_EQ(signed_rank(with_negative_sum(n, 0)).p, min_p(n)) << n;
   }
@@ -72,7 +72,7 @@ TEST(SignedRank, AllOnOneSideGivesTheLeastP) {
   EXPECT_EQ(min_p(0), 1);
 }
 
-TEST(SignedRank, TheLotsAreFairForManyPairs) {
+TEST(SignedRank, MatchesNormalApproximationForManyPairs) {
   const std::vector<double> half = with_negative_sum(100, 2525);
   EXPECT_NEAR(signed_rank(half).p, 1, 0.01);
   // The normal approximation: mean 2525, variance 100 * 101 * 201 / 24.
@@ -80,7 +80,7 @@ TEST(SignedRank, TheLotsAreFairForManyPairs) {
 }
 
 // Holm (1979); the example of R's p.adjust(c(0.01, 0.02, 0.03), "holm").
-TEST(Holm, StepsDown) {
+TEST(Holm, MatchesPAdjustOfRAndCapsAtOne) {
   EXPECT_EQ(holm_corrected(std::vector<double>{0.03, 0.01, 0.02}), (std::vector<double>{0.04, 0.03, 0.04}));
   EXPECT_EQ(holm_corrected(std::vector<double>{0.5, 0.6}), (std::vector<double>{1.0, 1.0}));
   EXPECT_TRUE(holm_corrected({}).empty());
@@ -99,7 +99,7 @@ std::vector<double> ranks(std::size_t n) {
 
 // Ranks of the limits and exact coverage, as in the textbooks' tables of distribution-free intervals for the
 // median.
-TEST(MedianInterval, RanksAreThoseOfTheBinomialTables) {
+TEST(MedianInterval, MatchesTabulatedRanksAndCoverage) {
   struct Known {
     std::size_t n;
     double low, high, coverage;
@@ -117,7 +117,7 @@ TEST(MedianInterval, RanksAreThoseOfTheBinomialTables) {
   }
 }
 
-TEST(MedianInterval, TooFewValuesGiveTheirRangeAndSaySo) {
+TEST(MedianInterval, ReturnsFlaggedRangeIfValuesAreTooFew) {
   for (const std::size_t n : {1u, 2u, 3u, 5u}) {
     const MedianInterval interval = median_interval(ranks(n));
     EXPECT_TRUE(interval.is_range) << n;
@@ -128,7 +128,7 @@ TEST(MedianInterval, TooFewValuesGiveTheirRangeAndSaySo) {
   EXPECT_EQ(median_interval({}).median, 0);
 }
 
-TEST(MedianInterval, ACoverageThatIsMetExactlyIsEnough) {
+TEST(MedianInterval, AcceptsExactlyTheRequestedCoverage) {
   // 1 - 2 / 2^3.
   EXPECT_FALSE(median_interval(ranks(3), 0.75).is_range);
   EXPECT_TRUE(median_interval(ranks(3), 0.7501).is_range);

@@ -53,7 +53,7 @@ void lose(MeasuredRun& row) {
   m.contact.lost_after_s = 3.2;
 }
 
-TEST(Conclusions, RankAlgorithmsByWhatTheHandsSettle) {
+TEST(Conclusions, RankAlgorithmsAndMarkUnsettledPairs) {
   const std::vector<MeasuredRun> rows = sample_rows(8);
   const Study study(rows);
   const std::vector<Table> tables = conclusions(study);
@@ -80,7 +80,7 @@ TEST(Conclusions, RankAlgorithmsByWhatTheHandsSettle) {
   EXPECT_TRUE(sample_size_warning(study).empty());
 }
 
-TEST(Conclusions, GiveTheSizeOfADifferenceAndIfAHandNoticesIt) {
+TEST(Conclusions, StateSizeOfDifferenceAndIfItIsPerceptible) {
   EXPECT_TRUE(force_row(sample_rows(8))
                   .starts_with("force above 20 Hz, rms (N)|0.104 [0.0909, 0.119]|1.04 [1.01, 1.08]|0.104 ["));
   expect_says(force_row(sample_rows(8)),
@@ -101,7 +101,7 @@ TEST(Conclusions, GiveTheSizeOfADifferenceAndIfAHandNoticesIt) {
   expect_says(answer_row(rows, "2 surface-points"), "%\n1st, same for\na hand as 1, 3|");
 }
 
-TEST(Conclusions, TorqueIsComparedPerTorque) {
+TEST(Conclusions, RankTorqueByShareOfItsMean) {
   // Its torque trembles half as much, because it is a tenth.
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows) {
@@ -116,7 +116,7 @@ TEST(Conclusions, TorqueIsComparedPerTorque) {
   EXPECT_NE(row.find("|50 %\n3rd|", milling + 1), std::string::npos) << "holding: " << row;
 }
 
-TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
+TEST(Conclusions, ConsiderOnlyAlgorithmsCompletedByMostHands) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows)
     if (r.algorithm == "line-proxy" && r.phase == kHolding && r.seed < 4) r.not_reached = "the shaft turned";
@@ -156,7 +156,7 @@ TEST(Conclusions, CountTheHandsThatDidAllOfTheTest) {
 }
 
 // Two more runs of the first hand, whose forces tremble by 0.01 and 0.03 N more.
-TEST(Conclusions, SayWhatTremorAloneGives) {
+TEST(Conclusions, ReportSpreadDueToTremorAlone) {
   for (const std::uint64_t seeds : {1u, 8u}) {
     std::vector<MeasuredRun> rows = sample_rows(seeds);
     for (const double more_N : {0.01, 0.03}) {
@@ -182,7 +182,7 @@ TEST(Conclusions, SayWhatTremorAloneGives) {
   EXPECT_EQ(force_row(sample_rows(8)).find("tremor"), std::string::npos);
 }
 
-TEST(Conclusions, ADifferenceBelowWhatTremorGivesIsMarked) {
+TEST(Conclusions, MarkDifferencesSmallerThanTremorEffect) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows) {
     const double more = r.algorithm == "surface-points" ? 1.5 : 1;
@@ -197,7 +197,7 @@ TEST(Conclusions, ADifferenceBelowWhatTremorGivesIsMarked) {
   expect_says(force_row(rows), "2 is 50 % more than 1, less than another tremor gives, p = 0.023");
 }
 
-TEST(Conclusions, HaveWhatWasProbed) {
+TEST(Conclusions, ShowProbeResultsAndDashesForUnprobedAlgorithms) {
   const std::map<std::string, Probe> probes{{"line-proxy", {2.5, 0.03}}, {"point-shell", {1, kNotMeasured}}};
   const Table table = conclusions(Study(sample_rows(1)), probes)[0];
   expect_says(row_of(table, "1 line-proxy"), "|3 %|2.5|");
@@ -205,7 +205,7 @@ TEST(Conclusions, HaveWhatWasProbed) {
   expect_says(row_of(table, "3 point-shell"), "|no force felt|1|");
 }
 
-TEST(Conclusions, WithTooFewHandsNothingIsClaimed) {
+TEST(Conclusions, ClaimNothingWithTooFewHands) {
   const Study one{sample_rows(1)};
   EXPECT_TRUE(sample_size_warning(one).starts_with(
       "Only one hand tried this, too few to say which algorithm is better: it takes 7 or more "));
@@ -217,7 +217,7 @@ TEST(Conclusions, WithTooFewHandsNothingIsClaimed) {
   EXPECT_EQ(force_row(sample_rows(6)).find(" times "), std::string::npos) << force_row(sample_rows(6));
 }
 
-TEST(Conclusions, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
+TEST(Conclusions, StateNumberOfHandsIfSomeLostContact) {
   for (const std::uint64_t lost : {3u, 4u}) {
     std::vector<MeasuredRun> rows = sample_rows(8);
     for (MeasuredRun& r : rows) {
@@ -236,7 +236,7 @@ TEST(Conclusions, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
   }
 }
 
-TEST(Conclusions, WhatMostHandsCouldNotMeasureIsNotCompared) {
+TEST(Conclusions, SkipFiguresThatMostHandsCouldNotMeasure) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows)
     if (r.phase == kMilling && r.algorithm != "point-shell") r.metrics.torque_Nmm.hp_share = kNotMeasured;
@@ -245,7 +245,7 @@ TEST(Conclusions, WhatMostHandsCouldNotMeasureIsNotCompared) {
   expect_says(take, "Not compared, because most hands felt too little of it: calm torque while milling.");
 }
 
-TEST(Conclusions, WhereNothingIsSignificantNobodyIsGreater) {
+TEST(Conclusions, ReportInsignificantDifferencesAsNotSettled) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   std::erase_if(rows, [](const MeasuredRun& r) { return r.algorithm == "surface-points"; });
   for (MeasuredRun& r : rows) {
@@ -254,7 +254,7 @@ TEST(Conclusions, WhereNothingIsSignificantNobodyIsGreater) {
   expect_says(force_row(rows), "|1 and 3: not settled, p = ");
 }
 
-TEST(Conclusions, WhatWasNotReachedIsSaidWithTheHandsInWhichItWasNot) {
+TEST(Conclusions, ListUnreachedGoalsWithTheirHandCounts) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows) {
     if (r.algorithm == "surface-points" && r.phase == kHolding && r.seed < 4)
@@ -267,7 +267,7 @@ TEST(Conclusions, WhatWasNotReachedIsSaidWithTheHandsInWhichItWasNot) {
               "(not all reached: 2 surface-points, holding)");
 }
 
-TEST(Conclusions, WhoLostContactIsNamedAndNeverCompared) {
+TEST(Conclusions, NameAndExcludeAlgorithmsThatLostContact) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows) {
     if (r.algorithm == "point-shell") lose(r);
@@ -278,7 +278,7 @@ TEST(Conclusions, WhoLostContactIsNamedAndNeverCompared) {
   EXPECT_EQ(text.find("nan"), std::string::npos) << text;
 }
 
-TEST(Conclusions, EachReasonIsSaidWithItsHands) {
+TEST(Conclusions, ListReasonsForMissingForceWithHandCounts) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   for (MeasuredRun& r : rows) {
     if (r.algorithm != "surface-points") continue;
@@ -301,7 +301,7 @@ TEST(Conclusions, EachReasonIsSaidWithItsHands) {
   EXPECT_EQ(section.find("0 of 0"), std::string::npos);
 }
 
-TEST(Conclusions, OneAlgorithmHasNothingToBeComparedWith) {
+TEST(Conclusions, CompareNothingIfThereIsOnlyOneAlgorithm) {
   std::vector<MeasuredRun> rows = sample_rows(8);
   std::erase_if(rows, [](const MeasuredRun& r) { return r.algorithm != "line-proxy"; });
   const Study study(rows);

@@ -15,7 +15,7 @@ StudyAxis axis(const std::string& key, const std::vector<std::string>& values) {
   return axis;
 }
 
-TEST(StudyDesign, AGridTriesEveryCombinationAndItsFirstAxisIsTheSlowest) {
+TEST(StudyDesign, GridCoversAllCombinationsWithFirstAxisSlowest) {
   const StudyDesign design(
       {{"seconds", "2"}}, {axis("algorithm", {"line-proxy", "barrier-shell"}), axis("push", {"1", "2", "4"})},
       {});
@@ -29,7 +29,7 @@ TEST(StudyDesign, AGridTriesEveryCombinationAndItsFirstAxisIsTheSlowest) {
   EXPECT_EQ(all.size(), 6u);
 }
 
-TEST(StudyDesign, ValuesOfSeveralOptionsStayTogether) {
+TEST(StudyDesign, AxisVariesSeveralOptionsTogether) {
   const StudyAxis tools{{{"burr-radius", "1"}, {"shaft-radius", "0.5"}}, {{"burr-radius", "2"}}};
   const StudyDesign design({{"shaft-radius", "0.9"}}, {tools}, {});
   EXPECT_EQ(design.varied(), (std::vector<std::string>{"burr-radius", "shaft-radius"}));
@@ -39,7 +39,7 @@ TEST(StudyDesign, ValuesOfSeveralOptionsStayTogether) {
 }
 
 // Each part of each range is in exactly one trial, in whatever order trials are requested.
-TEST(StudyDesign, ALatinHypercubeTriesEachPartOfEachRangeOnce) {
+TEST(StudyDesign, LatinHypercubeSamplesEachStratumOnce) {
   constexpr std::size_t kTrials = 50;
   const LatinHypercube hypercube{kTrials,
                                  7,
@@ -66,7 +66,7 @@ TEST(StudyDesign, ALatinHypercubeTriesEachPartOfEachRangeOnce) {
   EXPECT_NE(*find_value(StudyDesign({}, {}, other).trial(0), "push"), *find_value(design.trial(0), "push"));
 }
 
-TEST(StudyDesign, WhatHasNoTrialsOrTooManyIsRefused) {
+TEST(StudyDesign, RefusesNoTrialsTooManyTrialsAndRepeatedOptions) {
   EXPECT_THROW(StudyDesign({}, {axis("push", {})}, {}), std::invalid_argument);
   EXPECT_THROW(StudyDesign({}, {}, {0, 1, {{"push", {0, 1, false}, {}}}}), std::invalid_argument);
   const StudyAxis thousand(1001, {{"push", "1"}});
@@ -75,7 +75,7 @@ TEST(StudyDesign, WhatHasNoTrialsOrTooManyIsRefused) {
   EXPECT_THROW(steps_of({0, 1, false}, 0), std::invalid_argument);
 }
 
-TEST(StudyDesign, StepsEndWhereTheRangeDoes) {
+TEST(StudyDesign, StepsSpanTheRangeExactly) {
   EXPECT_EQ(steps_of({1, 3, false}, 3), (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(steps_of({2, 3, false}, 1), (std::vector<double>{2}));
   const std::vector<double> seeds = steps_of({1, 10000, false}, 10000);
@@ -87,7 +87,7 @@ TEST(StudyDesign, StepsEndWhereTheRangeDoes) {
   EXPECT_EQ(decades.back(), 100);
 }
 
-TEST(StudyDesign, ATrialWithoutASeedHasTheFirst) {
+TEST(StudyDesign, SeedDefaultsToOne) {
   EXPECT_EQ(seed_of({{"seed", "13"}}), 13u);
   EXPECT_EQ(seed_of({}), 1u);
 }

@@ -66,7 +66,7 @@ std::vector<std::string> captions_of(const std::string& page) {
   return captions;
 }
 
-TEST(StudyReport, CountsAndHatchesTrialsThatDidNotDoTheirTest) {
+TEST(StudyReport, CountsAndHatchesUnreachedTrials) {
   const TemporaryFolder folder;
   const StudyFolder study = sample_study(folder, 2);
   const std::string page = text_of(write_study_report(sample_design(), study));
@@ -81,7 +81,7 @@ TEST(StudyReport, CountsAndHatchesTrialsThatDidNotDoTheirTest) {
   EXPECT_EQ(count(text_of(figures / "map_2.svg"), "url(#gpPat"), 2u) << "a measured cell and a grey one";
 }
 
-TEST(StudyReport, LeavesOutTrialsThatDidNotDoTheirTest) {
+TEST(StudyReport, DropsUnreachedTrialsAndRefusesIfNoneRemain) {
   const TemporaryFolder folder;
   const StudyFolder study = sample_study(folder, 2);
   const std::string page = text_of(write_study_report(sample_design(), study, Unreached::dropped));
@@ -96,7 +96,7 @@ TEST(StudyReport, LeavesOutTrialsThatDidNotDoTheirTest) {
   EXPECT_THROW(write_study_report(sample_design(), none, Unreached::dropped), InputError);
 }
 
-TEST(StudyReport, SaysNothingOfUnreachedTrialsIfThereAreNone) {
+TEST(StudyReport, OmitsNoteIfNoTrialIsUnreached) {
   const TemporaryFolder folder;
   const std::string page = text_of(write_study_report(sample_design(), sample_study(folder, 0)));
   EXPECT_EQ(page.find("did not do all of their test"), std::string::npos);

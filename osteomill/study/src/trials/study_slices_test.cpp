@@ -69,14 +69,14 @@ void damage(const fs::path& path) {
   write_bytes(path, bytes);
 }
 
-TEST(StudySlices, TheLastHasWhatIsLeft) {
+TEST(StudySlices, LastSliceHoldsTheRemainingTrials) {
   const StudyRecord record = sample_record();
   EXPECT_EQ(record.slices(), 3u);
   EXPECT_EQ(record.size_of(1), 2u);
   EXPECT_EQ(record.size_of(2), 1u);
 }
 
-TEST(StudySlices, RowsComeBackAsTheyWere) {
+TEST(StudySlices, RowsRoundTripUnchanged) {
   const TemporaryFolder folder;
   const StudyFolder study{folder.path(), sample_record()};
   const Slice slice = sample_slice(study.record, 1);
@@ -98,7 +98,7 @@ TEST(StudySlices, RowsComeBackAsTheyWere) {
   }
 }
 
-TEST(StudySlices, WhatAnotherProgramHoldsIsNeitherDoneNorMissing) {
+TEST(StudySlices, LockedSliceIsNeitherDoneNorMissing) {
   const TemporaryFolder folder;
   const StudyFolder study{folder.path(), sample_record()};
   for (std::size_t n = 0; n < 3; ++n) write_slice(study, sample_slice(study.record, n));
@@ -112,7 +112,7 @@ TEST(StudySlices, WhatAnotherProgramHoldsIsNeitherDoneNorMissing) {
   EXPECT_THROW(read_slice(study, 1), InputError);
 }
 
-TEST(StudySlices, WhatIsCutShortDamagedOrOfAnotherStudyIsMissing) {
+TEST(StudySlices, TruncatedDamagedOrForeignSlicesAreMissing) {
   const TemporaryFolder folder;
   const StudyFolder study{folder.path(), sample_record()};
   for (std::size_t n = 0; n < 3; ++n) write_slice(study, sample_slice(study.record, n));
@@ -134,7 +134,7 @@ TEST(StudySlices, WhatIsCutShortDamagedOrOfAnotherStudyIsMissing) {
   EXPECT_FALSE(read_slice(study, 1));
 }
 
-TEST(StudySlices, ARecordComesBackAndNoneIsNone) {
+TEST(StudySlices, RecordRoundTripsAndInvalidRecordIsRefused) {
   const TemporaryFolder folder;
   EXPECT_FALSE(read_study_record(folder.path()));
   write_study_record(folder.path(), sample_record());
@@ -171,7 +171,7 @@ void expect_end(const std::function<void()>& read) {
 }
 
 // HDF5 itself follows an invalid address and crashes the program.
-TEST(StudySlices, NoDamagedByteEndsTheProgram) {
+TEST(StudySlices, CorruptFilesDoNotCrashTheProgram) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "HDF5 reads beyond its memory in the child, and loses some when it refuses";
 #endif
@@ -226,7 +226,7 @@ TEST(StudySlices, NothingIsReadFromAnotherFile) {
   }));
 }
 
-TEST(StudySlices, APipeIsNotWaitedFor) {
+TEST(StudySlices, RejectsPipesWithoutBlocking) {
   const TemporaryFolder folder;
   const StudyFolder study{folder.path(), sample_record()};
   ASSERT_EQ(::mkfifo(slice_path(folder.path(), 0).c_str(), 0600), 0);
@@ -240,7 +240,7 @@ bool same_number(double a, double b) {
 }
 
 // Compares each figure of a trial, from the slice's file and from recordings of the same trial.
-TEST(StudySlices, ARowEqualsTheRowMeasuredFromItsRecording) {
+TEST(StudySlices, RowEqualsRowMeasuredFromRecording) {
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 5));
   TrialSettings settings;

@@ -26,7 +26,7 @@ RunFigure force_hp() {
   return metric("force_hp_rms_N").get;
 }
 
-TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
+TEST(Study, OrdersRowsBySeedAsGivenThenAsInSummary) {
   std::vector<MeasuredRun> rows = sample_rows(2);
   for (MeasuredRun& r : rows) r.seed = r.seed == 1 ? 7 : 3;
   const Study study(rows);
@@ -41,7 +41,7 @@ TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
   EXPECT_EQ(study.algorithms().size(), 3u);
 }
 
-TEST(Study, SeedsThatWereNotTriedAlikeAreRefused) {
+TEST(Study, RefusesSeedsWithMissingOrDuplicateRuns) {
   EXPECT_THROW(Study({}), std::invalid_argument);
   for (const std::size_t missing : {0u, 5u, 6u, 11u, 17u}) {
     std::vector<MeasuredRun> rows = sample_rows(3);
@@ -57,7 +57,7 @@ TEST(Study, SeedsThatWereNotTriedAlikeAreRefused) {
   EXPECT_THROW(Study{all_twice}, std::invalid_argument);
 }
 
-TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
+TEST(Study, ConsistentDifferenceIsSignificantFromSevenHands) {
   for (const std::uint64_t seeds : {6u, 7u}) {
     const Study study(sample_rows(seeds));
     const auto pairs = compare_algorithms(study, kMilling, metric("force_hp_rms_N"));
@@ -73,7 +73,7 @@ TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
   }
 }
 
-TEST(Study, FindingsAreCountedHandByHand) {
+TEST(Study, CountsHandsThatAgreeWithEachFinding) {
   std::vector<MeasuredRun> rows = sample_rows(5);
   for (MeasuredRun& r : rows) {
     // Only seed 4 does not buzz, and 1 turns least in three of the five.
@@ -100,7 +100,7 @@ TEST(Study, FindingsAreCountedHandByHand) {
   EXPECT_EQ(check_study_findings(Study(sample_rows(5, 0.1)))[1].verdict, Verdict::does_not_agree);
 }
 
-TEST(Study, FewerThanFiveHandsSettleNoFinding) {
+TEST(Study, LeavesFindingsUnsettledWithFewerThanFiveHands) {
   for (const std::uint64_t seeds : {1u, 4u, 5u}) {
     const auto findings = check_study_findings(Study(sample_rows(seeds)));
     EXPECT_EQ(findings[1].agreeing, seeds);
@@ -109,7 +109,7 @@ TEST(Study, FewerThanFiveHandsSettleNoFinding) {
 }
 
 // Hands of 2 in other grips are not rows of the study, and decide one finding.
-TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
+TEST(Study, UsesOtherGripsOnlyForTheGripFinding) {
   std::vector<MeasuredRun> rows = sample_rows(3);
   const std::size_t all = rows.size();
   EXPECT_EQ(check_study_findings(Study(rows))[2].of_medians.verdict, Verdict::not_recorded);
@@ -130,7 +130,7 @@ TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
   EXPECT_EQ(finding.tested, 3u);
 }
 
-TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
+TEST(Study, HandsSectionStatesSmallestAttainableP) {
   const std::string three = html(hands_section(Study(sample_rows(3)), {}));
   EXPECT_NE(three.find("3 hands can give is 0.25, after the correction 0.75, so that no difference"),
             std::string::npos);
@@ -144,7 +144,7 @@ TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
   EXPECT_EQ(ten.find("bone removed"), std::string::npos);
 }
 
-TEST(Study, AsManySeedsAreNeededAsCanShowADifference) {
+TEST(Study, SeedsNeededGrowWithTheNumberOfPairs) {
   std::vector<MeasuredRun> rows = sample_rows(1);
   EXPECT_EQ(Study(rows).seeds_needed(), 7u) << "three pairs, 3 * 2^-6 <= 0.05";
   for (const MeasuredRun& r : sample_rows(1)) {
@@ -156,7 +156,7 @@ TEST(Study, AsManySeedsAreNeededAsCanShowADifference) {
   EXPECT_EQ(Study(rows).seeds_needed(), 8u) << "six pairs";
 }
 
-TEST(Study, WhatWasNotReachedIsALineForEachAlgorithm) {
+TEST(Study, ReportsUnreachedGoalsInOneLinePerAlgorithm) {
   std::vector<MeasuredRun> rows = sample_rows(3);
   EXPECT_TRUE(unreached_lines(Study(rows)).empty());
   for (MeasuredRun& r : rows) {
@@ -183,7 +183,7 @@ TEST(Study, WhatWasNotReachedIsALineForEachAlgorithm) {
                                       "more than 3 degrees"}));
 }
 
-TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
+TEST(Study, CsvHasOneRowPerPhaseOfEachTrial) {
   const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "osteomill_study.csv";
   write_study_csv(path, Study(sample_rows(2)));
   std::ifstream in(path);
@@ -197,7 +197,7 @@ TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
 }
 
 // A report of the first seed's recordings finds the other hands, grips and tremors in the table.
-TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
+TEST(Study, CsvRestoresStudyIfItMatchesRecordedRuns) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "study.csv";
   std::vector<MeasuredRun> rows = sample_rows(2);

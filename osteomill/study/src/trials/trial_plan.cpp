@@ -50,7 +50,7 @@ std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettin
                             std::string_view phase) {
   std::vector<std::string> parts;
   if (shortfall.shallow)
-    parts.push_back(fmt::format("the hole stayed shallower than {:g} mm", script.depth_mm));
+    parts.push_back(fmt::format("the hole was shallower than {:g} mm when feeding ended", script.depth_mm));
   if (shortfall.hardly_leant) {
     parts.push_back(fmt::format("the shaft leant on the bone for less than {:g} s",
                                 script.leant_share * script.milling_s));

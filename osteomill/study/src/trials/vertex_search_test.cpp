@@ -19,7 +19,7 @@ const VertexSearchRow& row_of(const std::string& part, int vertices) {
                        [&](const auto& row) { return row.part == part && row.vertices == vertices; });
 }
 
-TEST(VertexSearch, AGapBetweenVerticesGoesInAsDeepAsItIsWide) {
+TEST(VertexSearch, UnseenDepthMatchesGapBetweenVertices) {
   // Half the angle between two vertices of a circle, and the angle from a face of the octahedron to its
   // vertices.
   EXPECT_NEAR(row_of("circle", 8).unseen_worst, 1 - std::cos(std::numbers::pi / 8), 0.006);
@@ -28,7 +28,7 @@ TEST(VertexSearch, AGapBetweenVerticesGoesInAsDeepAsItIsWide) {
 }
 
 // On the circle, the springs of vertices at the angles a from the wall's normal add up to these sums.
-TEST(VertexSearch, TheForceIsTheOneThatTheEquationsGive) {
+TEST(VertexSearch, ForceDirectionErrorMatchesAnalyticSum) {
   double worst_deg = 0;
   for (int side = 0; side < 1000; ++side) {
     double along = 0, across = 0;
@@ -44,7 +44,7 @@ TEST(VertexSearch, TheForceIsTheOneThatTheEquationsGive) {
   EXPECT_NEAR(row_of("circle", 8).direction_deg_worst, worst_deg, 0.2);
 }
 
-TEST(VertexSearch, MoreVerticesErrLess) {
+TEST(VertexSearch, ErrorsShrinkWithMoreVertices) {
   for (const auto& [part, few, many] : {std::tuple{"sphere", 6, 96}, std::tuple{"circle", 3, 32}}) {
     const VertexSearchRow& coarse = row_of(part, few);
     const VertexSearchRow& fine = row_of(part, many);
@@ -56,7 +56,7 @@ TEST(VertexSearch, MoreVerticesErrLess) {
   }
 }
 
-TEST(VertexSearch, TheLeastIsTheOneFromWhichOnAllSuffice) {
+TEST(VertexSearch, LeastVerticesIsSmallestCountFromWhichAllSuffice) {
   std::vector<VertexSearchRow> rows;
   for (const auto& [part, vertices, suffices] : {std::tuple{"sphere", 6, true},
                                                  {"sphere", 8, false},

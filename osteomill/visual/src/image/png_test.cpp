@@ -30,7 +30,7 @@ Image decoded(const std::vector<unsigned char>& bytes) {
   return image;
 }
 
-TEST(Png, ComesBackAsItWent) {
+TEST(Png, EncodesImageThatLibpngDecodesUnchanged) {
   const Image image = colourful_image();
   const Image back = decoded(encode_png(image));
   EXPECT_EQ(back.width, image.width);
@@ -38,14 +38,14 @@ TEST(Png, ComesBackAsItWent) {
   EXPECT_EQ(back.rgb, image.rgb);
 }
 
-TEST(Png, IsReadAsItIs) {
+TEST(Png, RoundTripKeepsPixels) {
   const auto back = decode_png(encode_png(colourful_image()));
   ASSERT_TRUE(back);
   EXPECT_EQ(back->width, 37);
   EXPECT_EQ(back->rgb, colourful_image().rgb);
 }
 
-TEST(Png, WhatIsNoWholePngOfSensibleSizeGivesNothing) {
+TEST(Png, RejectsInvalidTruncatedOrHugeData) {
   const std::vector<unsigned char> png = encode_png(colourful_image());
   EXPECT_FALSE(decode_png({}));
   EXPECT_FALSE(decode_png(std::vector<unsigned char>{1, 2, 3}));
@@ -57,7 +57,7 @@ TEST(Png, WhatIsNoWholePngOfSensibleSizeGivesNothing) {
   EXPECT_FALSE(decode_png(huge));
 }
 
-TEST(Png, IsWrittenToAFileByteForByte) {
+TEST(Png, WritesEncodedBytesToFile) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "osteomill_png_test.png";
   write_png(path, colourful_image());
   std::ifstream file(path, std::ios::binary);

@@ -51,13 +51,13 @@ std::vector<float> computed(const SpindleState& state, std::size_t piece = 500) 
   return samples;
 }
 
-TEST(SpindleSound, ItsPitchIsTheSpindlesSpeed) {
+TEST(SpindleSound, PitchEqualsRevolutionsPerSecond) {
   for (const double speed_rpm : {15000.0, 40000.0, 60000.0}) {
     EXPECT_NEAR(strongest_hz(computed({speed_rpm, 0})), speed_rpm / 60, 4);
   }
 }
 
-TEST(SpindleSound, UnderLoadItIsLouderAndASaggingSpindleSoundsLower) {
+TEST(SpindleSound, IsLouderUnderLoadAndLowerAtLowerSpeed) {
   const auto idle = computed({40000, 0});
   const auto loaded = computed({38000, 1});
   EXPECT_NEAR(strongest_hz(idle) - strongest_hz(loaded), 2000.0 / 60, 6);
@@ -84,24 +84,24 @@ double classification_accuracy(const SpindleState& a, const SpindleState& b) {
   return testing_support::classification_accuracy(learnt, tried);
 }
 
-TEST(SpindleSound, TellsEnamelFromDentineAndThroughFromNotYet) {
+TEST(SpindleSound, DistinguishesEnamelDentineAndBreakthrough) {
   EXPECT_GE(classification_accuracy({40000, 0.5, 1.0}, {40000, 0.5, 1.9}), 0.9);
   EXPECT_GE(classification_accuracy({40000, 0.5, 1.0}, {40000, 0.02, 0.2}), 0.9);
   // Sounds of the same kind must not be distinguishable.
   EXPECT_LE(classification_accuracy({40000, 0.5, 1.0}, {40000, 0.5, 1.0}), 0.7);
 }
 
-TEST(SpindleSound, ADiamondHissesMoreThanACuttingBurr) {
+TEST(SpindleSound, DiamondBurrHissesMoreThanCuttingBurr) {
   const double cutting = brightness(computed({40000, 0.5, 1, false}), 40000.0 / 60);
   EXPECT_GT(brightness(computed({40000, 0.5, 1, true}), 40000.0 / 60), cutting + 0.3);
 }
 
-TEST(SpindleSound, OffIsSilentAndNothingClips) {
+TEST(SpindleSound, IsSilentWhenOffAndNeverClips) {
   EXPECT_LT(rms(computed({0, 1})), 1e-6);
   for (const float sample : computed({120000, 1})) ASSERT_LT(std::abs(sample), 1.0f);
 }
 
-TEST(SpindleSound, DoesNotDependOnHowItIsCutIntoPieces) {
+TEST(SpindleSound, IsIdenticalForAnyBlockSize) {
   EXPECT_EQ(computed({30000, 0.4}, 500), computed({30000, 0.4}, 77));
 }
 
@@ -119,7 +119,7 @@ std::vector<double> beats_of(const BeatState& state, int seconds) {
   return begins_s;
 }
 
-TEST(DistanceBeat, QuickensBelowTheWarningAndHasAPitchForEachStructure) {
+TEST(DistanceBeat, QuickensWithProximityAndHasPitchPerStructure) {
   EXPECT_EQ(beats_of(distance_beat(3.1, 3, 0), 2).size(), 0u);
   EXPECT_EQ(beats_of(distance_beat(std::nan(""), 3, 0), 2).size(), 0u);
   const auto slow = beats_of(distance_beat(2.99, 3, 0), 4), quick = beats_of(distance_beat(0.3, 3, 0), 4);
@@ -158,7 +158,7 @@ std::vector<float> through_openal(const SpindleState& state) {
   return heard;
 }
 
-TEST(SoundStream, PitchFollowsSpeedAllTheWayThroughOpenAl) {
+TEST(SoundStream, PitchFollowsSpeedThroughOpenAl) {
   for (const double speed_rpm : {20000.0, 50000.0}) {
     const auto heard = through_openal({speed_rpm, 0.1});
     EXPECT_NEAR(strongest_hz(heard), SpindleSound::pitch_hz({speed_rpm, 0.1}), 5);
@@ -167,7 +167,7 @@ TEST(SoundStream, PitchFollowsSpeedAllTheWayThroughOpenAl) {
   EXPECT_LT(rms(through_openal({0, 0})), 1e-5);
 }
 
-TEST(SoundPlayer, WithoutADeviceNothingIsWrong) {
+TEST(SoundPlayer, DoesNotThrowWithoutAudioDevice) {
   SoundPlayer player;
   EXPECT_NO_THROW(player.set({40000, 0.5}));
 }

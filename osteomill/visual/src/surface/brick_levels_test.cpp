@@ -78,14 +78,14 @@ TEST_F(BrickLevelsTest, LevelZeroIsTheMesh) {
   }
 }
 
-TEST_F(BrickLevelsTest, EachLevelHasAFractionOfTheTriangles) {
+TEST_F(BrickLevelsTest, CoarseLevelsHaveLessThanHalfTheTriangles) {
   EXPECT_LT(triangles(1), triangles(0) / 2);
   EXPECT_LT(triangles(2), triangles(0) / 3);
   EXPECT_LT(triangles(3), triangles(2));
 }
 
 // Each brick at a different level.
-TEST_F(BrickLevelsTest, BricksOfAnyLevelsMeetWithoutAGap) {
+TEST_F(BrickLevelsTest, BricksOfDifferentLevelsMeetWithoutGaps) {
   Balance balance;
   for (std::size_t n = 0; n < levels_.size(); ++n)
     add(balance, n, levels_[n].levels[(n * 7 + n / 5) % BrickLevels::kCount], 3);
@@ -93,7 +93,7 @@ TEST_F(BrickLevelsTest, BricksOfAnyLevelsMeetWithoutAGap) {
 }
 
 // The rim of a plate must not shrink between brick borders.
-TEST(BrickLevels, SharpEdgesStayWhereTheyAre) {
+TEST(BrickLevels, CoarsestLevelKeepsSharpEdgesInPlace) {
   constexpr double kHalf_mm = 7.3, kVoxel_mm = 0.3;
   const Volume plate = shape_volume(centred_cube(60, kVoxel_mm), [&](const Vec3& p) {
     return std::max(p.head<2>().cwiseAbs().maxCoeff() - kHalf_mm, std::abs(p.z()) - 0.6);
@@ -118,7 +118,7 @@ TEST(BrickLevels, SharpEdgesStayWhereTheyAre) {
 }
 
 // The drawn surface stays within a cell's diagonal of the true one.
-TEST_F(BrickLevelsTest, NoLevelLeavesTheSurface) {
+TEST_F(BrickLevelsTest, CoarseLevelsStayWithinACellDiagonalOfTheMesh) {
   for (std::size_t level = 1; level < BrickLevels::kCount; ++level) {
     const double reach_mm = std::sqrt(3.0) * static_cast<double>(1 << level) * 0.3;
     for (std::size_t n = 0; n < levels_.size(); ++n) {

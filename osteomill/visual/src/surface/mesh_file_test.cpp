@@ -87,7 +87,7 @@ TEST(MeshFile, PlyHoldsVerticesNormalsDensitiesAndTriangles) {
   EXPECT_EQ(read, mesh);
 }
 
-TEST(MeshFile, ObjReadsBackToTheSameNumbers) {
+TEST(MeshFile, ObjReadsBackExactly) {
   const BrickMesh mesh = far_ball();
   std::istringstream in(written(mesh, "a.obj"));
   BrickMesh read;
@@ -154,7 +154,7 @@ TEST(MeshFile, PlyHoldsColourAndValueOfTheLabelUnderEachVertex) {
   EXPECT_EQ(bytes.size(), at + 13 * mesh.triangle_count());
 }
 
-TEST(MeshFile, ObjHoldsTheLabelsColourBehindEachPlace) {
+TEST(MeshFile, ObjHoldsLabelColourOfEachVertex) {
   const auto& [grid, mesh, labels] = HalfLabelled();
   std::istringstream in(written(mesh, "b.obj", &labels));
   std::string line;
@@ -171,14 +171,14 @@ TEST(MeshFile, ObjHoldsTheLabelsColourBehindEachPlace) {
 }
 
 // Programs that merge vertices by position, as all STL readers do, get the same closed surface.
-TEST(MeshFile, FarFromTheOriginNoTwoVerticesFallTogether) {
+TEST(MeshFile, VerticesFarFromOriginStayDistinct) {
   const BrickMesh mesh = far_ball();
   std::map<std::array<float, 3>, int> positions;
   for (const MeshVertex& vertex : mesh.vertices) ++positions[vertex.position_mm];
   EXPECT_EQ(positions.size(), mesh.vertices.size());
 }
 
-TEST(MeshFile, RefusesWhatItCannotWrite) {
+TEST(MeshFile, RefusesUnknownFormatsAndUnwritablePaths) {
   const BrickMesh mesh = far_ball();
   EXPECT_THROW(write_mesh("a.vtk", mesh), InputError);
   EXPECT_THROW(write_mesh("stl", mesh), InputError);

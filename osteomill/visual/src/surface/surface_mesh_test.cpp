@@ -73,7 +73,7 @@ void expect_volume_of_densities(const Volume& volume) {
   EXPECT_NEAR(enclosed_volume_mm3(checked_mesh(volume)), expected, 0.005 * expected);
 }
 
-TEST(SurfaceMesh, OfABallIsAClosedSphereOfItsSize) {
+TEST(SurfaceMesh, MeshOfBallIsClosedAndHasItsVolume) {
   const Volume volume = shape_volume(centred_cube(61, 0.25), ball({0.1, -0.2, 0.05}, 6.0));
   const BrickMesh mesh = checked_mesh(volume);
   EXPECT_EQ(euler_characteristic(mesh), 2);
@@ -87,7 +87,7 @@ TEST(SurfaceMesh, OfABallIsAClosedSphereOfItsSize) {
   }
 }
 
-TEST(SurfaceMesh, OfAHollowBallHasTwoSpheres) {
+TEST(SurfaceMesh, MeshOfHollowBallHasTwoSpheres) {
   const auto outer = ball(Vec3::Zero(), 5.0);
   const auto inner = ball(Vec3::Zero(), 3.0);
   const Volume volume =
@@ -109,7 +109,7 @@ TEST(SurfaceMesh, IsClosedWhereBoneTouchesTheBorder) {
   EXPECT_NEAR(enclosed_volume_mm3(mesh), eighth + sides, 0.02 * eighth);
 }
 
-TEST(SurfaceMesh, OfEveryCubeIsClosed) {
+TEST(SurfaceMesh, IsClosedForAll256CubeCases) {
   for (unsigned bone = 0; bone < 256; ++bone) {
     std::vector<float> densities(8);
     for (std::size_t corner = 0; corner < 8; ++corner) densities[corner] = bone >> corner & 1 ? 10.0f : 0.0f;
@@ -121,12 +121,12 @@ TEST(SurfaceMesh, OfEveryCubeIsClosed) {
 }
 
 // Random bone across brick borders, which includes every ambiguous face.
-TEST(SurfaceMesh, OfNoiseIsClosed) {
+TEST(SurfaceMesh, IsClosedForRandomBone) {
   for (unsigned seed = 0; seed < 6; ++seed) checked_mesh(random_volume({37, 19, 34}, seed));
 }
 
 // Many densities equal the isovalue.
-TEST(SurfaceMesh, OfFewValuesIsClosedAndHasNoEmptyTriangle) {
+TEST(SurfaceMesh, IsClosedAndNotDegenerateIfDensitiesEqualIsovalue) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     const BrickMesh mesh = checked_mesh(random_volume({20, 35, 18}, seed, 4));
     EXPECT_GT(testing_support::min_area_mm2(mesh), 1e-7);
@@ -134,13 +134,13 @@ TEST(SurfaceMesh, OfFewValuesIsClosedAndHasNoEmptyTriangle) {
 }
 
 // Two bone voxels across a face's diagonal are separate pieces, whatever their surroundings.
-TEST(SurfaceMesh, PartsBoneThatMeetsAcrossADiagonal) {
+TEST(SurfaceMesh, SeparatesBoneVoxelsTouchingAcrossAFaceDiagonal) {
   std::vector<float> densities(4 * 4 * 4, 0);
   densities[1 + 4 * (1 + 4 * 1)] = densities[2 + 4 * (2 + 4 * 1)] = 1;
   EXPECT_EQ(euler_characteristic(checked_mesh(volume_of({4, 4, 4}, densities, 0.5))), 4);
 }
 
-TEST(SurfaceMesh, OfOneVoxelIsAnOctahedron) {
+TEST(SurfaceMesh, MeshOfOneVoxelIsAnOctahedron) {
   std::vector<float> densities(27, 0);
   densities[13] = 100;
   const BrickMesh mesh = checked_mesh(volume_of({3, 3, 3}, densities, 50));
@@ -151,14 +151,14 @@ TEST(SurfaceMesh, OfOneVoxelIsAnOctahedron) {
   EXPECT_EQ(alone.triangle_count(), 8u);
 }
 
-TEST(SurfaceMesh, OfNothingIsEmptyAndOfNothingButBoneAClosedBox) {
+TEST(SurfaceMesh, IsEmptyWithoutBoneAndClosedBoxIfAllBone) {
   EXPECT_TRUE(checked_mesh(volume_of({20, 17, 3}, std::vector<float>(20 * 17 * 3, 5), 5)).empty());
   const BrickMesh box = checked_mesh(volume_of({20, 17, 3}, std::vector<float>(20 * 17 * 3, 6), 5));
   EXPECT_EQ(euler_characteristic(box), 2);
   EXPECT_GE(enclosed_volume_mm3(box), 19 * 16 * 2);
 }
 
-TEST(SurfaceMesh, IsFiniteForEveryFiniteDensity) {
+TEST(SurfaceMesh, IsFiniteForExtremeDensities) {
   const float max = std::numeric_limits<float>::max();
   std::mt19937 random(3);
   std::vector<float> densities(12 * 12 * 12);
@@ -166,7 +166,7 @@ TEST(SurfaceMesh, IsFiniteForEveryFiniteDensity) {
   for (const double isovalue : {1.0, 3e38, -3e38}) checked_mesh(volume_of({12, 12, 12}, densities, isovalue));
 }
 
-TEST(SurfaceMesh, IsWoundOutwardsInEveryFrame) {
+TEST(SurfaceMesh, WindsOutwardsInRotatedAndMirroredFrames) {
   for (const bool mirrored : {false, true}) {
     GridGeometry geometry = centred_cube(30, 0.5);
     geometry.spacing_mm = {0.5, 0.4, 0.7};
@@ -182,7 +182,7 @@ TEST(SurfaceMesh, IsWoundOutwardsInEveryFrame) {
 }
 
 // A bone stored with flipped or exchanged axes has the same vertices.
-TEST(SurfaceMesh, DoesNotDependOnHowTheGridIsStored) {
+TEST(SurfaceMesh, DoesNotDependOnAxisOrderOrFlips) {
   const Volume volume = random_volume({17, 18, 19}, 7, 1000);
   GridGeometry stored;
   stored.dims = {19, 17, 18};
@@ -214,7 +214,7 @@ TEST(SurfaceMesh, DoesNotDependOnHowTheGridIsStored) {
   EXPECT_LT(different.size(), mesh.vertices.size() / 500);  // rounding differences
 }
 
-TEST(SurfaceMesh, OfABrickIsTheSameWhateverWasMeshedBefore) {
+TEST(SurfaceMesh, BrickMeshedAloneEqualsBrickOfWholeSurface) {
   const Volume volume = random_volume({70, 40, 50}, 1);
   const SurfaceMesh in_turn = mesh_surface(DensityView(volume));
   for (std::size_t brick = 0; brick < in_turn.bricks.size(); ++brick) {
@@ -222,7 +222,7 @@ TEST(SurfaceMesh, OfABrickIsTheSameWhateverWasMeshedBefore) {
   }
 }
 
-TEST(SurfaceMesh, CarriesTheDensityOfTheBoneUnderIt) {
+TEST(SurfaceMesh, VerticesCarryDensityOfUnderlyingBone) {
   const Volume volume = shape_volume(centred_cube(40, 0.25), ball(Vec3::Zero(), 3.0), 1.0);
   for (const MeshVertex& vertex : mesh_in_one_piece(DensityView(volume)).vertices) {
     EXPECT_GT(vertex.density, 500.0f);
@@ -255,7 +255,7 @@ AngleErrors angle_errors(const Volume& volume, const Outward& outward) {
 
 // Central differences are off by 8.1 degrees (rms) and at most 15 if the edge is one voxel wide, by 1.8 and
 // 5.2 if it is two; this is visible as terraces.
-TEST(SurfaceMesh, NormalsOfABallAreThoseOfItsSphereForEveryVoxelSizeAndEdge) {
+TEST(SurfaceMesh, BallNormalsMatchSphereAtAnyVoxelSizeAndEdgeWidth) {
   for (const double voxel_mm : {0.03, 0.25, 1.0}) {
     for (const double edge_voxels : {1.0, 2.0, 4.0}) {
       const Vec3 centre = voxel_mm * Vec3(0.4, -0.3, 0.2);
@@ -270,7 +270,7 @@ TEST(SurfaceMesh, NormalsOfABallAreThoseOfItsSphereForEveryVoxelSizeAndEdge) {
 }
 
 // Central differences are off by 2.0 degrees (rms) and at most 4.1.
-TEST(SurfaceMesh, NormalsOfACylinderInLongVoxelsPointAwayFromItsAxis) {
+TEST(SurfaceMesh, CylinderNormalsAreRadialInAnisotropicVoxels) {
   GridGeometry geometry = centred_cube(61, 0.25);
   geometry.spacing_mm.z() = 0.6;
   const Volume volume = shape_volume(geometry, [](const Vec3& p) { return p.head<2>().norm() - 5; });
@@ -284,7 +284,7 @@ TEST(SurfaceMesh, NormalsOfACylinderInLongVoxelsPointAwayFromItsAxis) {
 }
 
 // A vertical face of two materials, one above the other, with a sharp boundary at an angle to the grid.
-TEST(SurfaceMesh, DensitiesRiseWithoutStepsAcrossABoundaryBetweenMaterials) {
+TEST(SurfaceMesh, DensitiesVarySmoothlyAcrossMaterialBoundary) {
   constexpr double kVoxel_mm = 0.25, kSoft = 1500, kHard = 2800;
   const GridGeometry geometry = centred_cube(48, kVoxel_mm);
   const auto above = [](const Vec3& p) { return p.z() - 0.12 * p.y() - 0.03; };
@@ -331,7 +331,7 @@ TEST(SurfaceMesh, DensitiesRiseWithoutStepsAcrossABoundaryBetweenMaterials) {
   }
 }
 
-TEST(SurfaceMesh, FollowsTheIsovalueItIsAskedFor) {
+TEST(SurfaceMesh, FollowsTheGivenIsovalue) {
   const Volume volume = shape_volume(centred_cube(50, 0.25), ball(Vec3::Zero(), 4.0), 4.0);
   const auto radius = [&](double isovalue) {
     const BrickMesh mesh = mesh_in_one_piece({volume.grid(), volume.ranges(), isovalue});
@@ -343,7 +343,7 @@ TEST(SurfaceMesh, FollowsTheIsovalueItIsAskedFor) {
 }
 
 // A change of one voxel affects only the bricks that the layout returns, and each of those for some change.
-TEST(SurfaceBricks, NameAllBricksThatAChangeReaches) {
+TEST(SurfaceBricks, BricksDependingOnAVoxelIncludeAllThatChange) {
   Volume volume = random_volume({50, 33, 40}, 5);
   const SurfaceMesh before = mesh_surface(DensityView(volume));
   std::mt19937 random(1);
@@ -362,7 +362,7 @@ TEST(SurfaceBricks, NameAllBricksThatAChangeReaches) {
   EXPECT_TRUE(before.layout.bricks_depending_on({}).empty());
 }
 
-TEST(SurfaceMesh, OfTheBuiltinToothIsClosedAndOfItsSize) {
+TEST(SurfaceMesh, MeshOfBuiltinToothIsClosedAndHasItsVolume) {
   expect_volume_of_densities(Volume(builtin_tooth(0.5), kBuiltinToothIsovalue));
 }
 

@@ -31,7 +31,7 @@ VoxelBox set_density(Volume& volume, const VoxelIndex& v, float density) {
   return EditableVolume(volume).swap(block);
 }
 
-TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
+TEST(SurfaceUpkeep, IncrementalRemeshEqualsFullMesh) {
   Volume volume = shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
   const SurfaceBricks layout(volume.geometry().dims);
   SurfaceUpkeep upkeep{layout};
@@ -55,7 +55,7 @@ TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
   }
 }
 
-TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
+TEST(SurfaceUpkeep, BuildsLevelsOfMilledBricksOnlyOnceAtRest) {
   Volume volume = shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
   SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
   const auto has_levels = [](const auto& changed) {
@@ -86,7 +86,7 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   EXPECT_TRUE(upkeep.remesh(DensityView(volume)).empty());
 }
 
-TEST(SurfaceUpkeep, SaysWhichBricksLostTheirTriangles) {
+TEST(SurfaceUpkeep, ReportsBricksThatBecameEmpty) {
   const Volume volume = shape_volume(centred_cube(40, 0.25), ball({-4, -4, -4}, 0.6));
   SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
   EXPECT_EQ(upkeep.remesh(at_isovalue(volume, 500)).size(), 1u);

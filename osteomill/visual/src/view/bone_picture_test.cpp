@@ -63,7 +63,7 @@ Camera camera_from_above(const Volume& bone) {
 }
 
 // The orientation letters are in the lower right corner; otherwise nothing else is drawn.
-TEST(BonePicture, OnlyAPatientHasSides) {
+TEST(BonePicture, DrawsOrientationLettersForPatientsOnly) {
   const Volume bone = shape_volume(centred_cube(72, 0.25), ball(Vec3::Zero(), 5));
   const Camera camera = camera_from_above(bone);
   const Image without = bone_picture(bone, 900, camera, kSize);
@@ -80,7 +80,7 @@ TEST(BonePicture, OnlyAPatientHasSides) {
   EXPECT_EQ(elsewhere, 0);
 }
 
-TEST(BonePicture, ABallHasTheAreaOfItsDiscWhereverItStands) {
+TEST(BonePicture, BallCoversAreaOfItsDiscAtAnyPosition) {
   for (const Vec3& middle : {Vec3(0.3, -0.2, 0.4), Vec3(2, 2, -2)}) {
     const Volume bone = shape_volume(centred_cube(72, 0.25), ball(middle, 5));
     const Camera camera = camera_from_above(bone);
@@ -92,7 +92,7 @@ TEST(BonePicture, ABallHasTheAreaOfItsDiscWhereverItStands) {
   }
 }
 
-TEST(BonePicture, ASmallBoneIsShownWhole) {
+TEST(BonePicture, SmallBoneFitsInPicture) {
   const Volume tooth(builtin_tooth(0.5), kBuiltinToothIsovalue);
   for (const Vec3& into : {Vec3(0, 0, -1), Vec3(0, 1, 0), Vec3(-1, 0, 0)}) {
     const Camera camera = camera_above(tooth, Vec3::Zero(), into, into.unitOrthogonal());
@@ -103,7 +103,7 @@ TEST(BonePicture, ASmallBoneIsShownWhole) {
   }
 }
 
-TEST(BonePicture, OfALargeBoneWhatLiesAroundTheEntryIsShown) {
+TEST(BonePicture, LargeBoneIsShownAroundEntry) {
   const Volume bone = shape_volume(centred_cube(100, 0.7), ball(Vec3::Zero(), 33));
   const Vec3 entry_W(0, 0, 33);
   const Camera camera = camera_above(bone, entry_W, -Vec3::UnitZ(), Vec3::UnitX());
@@ -112,14 +112,14 @@ TEST(BonePicture, OfALargeBoneWhatLiesAroundTheEntryIsShown) {
   EXPECT_GT(covered(picture_from_above(bone, camera)).count, 320 * 320 / 2);
 }
 
-TEST(BonePicture, LengthsHardlyChangeWithTheirDepth) {
+TEST(BonePicture, ScaleHardlyChangesWithDepth) {
   const Volume bone = shape_volume(centred_cube(60, 0.25), ball(Vec3::Zero(), 5));
   const Camera camera = camera_from_above(bone);
   const double at_focus = mm_per_pixel(camera, kSize, camera.distance_mm);
   EXPECT_NEAR(mm_per_pixel(camera, kSize, camera.distance_mm - 10) / at_focus, 1, 0.04);
 }
 
-TEST(BonePicture, AMilledHoleIsDarkerAndAllElseStaysAsItWas) {
+TEST(BonePicture, MilledHoleIsDarkerAndTheRestUnchanged) {
   const auto block = [](double hole_mm) {
     return [hole_mm](const Vec3& p) {
       const double box = (p.cwiseAbs() - Vec3(5, 5, 4)).maxCoeff();
@@ -147,7 +147,7 @@ TEST(BonePicture, AMilledHoleIsDarkerAndAllElseStaysAsItWas) {
   }
 }
 
-TEST(BonePicture, WithoutBoneThereIsOnlyTheScaleBar) {
+TEST(BonePicture, ShowsOnlyScaleBarWithoutBone) {
   const GridGeometry geometry = centred_cube(20, 0.5);
   const Volume air(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 10.0f)), 500);
   const Image image = picture_from_above(air, camera_from_above(air));
@@ -158,7 +158,7 @@ TEST(BonePicture, WithoutBoneThereIsOnlyTheScaleBar) {
   EXPECT_LE(bar, kSize.width / 4 + 4);
 }
 
-TEST(BonePicture, PutsRightAndUpWhereTheyBelong) {
+TEST(BonePicture, ShowsOffsetBallAtUpperRight) {
   const Volume bone = shape_volume(centred_cube(40, 0.25), ball(Vec3(2, 0, 3), 1.2));
   Camera camera = camera_on({Vec3::Zero(), 5}, Vec3::UnitY(), Vec3::UnitZ());
   const CoveredArea all = covered(picture_from_above(bone, camera));
@@ -184,7 +184,7 @@ TEST(BonePicture, EnamelIsWhiterThanDentine) {
 }
 
 // Far more triangles than are held in memory at once, nearly all of them behind the first sheet.
-TEST(BonePicture, WhatIsDrawnPieceByPieceIsWhole) {
+TEST(BonePicture, PictureDrawnInPiecesIsComplete) {
   const auto sheets = [](double lowest_z) {
     return [lowest_z](const Vec3& p) {
       const double period = p.z() - 0.8 * std::floor(p.z() / 0.8);
@@ -203,7 +203,7 @@ TEST(BonePicture, WhatIsDrawnPieceByPieceIsWhole) {
   EXPECT_LT(others, static_cast<int>(all.rgb.size()) / 200);
 }
 
-TEST(BonePicture, ThreadsMakeTheSamePictureAtTheSameTime) {
+TEST(BonePicture, ConcurrentThreadsDrawIdenticalPictures) {
   const Volume tooth(builtin_tooth(0.25), kBuiltinToothIsovalue);
   const Camera camera = camera_above(tooth, Vec3::Zero(), -Vec3::UnitZ(), Vec3::UnitX());
   const Image expected = bone_picture(tooth, 1500, camera, kSize);
@@ -220,7 +220,7 @@ TEST(BonePicture, ThreadsMakeTheSamePictureAtTheSameTime) {
 }
 
 // In a process of its own, because the libraries read the environment only once.
-TEST(OffscreenContextDeathTest, WhereThereIsNoOpenGlOneIsTold) {
+TEST(OffscreenContextDeathTest, ReportsMissingOpenGl) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto try_without = [](const char* name, const char* value) {
     setenv(name, value, 1);

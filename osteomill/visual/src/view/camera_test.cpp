@@ -28,7 +28,7 @@ TEST(Camera, PixelsRaysAndMatricesAgree) {
   }
 }
 
-TEST(Camera, TheWholeSphereIsSeen) {
+TEST(Camera, FitsWholeSphereInView) {
   const Camera camera = camera_on(kSphere, {0, 1, 0}, {0, 0, 1});
   EXPECT_NEAR((pixel_of(camera, kSize, kSphere.centre_W) - Eigen::Vector2d(400, 300)).norm(), 0, 1e-9);
   // The tangent to the sphere from above passes through the picture's upper border.
@@ -37,7 +37,7 @@ TEST(Camera, TheWholeSphereIsSeen) {
   EXPECT_NEAR(border.cross(to_centre).norm(), kSphere.radius_mm, 1e-9);
 }
 
-TEST(Camera, PatientsAreSeenAsPhysiciansSeeThem) {
+TEST(Camera, PatientViewsShowTheNamedSide) {
   // Facing the patient: the patient's left is on the right of the picture, the head up.
   const Camera front = camera_on(kSphere, kPatientViews[0].direction_W, kPatientViews[0].up_W);
   EXPECT_GT(front.right_W().x(), 0.99);
@@ -49,7 +49,7 @@ TEST(Camera, PatientsAreSeenAsPhysiciansSeeThem) {
   EXPECT_GT(left.up_W().z(), 0.99);
 }
 
-TEST(Camera, WhatIsDraggedGoesWithThePointer) {
+TEST(Camera, DraggedPointsFollowThePointer) {
   Camera camera = camera_on(kSphere, {1, 0, 0}, {0, 0, 1});
   const Vec3 point_W = camera.focus_W;
   pan(camera, kSize, 25, -40);
@@ -62,7 +62,7 @@ TEST(Camera, WhatIsDraggedGoesWithThePointer) {
   EXPECT_GT(after.y(), before.y());
 }
 
-TEST(Camera, ZoomComesCloserAndNeverThrough) {
+TEST(Camera, ZoomApproachesWithoutPassingFocus) {
   Camera camera = camera_on(kSphere, {1, 0, 0}, {0, 0, 1});
   const double before_mm = camera.distance_mm;
   zoom_by_drag(camera, kSize, -30);

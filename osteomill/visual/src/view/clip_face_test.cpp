@@ -23,7 +23,7 @@ DensityGrid ramp(const GridGeometry& geometry) {
   return DensityGrid(geometry, std::move(densities));
 }
 
-TEST(ClipFace, ShowsTheDensitiesOfItsPlace) {
+TEST(ClipFace, ShowsDensitiesInItsPlane) {
   const DensityGrid grid = ramp(testing_support::centred_cube(41, 0.25));
   for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0.3, -0.5, 0.8)}) {
     const ClipPlane plane{normal.normalized(), 0.7};
@@ -46,19 +46,19 @@ TEST(ClipFace, ShowsTheDensitiesOfItsPlace) {
   }
 }
 
-TEST(ClipFace, APlaneBesideTheGridShowsNothing) {
+TEST(ClipFace, IsEmptyIfPlaneMissesGrid) {
   const DensityGrid grid = ramp(testing_support::centred_cube(21, 0.25));
   EXPECT_TRUE(clip_face(grid, {Vec3::UnitX(), 30}, {0, 1}).pixels.empty());
 }
 
-TEST(ClipFace, LargeOnesAreSampledMoreCoarsely) {
+TEST(ClipFace, LimitsPixelsOfLargeFaces) {
   const DensityGrid grid = ramp(testing_support::centred_cube(60, 0.25));
   const ClipFace face = clip_face(grid, {Vec3::UnitX(), 0}, {0, 1}, nullptr, 30);
   EXPECT_LE(face.width, 31);
   EXPECT_LE(face.height, 31);
 }
 
-TEST(ClipFace, PlanesCanBeMovedAsFarAsTheGridReaches) {
+TEST(ClipFace, ExtentAlongAnAxisSpansTheGrid) {
   const GridGeometry cube = testing_support::centred_cube(41, 0.25);
   const auto extent = extent_along(corners_W(cube, cube.all_voxels()), Vec3::UnitY());
   EXPECT_NEAR(extent[0], -5, 1e-9);

@@ -22,7 +22,7 @@ int count(const Image& image, int left, int top, int right, int bottom, int leve
   return found;
 }
 
-TEST(ImageAnnotations, ALineIsWhereItIsSaidToBe) {
+TEST(ImageAnnotations, DrawsLineAtItsScaledPosition) {
   Image image = grey_image(200, 60, 128);
   draw_annotation(image, {{{{10, 20}, {60, 20}}}, {150, 30}, ""}, kInkOnLight, 2);
   int length = 0;
@@ -32,7 +32,7 @@ TEST(ImageAnnotations, ALineIsWhereItIsSaidToBe) {
   EXPECT_EQ(image.pixel(70, 50)[0], 128);
 }
 
-TEST(ImageAnnotations, WordsAreWrittenInTheirPlaceAndReadOnAnyGround) {
+TEST(ImageAnnotations, TextIsInPlaceAndLegibleOnAnyBackground) {
   for (const int ground : {0, 40, 128, 236, 255}) {
     for (const Ink& ink : {kInkOnLight, kInkOnDark}) {
       Image image = grey_image(120, 60, static_cast<unsigned char>(ground));
@@ -45,7 +45,7 @@ TEST(ImageAnnotations, WordsAreWrittenInTheirPlaceAndReadOnAnyGround) {
   }
 }
 
-TEST(ImageAnnotations, AnotherNumberLooksDifferent) {
+TEST(ImageAnnotations, DifferentNumbersLookDifferent) {
   Image two = grey_image(120, 60, 255);
   Image five = two;
   draw_annotation(two, {{}, {60, 30}, "2 mm"}, kInkOnLight);
@@ -53,7 +53,7 @@ TEST(ImageAnnotations, AnotherNumberLooksDifferent) {
   EXPECT_NE(two.rgb, five.rgb);
 }
 
-TEST(ImageAnnotations, StayInATinyImage) {
+TEST(ImageAnnotations, ClipToATinyImage) {
   Image image = grey_image(3, 2, 255);
   draw_annotation(image, {{{{-10, 1}, {60, 1}}}, {1, 1}, "100 mm"}, kInkOnLight, 3);
   EXPECT_EQ(image.rgb.size(), 18u);

@@ -121,7 +121,7 @@ TEST_F(SceneRendererTest, CutWithItsGreys) {
 }
 
 // A pixel shows the point predicted by the projection.
-TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
+TEST_F(SceneRendererTest, DrawsToolWhereCameraProjectsIt) {
   const Image without = picture();
   scene_.X_WT = Pose{{2, -7, 6}, Quat::Identity()};
   const Image with = picture();
@@ -140,7 +140,7 @@ TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
 
 // The tool over a level plane of bone: each pixel beside the tool must be darkened, relative to a picture
 // without it, as predicted for the point of the plane behind that pixel.
-TEST(ContactShadow, DarkensALevelPlaneAsTheToolHidesTheSky) {
+TEST(ContactShadow, DarkensPlaneAsPredictedFromHiddenSky) {
   const OffscreenContext context;
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.5),
                                                     testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
@@ -203,7 +203,7 @@ TEST(ContactShadow, DarkensALevelPlaneAsTheToolHidesTheSky) {
   EXPECT_GT(unchanged, 1000);
 }
 
-TEST_F(SceneRendererTest, AToolFarAwayDarkensNoBone) {
+TEST_F(SceneRendererTest, DistantToolCastsNoShadowOnBone) {
   const Image without = picture();
   scene_.X_WT = Pose{{0, -9, 12}, Quat::Identity()};
   const Image with = picture();
@@ -217,7 +217,7 @@ TEST_F(SceneRendererTest, AToolFarAwayDarkensNoBone) {
   EXPECT_EQ(others, 0u);
 }
 
-TEST_F(SceneRendererTest, ABurrBehindBoneIsSeenThroughItOnlyIfAsked) {
+TEST_F(SceneRendererTest, BurrBehindBoneIsVisibleOnlyInSeeThroughMode) {
   const Vec3 sight = (scene_.bounds.centre_W - scene_.camera.eye_W()).normalized();
   const Image without = picture();
   // Behind the ball, with the shaft away from the eye.
@@ -250,7 +250,7 @@ TEST_F(SceneRendererTest, ABurrBehindBoneIsSeenThroughItOnlyIfAsked) {
 }
 
 // The bone is not redrawn in every frame, but milled bone must be visible within two frames.
-TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
+TEST_F(SceneRendererTest, ShowsMilledBricksWhileViewIsStill) {
   for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
   const double all = covered(renderer_->picture());
   const std::size_t bricks = SurfaceBricks(bone_.geometry().dims).count();
@@ -259,7 +259,7 @@ TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
 }
 
 // If bone is milled while the view rests, only that part of the picture is redrawn.
-TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
+TEST_F(SceneRendererTest, PartialRedrawMatchesFullRedraw) {
   scene_.camera = camera_on({Vec3(0, 0, 4), 9}, {0.3, 1, -0.5}, Vec3::UnitZ());
   while (!renderer_->is_settled()) renderer_->draw(scene_, kSize);
   const Image before = renderer_->picture();
@@ -297,7 +297,7 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
 }
 
 // While the view moves, pictures with fewer triangles look much like those in full detail.
-TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
+TEST_F(SceneRendererTest, CoarserLevelsLookNearlyTheSame) {
   scene_.camera.distance_mm *= 9;
   while (!renderer_->is_settled()) renderer_->draw(scene_, kSize);
   const Image all = renderer_->picture();
@@ -314,7 +314,7 @@ TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
   EXPECT_LT(sum / static_cast<double>(all.rgb.size()), 1.5);
 }
 
-TEST(FrameBudget, HasFewerTrianglesTheLongerTheyTakeAndMoreAgainLater) {
+TEST(FrameBudget, ShrinksIfDrawingIsSlowAndGrowsIfFast) {
   FrameBudget pace(20'000, 150'000);
   const std::size_t first = pace.budget();
   for (int n = 0; n < 20; ++n) pace.record_draw(pace.budget(), 2e-6 * static_cast<double>(pace.budget()));
@@ -324,14 +324,14 @@ TEST(FrameBudget, HasFewerTrianglesTheLongerTheyTakeAndMoreAgainLater) {
   EXPECT_NEAR(static_cast<double>(pace.budget()), FrameBudget::kBone_s / 1e-8, 2e5);
 }
 
-TEST(FrameBudget, OnePictureThatWasHeldUpCountsLittle) {
+TEST(FrameBudget, OneDelayedFrameReducesBudgetByLessThanHalf) {
   FrameBudget pace(20'000, 150'000);
   const std::size_t first = pace.budget();
   pace.record_draw(pace.budget(), 1.0);
   EXPECT_GT(pace.budget(), first / 2);
 }
 
-TEST(FrameBudget, HasFewerPixelsWhereTheyTakeLong) {
+TEST(FrameBudget, ClampsPixelsToMinimumIfSlowAndGrowsIfFast) {
   FrameBudget pace(500'000, 2'000'000);
   EXPECT_GT(pace.budget(), 1'500'000u);
   for (int n = 0; n < 20; ++n) pace.record_draw(1'000'000, 0.1);
@@ -341,7 +341,7 @@ TEST(FrameBudget, HasFewerPixelsWhereTheyTakeLong) {
 }
 
 // The first frame uses the initial estimate of the pace.
-TEST_F(SceneRendererTest, ALargePictureThatMovesHasFewerPixelsThanOnceItRests) {
+TEST_F(SceneRendererTest, DrawsLargePictureAtHalfSizeUntilItRests) {
   constexpr PixelSize kLarge{1920, 1080};
   renderer_->draw(scene_, kLarge);
   const Image moving = renderer_->picture();
@@ -356,7 +356,7 @@ TEST_F(SceneRendererTest, ALargePictureThatMovesHasFewerPixelsThanOnceItRests) {
   EXPECT_NEAR(covered(moving), covered(rested), 0.005);
 }
 
-TEST_F(SceneRendererTest, AMovingViewIsShadedAfterThePictureBeforeAndNoneLongGone) {
+TEST_F(SceneRendererTest, ShadingOfMovingViewMatchesRestingView) {
   const double last_mm = scene_.camera.distance_mm;
   for (const double times : {0.5, 0.5, 0.998, 1.0}) {
     scene_.camera.distance_mm = times * last_mm;
@@ -373,7 +373,7 @@ TEST_F(SceneRendererTest, AMovingViewIsShadedAfterThePictureBeforeAndNoneLongGon
   EXPECT_LT(sum / static_cast<double>(moving.rgb.size()), 2 * kMeanShades);
 }
 
-TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
+TEST_F(SceneRendererTest, RemovedBricksDisappear) {
   const double all = covered(picture());
   EXPECT_GT(renderer_->triangle_count(), 1000u);
   for (std::size_t n = 0; n < SurfaceBricks(bone_.geometry().dims).count(); ++n) set_brick(n, {});
@@ -388,7 +388,7 @@ double redness(const Image& image) {
   return sum / static_cast<double>(image.rgb.size() / 3);
 }
 
-TEST_F(SceneRendererTest, BoneHasTheColoursOfItsLabels) {
+TEST_F(SceneRendererTest, ColoursBoneByLabelsIfShown) {
   const double without = redness(picture());
   const GridGeometry& geometry = bone_.geometry();
   const auto labels =

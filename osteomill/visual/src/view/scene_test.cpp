@@ -14,7 +14,7 @@ Wrench force_at(const Vec3& point_W, const Vec3& force_N) {
   return {force_N, (point_W - kX_WT.position_mm).cross(force_N)};
 }
 
-TEST(PointOfAction, IsWhereOneForceTouchesTheBurr) {
+TEST(PointOfAction, IsContactPointOfSingleForceOnBurr) {
   for (const Vec3& direction : {Vec3(0, 0, -1), Vec3(1, 1, -1), Vec3(-1, 0.2, 0)}) {
     const Vec3 point_W =
         kX_WT.position_mm + kX_WT.orientation * (kTool.burr_radius_mm * direction.normalized());
@@ -24,7 +24,7 @@ TEST(PointOfAction, IsWhereOneForceTouchesTheBurr) {
   }
 }
 
-TEST(PointOfAction, IsWhereOneForceTouchesTheShaft) {
+TEST(PointOfAction, IsContactPointOfSingleForceOnShaft) {
   const Vec3 point_W = kX_WT * Vec3(kTool.shaft_radius_mm, 0, 9);
   const Vec3 force_N = kX_WT.orientation * Vec3(-2, 0, 0);
   const auto found = point_of_action(kTool, kX_WT, force_at(point_W, force_N));
@@ -32,17 +32,17 @@ TEST(PointOfAction, IsWhereOneForceTouchesTheShaft) {
   EXPECT_NEAR((*found - point_W).norm(), 0, 1e-6);
 }
 
-TEST(PointOfAction, NoForceTouchesNowhere) {
+TEST(PointOfAction, IsAbsentWithoutForce) {
   EXPECT_FALSE(point_of_action(kTool, kX_WT, Wrench{}));
 }
 
-TEST(PointOfAction, AForceThatMissesTheToolIsPutOnTheBurr) {
+TEST(PointOfAction, IsOnBurrIfLineOfForceMissesTool) {
   const auto found = point_of_action(kTool, kX_WT, {{0, 0, 1}, {500, 0, 0}});
   ASSERT_TRUE(found);
   EXPECT_NEAR((*found - kX_WT.position_mm).norm(), kTool.burr_radius_mm, 1e-9);
 }
 
-TEST(RedPoint, IsTheIntersectionPointWhereThereIsOne) {
+TEST(RedPoint, IsIntersectionPointOrElsePointOfAction) {
   ViewScene scene;
   EXPECT_FALSE(red_point_W(scene));
   scene.X_WT = kX_WT;
@@ -52,7 +52,7 @@ TEST(RedPoint, IsTheIntersectionPointWhereThereIsOne) {
   EXPECT_EQ(red_point_W(scene), scene.intersection_W);
 }
 
-TEST(Annotations, TheScaleBarMeasuresTheFocus) {
+TEST(Annotations, ScaleBarMeasuresLengthsAtFocus) {
   const PixelSize size{1000, 700};
   const Camera camera = camera_on({Vec3(1, 2, 3), 20}, Vec3::UnitY(), Vec3::UnitZ());
   const Annotation bar = scale_bar_annotation(camera, size);
@@ -61,7 +61,7 @@ TEST(Annotations, TheScaleBarMeasuresTheFocus) {
   EXPECT_NEAR(bar.lines[0].to.x() - bar.lines[0].from.x(), end.x() - 500, 1e-9);
 }
 
-TEST(Annotations, TheScaleBarHasARoundLengthThatFits) {
+TEST(Annotations, ScaleBarHasRoundLengthThatFits) {
   const auto length = [](double max_mm) {
     const PixelSize size{1000, 1000};
     Camera camera;
@@ -76,7 +76,7 @@ TEST(Annotations, TheScaleBarHasARoundLengthThatFits) {
   EXPECT_EQ(length(0.03), "0.02 mm");
 }
 
-TEST(Annotations, LettersStandWhereThePatientsSidesAre) {
+TEST(Annotations, OrientationLettersMarkPatientSides) {
   const PixelSize size{1000, 700};
   const Camera camera = camera_on({Vec3::Zero(), 20}, kPatientViews[0].direction_W, kPatientViews[0].up_W);
   std::string seen;

@@ -55,7 +55,7 @@ HapticStep push(LineProxy& algorithm, const Pose& from, const Vec3& to_W, int ti
   return step;
 }
 
-TEST(LineProxy, FreeSpaceIsExactlyZero) {
+TEST(LineProxy, WrenchIsExactlyZeroInFreeSpace) {
   const Volume bone = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   LineProxy algorithm = prepared(bone);
   for (int n = 0; n < 500; ++n) {
@@ -121,7 +121,7 @@ void slide_round_a_ball(double voxel_mm) {
   EXPECT_LT(largest_step_N, 0.005);
 }
 
-TEST(LineProxy, SlidingRoundABallTheForcePointsOut) {
+TEST(LineProxy, ForcePointsOutwardWhenSlidingAroundABall) {
   for (const double voxel_mm : {0.25, 0.2, 0.125}) slide_round_a_ball(voxel_mm);
 }
 
@@ -181,7 +181,7 @@ Pose leaning(double tip_x) {
 // The tip's x when the shaft just touches the edge, 10.1 mm above the tip.
 constexpr double kTouchingTip_x = 0.4 * 10.1;
 
-TEST(LineProxy, TheShaftMeetsAnEdgeAtTheEdge) {
+TEST(LineProxy, ReportsTheShaftIntersectionAtTheEdgeItTouches) {
   const Volume bone = block_with_edge();
   LineProxy algorithm = prepared(bone);
   HapticStep step;
@@ -195,7 +195,7 @@ TEST(LineProxy, TheShaftMeetsAnEdgeAtTheEdge) {
 }
 
 // Lowers the far half of the shaft flat onto the bone below z = 0.
-TEST(LineProxy, AStepTellsTheIntersectionPoint) {
+TEST(LineProxy, ReportsAnIntersectionPointOnlyInContact) {
   const Volume bone =
       shape_volume(centred_cube(64, 0.25), [](const Vec3& p) { return std::max(p.z(), p.x()); });
   LineProxy algorithm = prepared(bone);
@@ -208,7 +208,7 @@ TEST(LineProxy, AStepTellsTheIntersectionPoint) {
   EXPECT_NEAR(step.intersection_W->z(), 0, 0.05);
 }
 
-TEST(LineProxy, TheShaftOnAnEdgeTurnsTheHandAway) {
+TEST(LineProxy, ShaftOnAnEdgeGivesTorqueButNoForce) {
   const Volume bone = block_with_edge();
   LineProxy algorithm = prepared(bone);
   const HapticStep step =
@@ -240,7 +240,7 @@ TEST(LineProxy, TurningScanAndPosesTogetherTurnsTheWrench) {
   }
 }
 
-TEST(LineProxy, TheSameInputTwiceGivesTheSameBits) {
+TEST(LineProxy, OutputIsBitIdenticalAfterReset) {
   const Volume bone = block_with_edge();
   LineProxy once = prepared(bone);
   LineProxy twice = prepared(bone);
@@ -260,7 +260,7 @@ TEST(LineProxy, TheSameInputTwiceGivesTheSameBits) {
 
 // The session starts with the vertices in bone; they move along the edge, so that their densities hardly
 // change and eq. 1 divides by almost zero.
-TEST(LineProxy, AStartInsideKicks) {
+TEST(LineProxy, StartInsideBoneGivesALargeTorque) {
   const Volume bone = block_with_edge();
   LineProxy algorithm = prepared(bone);
   double largest_Nmm = 0;
@@ -274,7 +274,7 @@ TEST(LineProxy, AStartInsideKicks) {
   EXPECT_GT(largest_Nmm, 50.0);
 }
 
-TEST(LineProxy, WhatIsNotFiniteIsForgottenAtOnce) {
+TEST(LineProxy, RecoversFromNonFiniteTorqueOnceOutsideBone) {
   const Volume bone = block_with_edge();
   LineProxy algorithm = prepared(bone);
   // At rest deep inside: eq. 1 is zero divided by zero or worse.
@@ -307,7 +307,7 @@ TEST(LineProxy, ATickOfNoLengthGivesNumbers) {
 }
 
 // Along a grid line, onto a pole on that line.
-TEST(LineProxy, ABallIsPressedStraightDownOnItsTop) {
+TEST(LineProxy, ForceOnTopOfABallIsStiffnessTimesDepth) {
   const Volume bone = shape_volume(centred_cube(49, 0.25), ball(Vec3::Zero(), 5.0));
   LineProxy algorithm = prepared(bone);
   for (const double depth_mm : {0.2, 0.5, 1.0}) {

@@ -18,45 +18,45 @@ using testing_support::centred_cube;
 using testing_support::plane;
 using testing_support::shape_volume;
 
-class PlaneTest : public ::testing::Test {
+class PointProxyOnPlane : public ::testing::Test {
  protected:
   Volume bone_ = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
 };
 
-TEST_F(PlaneTest, AFreeWayLeadsToTheProbe) {
+TEST_F(PointProxyOnPlane, ReachesTheProbeOnAFreePath) {
   EXPECT_EQ(move_point_proxy(bone_, {0, 0, 2}, {1, 1, 0.5}), Vec3(1, 1, 0.5));
 }
 
-TEST_F(PlaneTest, TheProxyStopsAtTheFootOfTheProbe) {
+TEST_F(PointProxyOnPlane, StopsAtTheSurfacePointAboveTheProbe) {
   const Vec3 proxy = move_point_proxy(bone_, {0, 0, 2}, {0.8, -0.3, -1.5});
   EXPECT_LT((proxy - Vec3(0.8, -0.3, 0)).norm(), 1e-3);
 }
 
-TEST_F(PlaneTest, TheProxyFollowsTheProbeOutAgain) {
+TEST_F(PointProxyOnPlane, FollowsTheProbeBackOutOfBone) {
   const Vec3 proxy = move_point_proxy(bone_, {0, 0, 2}, {0.8, -0.3, -1.5});
   EXPECT_EQ(move_point_proxy(bone_, proxy, {0.8, -0.3, 0.1}), Vec3(0.8, -0.3, 0.1));
 }
 
-TEST_F(PlaneTest, AProxyLeftInBoneIsBroughtOutAlongTheNormal) {
+TEST_F(PointProxyOnPlane, LeavesBoneAlongTheNormalIfLeftInside) {
   const Vec3 proxy = move_point_proxy(bone_, {0, 0, -0.1}, {0, 0, -1});
   EXPECT_LT(proxy.norm(), 1e-3);
 }
 
-TEST_F(PlaneTest, PointsFarOutsideTheGridAreNotWalkedTo) {
+TEST_F(PointProxyOnPlane, IsCorrectForPointsFarOutsideTheGrid) {
   EXPECT_EQ(move_point_proxy(bone_, {1e9, 0, 1e9}, {1e9, 5, 1e9}), Vec3(1e9, 5, 1e9));
   const auto crossing = first_crossing(bone_, {0, 0, 1e9}, {0, 0, -1e9});
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(crossing->z(), 0.0, 1e-3);
 }
 
-TEST_F(PlaneTest, TheNearestWayOutIsFound) {
+TEST_F(PointProxyOnPlane, FindsTheNearestExitOnlyWithinReach) {
   const auto exit = nearest_exit(bone_, {0.3, 0.2, -2}, 5.0);
   ASSERT_TRUE(exit);
   EXPECT_LT((*exit - Vec3(0.3, 0.2, 0)).norm(), 1e-3);
   EXPECT_FALSE(nearest_exit(bone_, {0, 0, -3}, 2.0));
 }
 
-TEST(PointProxy, GoesRoundABallToTheSideOfTheProbe) {
+TEST(PointProxy, FollowsTheProbeAroundABall) {
   const Volume bone = shape_volume(centred_cube(48, 0.25), ball(Vec3::Zero(), 4.0));
   Vec3 proxy(0, 0, 5);
   for (int n = 0; n <= 180; ++n) {
@@ -80,7 +80,7 @@ TEST(PointProxy, RestsInAGroove) {
   EXPECT_LT(std::abs(proxy.z()), 0.25);
 }
 
-TEST(PointProxy, ASlideOverAnEdgeComesFree) {
+TEST(PointProxy, ReachesTheProbeAfterSlidingOverAnEdge) {
   // Bone below z = 0 and left of x = 0; the probe leaves through the side.
   const Volume bone =
       shape_volume(centred_cube(48, 0.25), [](const Vec3& p) { return std::max(p.z(), p.x()); });
@@ -91,7 +91,7 @@ TEST(PointProxy, ASlideOverAnEdgeComesFree) {
 }
 
 // Central differences turn with the grid by several degrees on an oblique plane.
-TEST(SurfaceNormal, IsThatOfAnObliquePlaneWithinHalfADegree) {
+TEST(SurfaceNormal, MatchesAnObliquePlaneWithinHalfADegree) {
   for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 1, 0), Vec3(1, 2, 3), Vec3(0.1, 0.9, 0.2)}) {
     const Vec3 normal = axis.normalized();
     const Volume bone = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), normal));

@@ -81,7 +81,7 @@ GridGeometry turned_cube(int voxels, double spacing_mm) {
   return geometry;
 }
 
-TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
+TEST(OctreeContacts, MatchBruteForceOverEveryPoint) {
   std::mt19937 bits(5);
   const Volume volume = shape_volume(turned_cube(60, 0.2), ball({0.3, 0.1, 0}, 5));
   const SampledDistanceField field = sampled(kTool);
@@ -140,7 +140,7 @@ const std::vector<Vec3> kNormals{{0, 0, 1},     {1, 0, 0},  {1, 1, 0},      {1, 
                                  {0.05, 0, -1}, {3, -2, 1}, {-0.4, 0.9, 2}, {0.37, 0.61, -0.2}};
 
 // With the paper's method the centres lie half a voxel and more inside the bone, and are sparser on slopes.
-TEST(PlaneContact, PaperIsTooSoftByASlopeDependentPart) {
+TEST(PlaneContact, ForceOfPublishedMethodIsTooLowDependingOnSlope) {
   const PlaneRatios straight = slide_over_plane(voxel_centres(1), {0, 0, 1}, 0.25, 2);
   EXPECT_NEAR(straight.min, 0.78, 0.04);
   EXPECT_NEAR(straight.max, 0.78, 0.04);
@@ -167,7 +167,7 @@ double ball_force(double bone_radius, double burr_radius, double between) {
   return sum;
 }
 
-TEST(BallContact, PaperIsSofterButPushesOutwards) {
+TEST(BallContact, ForceOfPublishedMethodIsTooLowButPointsOutward) {
   std::mt19937 bits(10);
   const Volume volume = shape_volume(centred_cube(72, 0.125), ball({0, 0, 0}, 4));
   const VoxelShell shell(volume, 1);
@@ -184,7 +184,7 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
 }
 
 // For a single point, the derivative of its depth in the tool is n . dx + (r x n) . dw.
-TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
+TEST(ContactSum, DepthDerivativeIsNormalAndLeverCrossNormal) {
   std::mt19937 bits(21);
   int tested = 0;
   for (int n = 0; n < 300; ++n) {
@@ -212,7 +212,7 @@ TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
 
 // Compares the derivative of the whole sum with differences of the force. On the burr the omitted term has a
 // closed form: a point at distance s from the centre adds k depth / s (1 - n n^T) to the force's derivative.
-TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
+TEST(ContactSum, ForceDerivativeOmitsOnlyTheRotationOfNormals) {
   const Volume volume = shape_volume(centred_cube(64, 0.125), ball({0, 0, -2.5}, 3));
   const VoxelShell shell(volume, 1);
   const SampledDistanceField field = sampled(kTool);

@@ -43,7 +43,7 @@ bool same_bits(const HapticStep& a, const HapticStep& b) {
          same(a.burr_force_W_N, b.burr_force_W_N);
 }
 
-TEST(PointShell, InFreeSpaceTheToolIsTheDeviceAndTheWrenchExactlyZero) {
+TEST(PointShell, ToolMatchesDeviceAndWrenchIsZeroInFreeSpace) {
   const Volume volume = shape_volume(centred_cube(40, 0.2), ball({0, 0, 0}, 2.5));
   PointShell algorithm(full_resolution());
   algorithm.prepare({&volume, kTool});
@@ -61,7 +61,7 @@ TEST(PointShell, InFreeSpaceTheToolIsTheDeviceAndTheWrenchExactlyZero) {
 
 // The shaft alone on the edge of a wall at the lever arm L: the torque is that of the force about the burr's
 // centre.
-TEST(PointShell, TheShaftOnAnEdgePushesAndTurnsTheHand) {
+TEST(PointShell, ShaftOnAnEdgeGivesForceAndTorqueOfForceTimesLever) {
   const auto edge = [](const Vec3& p) { return std::max(p.x(), p.z()); };  // bone where x < 0 and z < 0
   const Volume volume = shape_volume(centred_cube(60, 0.15), edge);
   PointShell algorithm(full_resolution());
@@ -140,7 +140,7 @@ std::vector<HapticStep> run_with_milling(const Settings& settings) {
   return steps;
 }
 
-TEST(PointShell, TheSameInputGivesTheSameBits) {
+TEST(PointShell, OutputIsBitIdenticalForTheSameInput) {
   const auto first = run_with_milling(full_resolution());
   const auto second = run_with_milling(full_resolution());
   int touching = 0;
@@ -163,7 +163,7 @@ TEST(PointShell, ResetForgetsTheContact) {
   EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
 }
 
-TEST(ContactStiffness, HoldsHalfAsMuchAgainAsTheGreatestForce) {
+TEST(ContactStiffness, PeakForceIsOneAndAHalfTimesTheForceLimit) {
   // The penalty's peak on a plane, at d = 2r/3.
   EXPECT_NEAR(contact_stiffness_N_per_mm3(kTool) * std::numbers::pi * (1.5 - 1.0) * 1.0, 1.5 * 20, 1e-9);
 }

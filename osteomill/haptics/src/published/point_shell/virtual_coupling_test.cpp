@@ -7,7 +7,7 @@ namespace {
 
 constexpr VirtualCoupling kCoupling{2.0, 1000.0};
 
-TEST(VirtualCoupling, WithoutContactTheMoveLeadsToTheDevice) {
+TEST(VirtualCoupling, MovesToTheDeviceWithoutContact) {
   const Pose X_WT{{1, 2, 3}, quaternion_from_rotation_vector({0.1, 0.2, 0.3})};
   const Pose X_WD{{1.5, 1, 3.2}, quaternion_from_rotation_vector({0.3, -0.4, 0.3})};
   const Pose after = moved(X_WT, balancing_move(kCoupling, X_WT, X_WD, {}, {}));
@@ -16,7 +16,7 @@ TEST(VirtualCoupling, WithoutContactTheMoveLeadsToTheDevice) {
 }
 
 // One point under the burr makes two springs in series between the device and the bone.
-TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
+TEST(VirtualCoupling, PointOnTheAxisActsAsTwoSpringsInSeries) {
   const Pose X_WT{{0, 0, 0}, Quat::Identity()};
   const Pose X_WD{{0, 0, -0.7}, Quat::Identity()};
   constexpr double kPoint = 8.0, kDepth = 0.1;
@@ -33,7 +33,7 @@ TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
 }
 
 // One point on the shaft at the lever arm L sees the coupling's two springs in series, 1/k + L^2/k_r.
-TEST(VirtualCoupling, OnePointAtALeverSharesBetweenForceAndTorque) {
+TEST(VirtualCoupling, PointAtALeverSharesLoadBetweenForceAndTorque) {
   constexpr double kPoint = 50.0, kDepth = 0.02, kLever = 12.0;
   EnergySum contacts;
   add_contact(contacts, kPoint * kDepth, kPoint, {-1, 0, 0}, {-1, 0, kLever});
@@ -47,7 +47,7 @@ TEST(VirtualCoupling, OnePointAtALeverSharesBetweenForceAndTorque) {
 
 // A spring of 2 N/mm with a damper of 3 ticks: a stretch of 0.5 mm that grew by 0.1 mm in the tick gives 2
 // (0.5 + 3 * 0.1) N. The balancing move takes the damper into account too.
-TEST(VirtualCoupling, TheDamperCountsTheStretchAsIfItWentOn) {
+TEST(VirtualCoupling, DamperExtrapolatesTheStretchOfTheLastTick) {
   constexpr VirtualCoupling kDamped{2.0, 1000.0, 3};
   const ToolMove before{{0, 0, 0.4}, {0.01, 0, 0}};
   const Pose X_WT{{0, 0, 0.5}, quaternion_from_rotation_vector({0.02, 0, 0})};

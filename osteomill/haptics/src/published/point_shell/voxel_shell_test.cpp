@@ -55,7 +55,7 @@ bool is_surface(const Volume& volume, const VoxelIndex& v) {
   return false;
 }
 
-TEST(VoxelShell, ThePapersPointsAreTheCentresOfTheSurfaceVoxels) {
+TEST(VoxelShell, PointsAreTheCentresOfTheSurfaceVoxels) {
   const GridGeometry geometry = oblique_geometry();
   const Volume volume =
       shape_volume(geometry, ball(geometry.world_from_voxel(Vec3(18, 20, 8)), 3.5));  // cut by the border
@@ -81,7 +81,7 @@ TEST(VoxelShell, ThePapersPointsAreTheCentresOfTheSurfaceVoxels) {
   }
 }
 
-TEST(VoxelShell, ACoarsePaperShellIsTheShellOfTheResampledGrid) {
+TEST(VoxelShell, CoarseShellMatchesThatOfTheResampledGrid) {
   const Volume volume = shape_volume(centred_cube(50, 0.2), ball({0.1, 0.2, -0.1}, 3.7));
   GridGeometry coarse = volume.geometry();
   coarse.dims = {17, 17, 17};
@@ -103,7 +103,7 @@ TEST(VoxelShell, ACoarsePaperShellIsTheShellOfTheResampledGrid) {
   }
 }
 
-TEST(VoxelShell, OnAnEvenScaleTheCoarseCentreLiesBetweenVoxels) {
+TEST(VoxelShell, EvenScalePutsPointsBetweenVoxels) {
   const Volume volume = shape_volume(centred_cube(32, 0.25), plane({0, 0, 0.6}, {0, 0, 1}));
   for (const WorldPoint& point : points_of(VoxelShell(volume, 2))) {
     const Vec3 voxel = volume.geometry().voxel_from_world(point.position);
@@ -140,7 +140,7 @@ void expect_same_points(const VoxelShell& kept, const VoxelShell& rebuilt) {
   }
 }
 
-TEST(VoxelShell, KeptUpIsTheSameAsRebuilt) {
+TEST(VoxelShell, RefreshedShellEqualsARebuiltOne) {
   for (const int scale : {1, 2, 3}) {
     const GridGeometry geometry = oblique_geometry();
     Volume volume = shape_volume(geometry, ball(geometry.world_from_voxel(Vec3(18, 20, 12)), 3.4));
@@ -156,7 +156,7 @@ TEST(VoxelShell, KeptUpIsTheSameAsRebuilt) {
   }
 }
 
-TEST(VoxelShell, WithoutBoneThereAreNoPointsAndAllBoneEndsAtTheBorder) {
+TEST(VoxelShell, HasNoPointsInAirAndOnlyBorderPointsInSolidBone) {
   GridGeometry geometry = centred_cube(9, 0.5);
   const Volume air(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 0.f)), 500);
   const Volume bone(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 900.f)), 500);

@@ -47,7 +47,7 @@ AlgorithmDescription description() {
   return with_settings<SurfacePoints, Settings>(
       {.id = {"surface-points", "2 surface-points", "#3fae49"},
        .summary = "A spring pushes each vertex of the tool's surface that is in bone back towards the "
-                  "tool's centre; the hand feels their sum",
+                  "tool's centre; the burr's springs give the force, the shaft's the torque",
        .resolution_setting = "slices",
        .resolution_name = "slices"},
       fields());

@@ -41,7 +41,7 @@ Volume linear_plane() {
 }
 
 // A burr may be large enough to enclose the whole shaft.
-TEST(SurfacePoints, AToolWhoseShaftItsBurrSwallowsIsABurr) {
+TEST(SurfacePoints, GivesForceButNoTorqueIfTheBurrEnclosesTheShaft) {
   const Volume volume = shape_volume(centred_cube(64, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   SurfacePoints algorithm(Settings{});
   algorithm.prepare({&volume, MillingTool{3, 1, 2}});
@@ -51,7 +51,7 @@ TEST(SurfacePoints, AToolWhoseShaftItsBurrSwallowsIsABurr) {
   EXPECT_LT(pressed.wrench.torque_Nmm.norm(), 0.1);
 }
 
-TEST(SurfacePoints, Equation15ReachesFromTheVertexToTheSurface) {
+TEST(SurfacePoints, Equation15SpringSpansFromVertexToSurface) {
   const Volume volume = linear_plane();
   const Vec3 vertex(0.2, 0.1, -0.6);
   const Vec3 centre(0.8, -0.2, 0.9);
@@ -60,7 +60,7 @@ TEST(SurfacePoints, Equation15ReachesFromTheVertexToTheSurface) {
   EXPECT_EQ(spring_to_surface(volume, centre, vertex), Vec3::Zero());
 }
 
-TEST(SurfacePoints, Equations14And16SumTheSphersVertices) {
+TEST(SurfacePoints, BurrForceMatchesEquations14And16) {
   const Volume volume = linear_plane();
   for (const int vertices : {24, 17, 96}) {
     Settings settings;
@@ -91,7 +91,7 @@ Pose lying(double height) {
   return {{-4, 0, height}, quaternion_from_rotation_vector({0, std::acos(-1.0) / 2, 0})};
 }
 
-TEST(SurfacePoints, Equations18To21MakeTheSlicesTorque) {
+TEST(SurfacePoints, ShaftTorqueMatchesEquations18To21) {
   const Volume volume = linear_plane();
   for (const int vertices : {8, 13}) {
     Settings settings;
@@ -115,7 +115,7 @@ TEST(SurfacePoints, Equations18To21MakeTheSlicesTorque) {
   }
 }
 
-TEST(SurfacePoints, HasTheVerticesThatItIsSetTo) {
+TEST(SurfacePoints, SamplePointCountFollowsTheVertexSettings) {
   const Volume volume = linear_plane();
   Settings settings;
   const int before = prepared(volume, settings).sample_point_count();
@@ -125,7 +125,7 @@ TEST(SurfacePoints, HasTheVerticesThatItIsSetTo) {
   EXPECT_LT(prepared(volume, settings).sample_point_count(), before / 2);
 }
 
-TEST(SurfacePoints, TheShaftAloneSendsATorqueAndNoForce) {
+TEST(SurfacePoints, ShaftContactAloneGivesTorqueButNoForce) {
   const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   // The burr hangs out beyond the bone.
   const Pose X{{-9, 0, 0.7}, quaternion_from_rotation_vector({0, std::acos(-1.0) / 2, 0})};
@@ -136,7 +136,7 @@ TEST(SurfacePoints, TheShaftAloneSendsATorqueAndNoForce) {
   EXPECT_LT(step.wrench.torque_Nmm.y(), -1.0);  // the bone lifts the shaft: +x cross +z
 }
 
-TEST(SurfacePoints, ACentreInBoneHoldsTheForceOfTheStepBefore) {
+TEST(SurfacePoints, HoldsThePreviousForceWhileTheCentreIsInBone) {
   const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   auto algorithm = prepared(volume, Settings{});
   const HapticStep before = algorithm.step({{0, 0, 0.3}, Quat::Identity()}, kDt);
@@ -151,7 +151,7 @@ TEST(SurfacePoints, ACentreInBoneHoldsTheForceOfTheStepBefore) {
   EXPECT_EQ(algorithm.step({{0, 0, 3}, Quat::Identity()}, kDt).wrench.force_N, Vec3::Zero());
 }
 
-TEST(SurfacePoints, NothingIsHeldWhereTheFirstContactIsAlreadyInside) {
+TEST(SurfacePoints, HoldsNoForceIfTheFirstContactIsAlreadyInside) {
   const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   auto algorithm = prepared(volume, Settings{});
   const HapticStep first = algorithm.step({{0, 0, -1}, Quat::Identity()}, kDt);
@@ -162,7 +162,7 @@ TEST(SurfacePoints, NothingIsHeldWhereTheFirstContactIsAlreadyInside) {
   EXPECT_EQ(algorithm.step({{0, 0, -1}, Quat::Identity()}, kDt).wrench.force_N, Vec3::Zero());
 }
 
-TEST(SurfacePoints, TheToolIsWhereTheDeviceIs) {
+TEST(SurfacePoints, ToolPoseEqualsDevicePoseInContact) {
   const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   const Pose X{{0.1, 0.2, 0.4}, quaternion_from_rotation_vector({0.1, 0, 0.2})};
   const HapticStep step = prepared(volume, Settings{}).step(X, kDt);

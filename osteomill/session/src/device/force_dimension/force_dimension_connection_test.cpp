@@ -67,12 +67,12 @@ TEST_F(ForceDimension, SaysWhatItCan) {
   EXPECT_TRUE((can.R_VB * Vec3::UnitY()).isApprox(Vec3::UnitX()));
 }
 
-TEST_F(ForceDimension, WhereItHasNoWatchdogNoneIsSaid) {
+TEST_F(ForceDimension, ReportsNoWatchdogWhenItHasNone) {
   device_->max_watchdog = 0;
   EXPECT_EQ(open_force_dimension("")->capabilities().watchdog_s, 0);
 }
 
-TEST_F(ForceDimension, EveryModelHasLimits) {
+TEST_F(ForceDimension, SetsForceLimitsForEveryModel) {
   for (const int type : {33, 34, 35, 36, 37, 60, 63, 104, 105, 108, 109, 131, 132, 203, 206}) {
     device_->system_type = type;
     open_force_dimension("");
@@ -83,7 +83,7 @@ TEST_F(ForceDimension, EveryModelHasLimits) {
 
 // Force is switched on after calibration and again after a watchdog timeout, but not if the operator or the
 // brakes switched it off.
-TEST_F(ForceDimension, IsDrivenWhereItIsCalibratedAndHasItsForceOn) {
+TEST_F(ForceDimension, IsDrivenWhenCalibratedAndForceIsOn) {
   enum { kReset = 3, kForce = 5, kBrake = 6, kCause = 14 };
   device_->status[kReset] = 1;
   const auto connection = open_force_dimension("");
@@ -123,7 +123,7 @@ TEST_F(ForceDimension, IsDrivenWhereItIsCalibratedAndHasItsForceOn) {
   EXPECT_EQ(device_->status[kForce], 1);
 }
 
-TEST_F(ForceDimension, AFrameThatTurnsByNoRotationIsNoPose) {
+TEST_F(ForceDimension, ReturnsNoPoseForAnInvalidRotation) {
   ConnectedDevice device([] { return open_force_dimension(""); });
   for (const double all : {0.0, 1.0}) {
     std::fill_n(&device_->frame[0][0], 9, all);
@@ -133,7 +133,7 @@ TEST_F(ForceDimension, AFrameThatTurnsByNoRotationIsNoPose) {
   }
 }
 
-TEST_F(ForceDimension, AFunctionThatDoesNotReturnIsNamedAndLeftBehind) {
+TEST_F(ForceDimension, ReportsAndAbandonsALibraryCallThatHangs) {
   DhdHang& hang = *reinterpret_cast<DhdHang* (*)()>(dlsym(library_, "dhd_hang"))();
   constexpr const char* kFunction = "dhdSetForceAndTorqueAndGripperForce";
   const int closed = hang.closed;
@@ -152,7 +152,7 @@ TEST_F(ForceDimension, AFunctionThatDoesNotReturnIsNamedAndLeftBehind) {
   EXPECT_TRUE(testing_support::becomes_true_in_time([&] { return hang.closed > closed; }));
 }
 
-TEST_F(ForceDimension, OpenedAgainItLeavesOffWhatItsOperatorSwitchedOff) {
+TEST_F(ForceDimension, OpeningKeepsForceOffAfterButtonOrBrake) {
   enum { kForce = 5, kBrake = 6, kCause = 14 };
   for (const auto& [cause, is_on] : {std::pair(1, 0), std::pair(2, 0), std::pair(0, 1), std::pair(4, 1)}) {
     device_->status[kForce] = 0;
@@ -167,7 +167,7 @@ TEST_F(ForceDimension, OpenedAgainItLeavesOffWhatItsOperatorSwitchedOff) {
 }
 
 // Reads from the maker's real library, with a real or simulated device; sends nothing.
-TEST(ForceDimensionLibrary, TheMakersOwnIsRead) {
+TEST(ForceDimensionLibrary, ReadsPosesThroughTheVendorLibrary) {
   const char* const library = std::getenv("OSTEOMILL_LIBDHD");
   if (library == nullptr) GTEST_SKIP() << "OSTEOMILL_LIBDHD does not name the maker's library";
   setenv("OSTEOMILL_DHD_LIBRARY", library, 1);
@@ -182,7 +182,7 @@ TEST(ForceDimensionLibrary, TheMakersOwnIsRead) {
   EXPECT_LT(input.X_BH.position_mm.norm(), 500);
 }
 
-TEST_F(ForceDimension, ReadsMmFromMAndTurnsFromFrames) {
+TEST_F(ForceDimension, ConvertsMetresToMillimetresAndFrameToRotation) {
   const auto connection = open_force_dimension("");
   device_->position_m = {0.01, -0.02, 0.03};
   device_->buttons = 5;
@@ -196,14 +196,14 @@ TEST_F(ForceDimension, ReadsMmFromMAndTurnsFromFrames) {
   EXPECT_NEAR((rotation_vector(input.X_BH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
 }
 
-TEST_F(ForceDimension, WritesNAndNm) {
+TEST_F(ForceDimension, SendsForceInNewtonsAndTorqueInNewtonMetres) {
   const auto connection = open_force_dimension("");
   EXPECT_EQ(connection->write({{1, 2, 3}, {40, 50, 60}}), ConnectionStatus::fresh);
   const std::array<double, 7> sent{1, 2, 3, 0.04, 0.05, 0.06, 0};
   EXPECT_EQ(device_->sent, sent);
 }
 
-TEST_F(ForceDimension, AWristThatIsNotThereIsNotSensedOrDriven) {
+TEST_F(ForceDimension, NeitherSensesNorDrivesAMissingWrist) {
   device_->has_wrist = device_->has_active_wrist = false;
   const auto connection = open_force_dimension("");
   EXPECT_EQ(connection->capabilities().sensed, 3);
@@ -216,7 +216,7 @@ TEST_F(ForceDimension, AWristThatIsNotThereIsNotSensedOrDriven) {
   EXPECT_TRUE(input.X_BH.orientation.isApprox(Quat::Identity()));
 }
 
-TEST_F(ForceDimension, ThatHasNoNewPoseIsSilentAndOneThatFailsLost) {
+TEST_F(ForceDimension, IsSilentWithoutANewPoseAndLostOnFailure) {
   const auto connection = open_force_dimension("");
   DeviceInput input;
   device_->pose_result = 1;
@@ -252,7 +252,7 @@ TEST_F(ForceDimension, WhyThereIsNoneIsSaid) {
   EXPECT_EQ(hardware_named("dhd")->find("").text, "dhd: no device is connected");
 }
 
-TEST_F(ForceDimension, ALibraryThatIsMissingOrAnotherIsSaid) {
+TEST_F(ForceDimension, ReportsAMissingOrWrongLibrary) {
   unsetenv("OSTEOMILL_DHD_LIBRARY");
   EXPECT_EQ(
       refusal(),

@@ -64,12 +64,12 @@ TEST_F(Haply, SaysWhatItCan) {
   EXPECT_TRUE((can.R_VB * Vec3::UnitZ()).isApprox(Vec3::UnitY()));
 }
 
-TEST_F(Haply, AMinverseIsNoInverse3) {
+TEST_F(Haply, RefusesAMinverse) {
   service_.type = "minverse";
   EXPECT_EQ(refusal(), "haply:" + service_.address() + ": the service has no Inverse3");
 }
 
-TEST_F(Haply, AnInverse3BehindAMinverseIsFoundAndDriven) {
+TEST_F(Haply, FindsAnInverse3ListedAfterAMinverse) {
   service_.has_minverse_first = true;
   open();
   EXPECT_EQ(connection_->capabilities().name, "Haply Inverse3 049D");
@@ -77,12 +77,12 @@ TEST_F(Haply, AnInverse3BehindAMinverseIsFoundAndDriven) {
   EXPECT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
 }
 
-TEST_F(Haply, LookingForItTellsItNothing) {
+TEST_F(Haply, FindingItSendsNothing) {
   EXPECT_EQ(hardware_named("haply")->find(service_.address()).text, "Haply Inverse3 049D");
   EXPECT_TRUE(service_.heard().empty()) << "the program that drives it would feel it";
 }
 
-TEST_F(Haply, TheHubIsToldOnceWhoThisIs) {
+TEST_F(Haply, SendsItsProfileOnlyWithTheFirstCommand) {
   open();
   DeviceInput input;
   for (int n = 0; n < 3; ++n) go_on_until(ConnectionStatus::fresh, input);
@@ -92,7 +92,7 @@ TEST_F(Haply, TheHubIsToldOnceWhoThisIs) {
   EXPECT_EQ(heard[1].find("session"), std::string::npos);
 }
 
-TEST_F(Haply, IsDrivenWhereItIsCalibratedAndItsGripIsAwake) {
+TEST_F(Haply, IsDrivenWhenCalibratedAndGripIsAwake) {
   service_.is_calibrated = false;
   open();
   DeviceInput input;
@@ -107,7 +107,7 @@ TEST_F(Haply, IsDrivenWhereItIsCalibratedAndItsGripIsAwake) {
   EXPECT_EQ(why_not().substr(0, 22), "has a grip that sleeps");
 }
 
-TEST_F(Haply, ThatForcesAreChangedOnTheirWayIsSaid) {
+TEST_F(Haply, ReportsARemarkWhenTheServiceAltersForces) {
   open();
   wrench_.force_N = {0, 0, 3};
   DeviceInput input;
@@ -120,7 +120,7 @@ TEST_F(Haply, ThatForcesAreChangedOnTheirWayIsSaid) {
 }
 
 // Consecutive forces received by a slow service.
-TEST_F(Haply, ASlowServiceGetsNoLargerSteps) {
+TEST_F(Haply, LimitsForceStepsToASlowService) {
   service_.is_held = true;
   for (const int delay_ms : {2, 3}) {
     service_.delay_ms = delay_ms;
@@ -148,7 +148,7 @@ TEST_F(Haply, ASlowServiceGetsNoLargerSteps) {
   }
 }
 
-TEST_F(Haply, OneThatGivesNoPoseIsNotStarted) {
+TEST_F(Haply, RefusesToStartWithoutAPose) {
   service_.is_mute = true;
   ConnectedDevice device([this] { return open_haply(service_.address()); });
   try {
@@ -159,7 +159,7 @@ TEST_F(Haply, OneThatGivesNoPoseIsNotStarted) {
   }
 }
 
-TEST_F(Haply, ReadsMmFromMAndTheGrip) {
+TEST_F(Haply, ConvertsMetresToMillimetresAndReadsTheGrip) {
   open();
   DeviceInput input;
   ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
@@ -168,7 +168,7 @@ TEST_F(Haply, ReadsMmFromMAndTheGrip) {
   EXPECT_EQ(input.buttons, 5u);
 }
 
-TEST_F(Haply, AWiredGripHasOneButton) {
+TEST_F(Haply, ReadsOneButtonFromAWiredGrip) {
   service_.grip = "verse_grip";
   open();
   DeviceInput input;
@@ -176,7 +176,7 @@ TEST_F(Haply, AWiredGripHasOneButton) {
   EXPECT_EQ(input.buttons, 1u);
 }
 
-TEST_F(Haply, WithoutAGripPositionAloneIsSensed) {
+TEST_F(Haply, SensesPositionOnlyWithoutAGrip) {
   service_.grip = nullptr;
   open();
   EXPECT_EQ(connection_->capabilities().sensed, 3);
@@ -185,14 +185,14 @@ TEST_F(Haply, WithoutAGripPositionAloneIsSensed) {
   EXPECT_TRUE(input.X_BH.orientation.isApprox(Quat::Identity()));
 }
 
-TEST_F(Haply, AForceGoesAsItsVersionHasIt) {
+TEST_F(Haply, SendsForceAsVectorToCurrentServices) {
   wrench_.force_N = {1, 2, 3};
   open();
   await_force({1, 2, 3});
   EXPECT_NE(service_.heard().back().find("\"vector\""), std::string::npos);
 }
 
-TEST_F(Haply, BeforeVersion3_5AForceIsCalledValues) {
+TEST_F(Haply, SendsForceAsValuesToOldServices) {
   service_.is_3_5 = false;
   wrench_.force_N = {1, 2, 3};
   open();
@@ -209,7 +209,7 @@ TEST_F(Haply, ClosingSendsZero) {
   EXPECT_EQ(force_N(), Vec3::Zero());
 }
 
-TEST_F(Haply, WhatIsNoStateIsSilence) {
+TEST_F(Haply, TreatsInvalidStatesAsSilence) {
   open();
   DeviceInput input;
   ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
@@ -244,14 +244,14 @@ TEST_F(Haply, WhatIsNoStateIsSilence) {
   EXPECT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
 }
 
-TEST_F(Haply, ATextThatIsTooLongIsTheEnd) {
+TEST_F(Haply, IsLostAfterAMessageThatIsTooLong) {
   open();
   service_.say(std::string(1 << 20, ' '));
   DeviceInput input;
   EXPECT_EQ(go_on_until(ConnectionStatus::lost, input), ConnectionStatus::lost);
 }
 
-TEST_F(Haply, AServiceThatIsMuteIsSilentThenLostAndSoIsOneThatCloses) {
+TEST_F(Haply, IsSilentThenLostWhenServiceIsMuteAndLostOnClose) {
   open();
   DeviceInput input;
   ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
@@ -269,7 +269,7 @@ TEST_F(Haply, AServiceThatIsMuteIsSilentThenLostAndSoIsOneThatCloses) {
 }
 
 // However slow the service is, no outdated wrenches queue up.
-TEST_F(Haply, OneCommandIsOnItsWayAtAnyLatencyAndThatItIsTooLongIsSaid) {
+TEST_F(Haply, KeepsOneCommandInFlightAndReportsHighLatency) {
   service_.delay_ms = 30;
   open();
   DeviceInput input;

@@ -81,14 +81,14 @@ TEST_F(Touch, SaysWhatItCan) {
   EXPECT_EQ(can.watchdog_s, 0);
 }
 
-TEST_F(Touch, ListingItGivesItsMotorsNoPower) {
+TEST_F(Touch, ListingLeavesMotorsUnpowered) {
   EXPECT_EQ(hardware_named("hd")->find("").text, "3D Systems Touch 0815");
   EXPECT_FALSE(device_->has_force);
   EXPECT_EQ(device_->frames, 0);
   EXPECT_FALSE(device_->is_open);
 }
 
-TEST_F(Touch, ATransformThatTurnsByNoRotationIsNoPose) {
+TEST_F(Touch, GivesANonFinitePoseForAnInvalidRotation) {
   device_->transform.fill(0);
   open();
   DeviceInput input;
@@ -120,7 +120,7 @@ TEST_F(Touch, IsDrivenOnceItIsCalibrated) {
   write_until_it_is({{1, 2, 3}, Vec3::Zero()}, {1, 2, 3}, Vec3::Zero());
 }
 
-TEST_F(Touch, AWrenchThatNoFrameTookIsNotSent) {
+TEST_F(Touch, WriteIsSilentUntilAFrameTakesTheLastWrench) {
   open();
   await_frame();
   device_->hangs = true;
@@ -132,7 +132,7 @@ TEST_F(Touch, AWrenchThatNoFrameTookIsNotSent) {
   EXPECT_EQ(connection_->write({{2, 0, 0}, Vec3::Zero()}), ConnectionStatus::fresh);
 }
 
-TEST_F(Touch, ZeroIsSentOnceTheMotorsHaveIt) {
+TEST_F(Touch, ReportsZeroAsSentOnlyOnceTheMotorsHaveIt) {
   open();
   EXPECT_EQ(connection_->write({}), ConnectionStatus::fresh);
   write_until_it_is({{3, 0, 0}, Vec3::Zero()}, {3, 0, 0}, Vec3::Zero());
@@ -145,7 +145,7 @@ TEST_F(Touch, ZeroIsSentOnceTheMotorsHaveIt) {
   EXPECT_GE(rounds, 1);
 }
 
-TEST_F(Touch, ReadsColumnsInMm) {
+TEST_F(Touch, ReadsColumnMajorTransformInMillimetres) {
   // A quarter turn about z: x of the handle, the first column, points along y.
   device_->transform = {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 10, -20, 30, 1};
   device_->buttons = 2;
@@ -157,19 +157,19 @@ TEST_F(Touch, ReadsColumnsInMm) {
   EXPECT_EQ(input.buttons, 2u);
 }
 
-TEST_F(Touch, WritesTheForceAndNoTorqueThatItCannotDrive) {
+TEST_F(Touch, SendsForceButNoTorqueWithThreeDrivenAxes) {
   open();
   write_until_it_is({{1, 2, 3}, {40, 50, 60}}, {1, 2, 3}, Vec3::Zero());
 }
 
-TEST_F(Touch, TorqueIsInNmm) {
+TEST_F(Touch, SendsTorqueInNewtonMillimetres) {
   device_->output_dof = 6;
   open();
   EXPECT_EQ(connection_->capabilities().limits.torque_Nmm, 188);
   write_until_it_is({Vec3::Zero(), {40, 50, 60}}, Vec3::Zero(), {40, 50, 60});
 }
 
-TEST_F(Touch, AWrenchThatIsNotRenewedLapses) {
+TEST_F(Touch, ForceIsZeroAfterAWrenchIsNotRenewed) {
   open();
   connection_->write({{1, 2, 3}, Vec3::Zero()});
   std::this_thread::sleep_for(30ms);
@@ -177,7 +177,7 @@ TEST_F(Touch, AWrenchThatIsNotRenewedLapses) {
   EXPECT_EQ(force(), Vec3::Zero());
 }
 
-TEST_F(Touch, OneThatHangsIsSilentAndOneThatFailsLost) {
+TEST_F(Touch, IsSilentWhenHangingAndLostOnFailure) {
   open();
   DeviceInput input;
   // Warm motors do not count as a failure.

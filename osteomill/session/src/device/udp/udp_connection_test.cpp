@@ -106,7 +106,7 @@ class StubDevice {
   sockaddr_in partner_{};
 };
 
-TEST(UdpDevice, SaysWhatItIsTakesStatesAndSendsWrenches) {
+TEST(UdpDevice, ReportsCapabilitiesReadsStatesAndSendsWrenches) {
   StubDevice stub;
   const auto connection = stub.open();
   EXPECT_EQ(connection->capabilities().name, "Lab one");
@@ -127,7 +127,7 @@ TEST(UdpDevice, SaysWhatItIsTakesStatesAndSendsWrenches) {
   EXPECT_EQ(sent.torque_Nmm, (std::array<double, 3>{4, 5, 6}));
 }
 
-TEST(UdpDevice, TheNewestStateCountsAndWhatWasOvertakenDoesNot) {
+TEST(UdpDevice, ReadsTheNewestStateAndIgnoresOvertakenOnes) {
   StubDevice stub;
   const auto connection = stub.open();
   const std::uint32_t last = std::numeric_limits<std::uint32_t>::max();
@@ -145,7 +145,7 @@ TEST(UdpDevice, TheNewestStateCountsAndWhatWasOvertakenDoesNot) {
   EXPECT_EQ(connection->read(input), ConnectionStatus::fresh);
 }
 
-TEST(UdpDevice, SaysWhetherItMayBeDriven) {
+TEST(UdpDevice, ReportsWhyItIsNotDriven) {
   StubDevice stub;
   const auto connection = stub.open();
   State state;
@@ -161,7 +161,7 @@ TEST(UdpDevice, SaysWhetherItMayBeDriven) {
   EXPECT_NE(input.not_driven, nullptr);
 }
 
-TEST(UdpDevice, DatagramsThatAreNoneOfTheProtocolAreLeftAlone) {
+TEST(UdpDevice, IgnoresDatagramsOutsideTheProtocol) {
   StubDevice stub;
   const auto connection = stub.open();
   DeviceInput input;
@@ -196,7 +196,7 @@ std::string fault_of(const std::function<void()>& action) {
   return "none";
 }
 
-TEST(UdpDevice, AnAnswerThatCannotBeIsRefused) {
+TEST(UdpDevice, RefusesInvalidReplies) {
   const std::vector<std::pair<std::function<void(Reply&)>, std::string>> faults{
       {[](Reply& reply) { reply.name = {}; }, "reports no valid name"},
       {[](Reply& reply) { reply.name[1] = '\n'; }, "reports no valid name"},
@@ -220,19 +220,19 @@ TEST(UdpDevice, OneThatAnotherProgramHasIsRefused) {
             ": udp:" + stub.address + ": another program has the device in use");
 }
 
-TEST(UdpDevice, ANameOfFullLengthNeedsNoEnd) {
+TEST(UdpDevice, ReadsAFullLengthNameWithoutTerminator) {
   StubDevice stub;
   stub.reply.name.fill('n');
   EXPECT_EQ(stub.open()->capabilities().name, std::string(64, 'n'));
 }
 
-TEST(UdpDevice, ANameServerThatDoesNotAnswerHoldsNobodyUp) {
+TEST(UdpDevice, DoesNotWaitForAnUnresponsiveNameServer) {
   EXPECT_EQ(fault_of([] { open_udp("unanswered.invalid:9"); }),
             "udp:unanswered.invalid:9: no such host is known");
   EXPECT_FALSE(name_server_answered);
 }
 
-TEST(UdpDevice, WithoutOneItSaysWhy) {
+TEST(UdpDevice, ReportsWhyItCannotBeOpenedOrFound) {
   EXPECT_EQ(fault_of([] { open_udp("nowhere"); }), "udp:nowhere: is not of the form HOST:PORT");
   EXPECT_EQ(fault_of([] { open_udp("127.0.0.1:what"); }).find("udp:127.0.0.1:what: "), 0u);
   EXPECT_EQ(fault_of([] { open_udp("no-such-host.invalid:9"); }),

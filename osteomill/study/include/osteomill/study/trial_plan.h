@@ -58,7 +58,7 @@ inline constexpr std::string_view kNotMatchedKey = "matched.left_out";
 /// and script.
 RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::string_view phase);
 
-/// Returns which parts of the plan were not completed by the end of this phase: "the hole stayed shallower
+/// Returns which parts of the plan were not completed by the end of this phase: "the hole was shallower
 /// than 3 mm; the shaft leant on the bone for less than 3 s". Empty for none.
 std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script,
                             std::string_view phase);
