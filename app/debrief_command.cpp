@@ -267,7 +267,7 @@ void add_debrief_command(CLI::App& program) {
                    "Exercise to measure against (default: the recording's own)")
       ->type_name("FILE");
   command->add_flag("--anonymous", options->anonymous, "Leave out the names of people and files");
-  command->add_option("--out", options->out, "Folder for debrief.html and debrief.csv")
+  command->add_option("--out", options->out, "Folder for debrief.html, debrief.csv and progress.csv")
       ->required()
       ->type_name("FOLDER");
   add_quiet_option(*command);

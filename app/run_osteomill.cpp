@@ -114,6 +114,8 @@ class HelpText : public CLI::Formatter {
 
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
     std::string name = make_option_name(option, is_positional);
+    // CLI11 adds the value of a switch's second name.
+    if (const std::size_t value = name.find("{false}"); value != std::string::npos) name.erase(value, 7);
     if (is_positional) {
       name = option->get_expected_max() > 1 ? name + " ..." : name;
     } else if (option->get_type_size() != 0) {

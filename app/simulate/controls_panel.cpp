@@ -140,10 +140,13 @@ bool is_dental(Handpiece handpiece) {
 }
 
 // Draws the list of named burrs, one column per kind.
-bool choose_named_burr(MillingSetup& requested_setup) {
+bool choose_named_burr(MillingSetup& requested_setup, bool is_free) {
   const NamedBurr* chosen = find_burr(requested_setup.tool, requested_setup.burr);
   const NamedBurr* now = chosen;
-  if (ui::button("Choose burr", "Lists surgical and dental burrs by kind and diameter"))
+  if (ui::button("Choose burr",
+                 is_free ? "Lists surgical and dental burrs by kind and diameter"
+                         : "The burrs of the exercise are in the panel at the bottom",
+                 is_free))
     ImGui::OpenPopup("##burrs");
   ImGui::SameLine();
   const double wide_mm = 2 * requested_setup.tool.burr_radius_mm;
@@ -266,9 +269,7 @@ void draw_milling(ViewState& view, Simulation& simulation, ToolChoice& choice) {
   bool paused = milling.state().record.paused;
   if (ui::checkbox("pause", "Pauses milling, without a force on your hand (P)", &paused))
     milling.set_paused(paused);
-  ImGui::BeginDisabled(!choice.is_free);
-  choice.changed = choose_named_burr(view.requested_setup) || choice.changed;
-  ImGui::EndDisabled();
+  choice.changed = choose_named_burr(view.requested_setup, choice.is_free) || choice.changed;
   draw_undo(view, milling);
   draw_piece_controls(view, simulation);
 }

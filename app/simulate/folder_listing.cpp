@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 bool may_be_opened(const fs::path& file) {
-  return file.extension() == ".h5" || may_be_scan(file);
+  return file.extension() == ".h5" || file.extension() == ".toml" || may_be_scan(file);
 }
 
 }  // namespace

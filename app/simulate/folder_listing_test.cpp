@@ -22,15 +22,21 @@ TEST_F(ListFolder, ListsFoldersFirstAndOnlyFilesThatCanBeOpened) {
   std::filesystem::create_directory(folder_ / "b");
   std::filesystem::create_directory(folder_ / ".git");
   const std::string dicom = std::string(128, '\0') + "DICM";
-  for (const char* name : {"a.nrrd", "c.nii.gz", "d.h5", "e.txt", ".f.nrrd", "g.png", "h.ZIP"}) touch(name);
+  for (const char* name : {"a.nrrd", "c.nii.gz", "d.h5", "e.txt", ".f.nrrd", "g.png", "h.ZIP", "i.toml"})
+    touch(name);
   touch("IM0001", dicom);
   touch("1.2.840.113", dicom);
   touch("README", "text");
   touch("x.raw", dicom);
   const FolderListing listing = list_folder(folder_, false);
-  EXPECT_EQ(
-      listing.entries,
-      (Entries{{"b", true}, {"1.2.840.113"}, {"IM0001"}, {"a.nrrd"}, {"c.nii.gz"}, {"d.h5"}, {"h.ZIP"}}));
+  EXPECT_EQ(listing.entries, (Entries{{"b", true},
+                                      {"1.2.840.113"},
+                                      {"IM0001"},
+                                      {"a.nrrd"},
+                                      {"c.nii.gz"},
+                                      {"d.h5"},
+                                      {"h.ZIP"},
+                                      {"i.toml"}}));
   EXPECT_EQ(listing.complaint, "");
   EXPECT_FALSE(listing.has_more);
 }

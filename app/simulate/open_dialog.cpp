@@ -38,7 +38,8 @@ fs::path first_folder(const std::vector<std::string>& recent) {
 OpenKind draw_open_buttons() {
   OpenKind request = OpenKind::none;
   if (ui::button("Open",
-                 "Opens a scan (DICOM, NRRD, MetaImage, NIfTI, or a zip of one) or a recording (Ctrl+O)"))
+                 "Opens a scan (DICOM, NRRD, MetaImage, NIfTI, or a zip of one), a recording, or an exercise "
+                 "(Ctrl+O)"))
     request = OpenKind::file;
   ImGui::SameLine();
   if (ui::button("Open a folder", "Opens a folder of DICOM slices, including its subfolders"))

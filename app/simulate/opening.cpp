@@ -78,7 +78,8 @@ PreparedScan open_exercise(const ExerciseOptions& exercise, const ScanOptions& s
   const ScanOptions source = scan_of(loaded.placed.exercise, scan);
   auto work =
       std::make_unique<ExerciseWork>(std::move(loaded.placed), loaded.bone.volume, std::move(recorded));
-  const std::string isovalue_from = isovalue_source(source, loaded.bone);
+  const std::string isovalue_from =
+      source.isovalue ? "from the exercise" : isovalue_source(source, loaded.bone);
   PreparedScan prepared =
       prepare_scan(source, std::move(loaded.bone), setup.tool, isovalue_from,
                    [&](std::shared_ptr<Volume> bone) { return prepare_milling(std::move(bone), setup); });

@@ -21,7 +21,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line, Wi
   CLI::App* command = program.add_subcommand(
       "simulate", "Open a window to mill a bone, or to play back a recording given in place of the scan");
   command->group("In a window");
-  add_scan_options(*command, options->scan);
+  add_scan_options(*command, options->scan, "the start page, from which to choose");
   add_exercise_options(*command, options->exercise);
   add_guidance_option(*command, options->exercise);
   add_branch_options(*command, options->from);

@@ -135,20 +135,16 @@ void Simulator::finish_picture() {
 void Simulator::draw_start_page() {
   std::optional<StartChoice> choice = start_page_->draw(stage_.window.size());
   if (const auto dropped = stage_.window.take_dropped(); !dropped.empty())
-    choice = StartChoice{"", "", dropped.back()};
+    choice = StartChoice{dropped.back(), start_page_->trainee()};
   if (!choice) return;
+  if (!choice->trainee.empty()) options_.exercise.trainee = choice->trainee;
   stage_.view.open_requested = choice->open;
-  if (choice->open != OpenKind::none) return;
-  if (choice->exercise.empty()) return begin_scan(choice->scan);
-  ExerciseOptions exercise = options_.exercise;
-  exercise.file = choice->exercise;
-  if (!choice->trainee.empty()) exercise.trainee = choice->trainee;
-  begin_exercise(std::move(exercise));
+  if (choice->open == OpenKind::none) begin_file(choice->path);
 }
 
 void Simulator::draw_waiting() {
   // If several paths were dropped, use the last one.
-  if (const auto asked = stage_.window.take_dropped(); !asked.empty()) begin_scan(asked.back());
+  if (const auto asked = stage_.window.take_dropped(); !asked.empty()) begin_file(asked.back());
   if (opening_.is_ready()) install_first();
   draw_opening();
 }
@@ -156,7 +152,7 @@ void Simulator::draw_waiting() {
 void Simulator::draw_playback() {
   ViewState& view = stage_.view;
   if (std::exchange(view.start_page_requested, false)) return show_start_page();
-  if (const auto asked = stage_.window.take_dropped(); !asked.empty()) return begin_scan(asked.back());
+  if (const auto asked = stage_.window.take_dropped(); !asked.empty()) return begin_file(asked.back());
   if (const auto from = std::exchange(view.branch_requested, std::nullopt)) {
     OpenRequest request = scan_request("");
     request.from = *from;
@@ -206,8 +202,12 @@ OpenRequest Simulator::scan_request(const std::string& path) const {
   return {{path, std::nullopt, {.series = "", .max_memory_bytes = options_.scan.read.max_memory_bytes}}};
 }
 
-void Simulator::begin_scan(const std::string& path) {
-  begin_opening(scan_request(path));
+// Opens a scan, a recording or an exercise.
+void Simulator::begin_file(const std::string& path) {
+  if (std::filesystem::path(path).extension() != ".toml") return begin_opening(scan_request(path));
+  ExerciseOptions exercise = options_.exercise;
+  exercise.file = path;
+  begin_exercise(std::move(exercise));
 }
 
 void Simulator::begin_exercise(ExerciseOptions exercise) {
@@ -289,7 +289,7 @@ void Simulator::open_another() {
   if (asked.size() > 1) {
     view.dialogues.add_error("Only one scan can be opened at a time: a file, or the folder of a series");
   } else if (!asked.empty() && !opened_) {
-    begin_scan(asked.front());
+    begin_file(asked.front());
   }
   // Only one opened scan at a time may wait for the user's decision on the milled bone.
   if (opened_ || !opening_.is_ready()) return;

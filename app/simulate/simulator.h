@@ -71,7 +71,7 @@ class Simulator {
 
   void open_first();
   void begin_opening(OpenRequest request);
-  void begin_scan(const std::string& path);
+  void begin_file(const std::string& path);
   void begin_exercise(ExerciseOptions exercise);
   OpenRequest scan_request(const std::string& path) const;
   void ask_about_leftover();

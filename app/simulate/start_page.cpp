@@ -128,7 +128,7 @@ void StartPage::draw_exercises(std::optional<StartChoice>& choice) {
   for (const Entry& entry : entries_) {
     ImGui::TableNextColumn();
     if (draw_entry(entry, std::min(ui::px(kMaxEntry_px), ImGui::GetContentRegionAvail().x - between_px)))
-      choice = StartChoice{entry.file, name_.data(), ""};
+      choice = StartChoice{entry.file, trainee()};
   }
   ImGui::EndTable();
 }
@@ -136,13 +136,13 @@ void StartPage::draw_exercises(std::optional<StartChoice>& choice) {
 void StartPage::draw_scans(std::optional<StartChoice>& choice) {
   ImGui::TextUnformatted("Scans");
   if (const OpenKind open = draw_open_buttons(); open != OpenKind::none)
-    choice = StartChoice{"", "", "", open};
+    choice = StartChoice{"", trainee(), open};
   ImGui::SameLine();
   if (ui::button("Built-in tooth", "Opens the tooth included with the program"))
-    choice = StartChoice{"", "", "builtin:tooth"};
+    choice = StartChoice{"builtin:tooth", trainee()};
   for (const std::string& scan : recent_)
     if (ui::button(scan.c_str(), "Opens this scan, which was opened recently"))
-      choice = StartChoice{"", "", scan};
+      choice = StartChoice{scan, trainee()};
 }
 
 std::optional<StartChoice> StartPage::draw(const PixelSize& size) {

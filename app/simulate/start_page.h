@@ -14,11 +14,11 @@
 
 namespace osteomill::app {
 
-/// The user's choice on the start page: an exercise with a name to record, or a scan.
+/// The user's choice on the start page: a scan, recording or exercise, or to choose one in a dialog; and the
+/// name to record with an exercise.
 struct StartChoice {
-  std::string exercise;
+  std::string path;
   std::string trainee;
-  std::string scan;
   OpenKind open = OpenKind::none;
 };
 
@@ -30,6 +30,9 @@ class StartPage {
 
   /// Draws the page. Returns the user's choice; std::nullopt in most frames.
   std::optional<StartChoice> draw(const PixelSize& size);
+
+  /// Returns the name that the user has entered; empty if none.
+  std::string trainee() const { return name_.data(); }
 
  private:
   struct Entry {
