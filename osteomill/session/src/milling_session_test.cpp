@@ -1,5 +1,6 @@
 #include "osteomill/session/milling_session.h"
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/session/trajectory.h"
+#include "osteomill/volume/label_map.h"
 
 #include "tests/shapes.h"
 
@@ -329,6 +331,19 @@ TEST_F(MillingSessionTest, RejectsAPoseFartherThanAnyWorkspace) {
     EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
     EXPECT_TRUE(is_finite(record.X_WT));
   }
+  EXPECT_TRUE(algorithm_->steps.empty());
+}
+
+TEST_F(MillingSessionTest, CountsNoContactWithALabelWhileTheDeviceHasNoPose) {
+  Volume bone = session_->volume();
+  const GridGeometry grid = bone.geometry();
+  bone.set_labels(std::make_shared<const LabelMap>(std::vector<Label>{{1, "nerve", {}, true}}, grid, grid,
+                                                   std::vector<LabelMap::LabelIndex>(grid.voxel_count(), 1)));
+  start(std::move(bone));
+  device_.put({Vec3::Constant(NAN), Quat::Identity()});
+  EXPECT_EQ(tick().label_cuts, LabelCuts{});
+  device_.put({{0, 0, 0}, Quat::Identity()});
+  EXPECT_EQ(tick().label_cuts.front().label, 1);
 }
 
 TEST_F(MillingSessionTest, RemovesBoneOnlyWithTheSpindleOnAndNotifiesTheAlgorithm) {

@@ -44,6 +44,7 @@ TEST(Replay, RemovesBoneOnlyIfTheTrajectoryIsMilling) {
 TEST(Replay, SecondReplayIsBitIdentical) {
   const auto first = replayed(true);
   const auto second = replayed(true);
+  ASSERT_EQ(first.size(), second.size());
   for (std::size_t n = 0; n < first.size(); ++n) {
     EXPECT_EQ(first[n].wrench.force_N, second[n].wrench.force_N);
     EXPECT_EQ(first[n].wrench.torque_Nmm, second[n].wrench.torque_Nmm);

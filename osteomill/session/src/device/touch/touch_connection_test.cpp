@@ -171,7 +171,7 @@ TEST_F(Touch, SendsTorqueInNewtonMillimetres) {
 
 TEST_F(Touch, ForceIsZeroAfterAWrenchIsNotRenewed) {
   open();
-  connection_->write({{1, 2, 3}, Vec3::Zero()});
+  write_until_it_is({{1, 2, 3}, Vec3::Zero()}, {1, 2, 3}, Vec3::Zero());
   std::this_thread::sleep_for(30ms);
   await_frame();
   EXPECT_EQ(force(), Vec3::Zero());
@@ -196,8 +196,7 @@ TEST_F(Touch, IsSilentWhenHangingAndLostOnFailure) {
 
 TEST_F(Touch, ClosingSendsZero) {
   open();
-  connection_->write({{1, 2, 3}, Vec3::Zero()});
-  await_frame();
+  write_until_it_is({{1, 2, 3}, Vec3::Zero()}, {1, 2, 3}, Vec3::Zero());
   connection_.reset();
   EXPECT_EQ(force(), Vec3::Zero());
   EXPECT_FALSE(device_->is_open);
