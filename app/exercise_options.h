@@ -61,7 +61,8 @@ ScanOptions scan_of(const Exercise& exercise, const ScanOptions& options);
 
 /// Throws InputError, naming the exercise, if its burrs do not include the setup's.
 void require_allowed_burr(const Exercise& exercise, const MillingSetup& setup);
-/// Replaces the setup's burr by the exercise's burr of the nearest radius, unless the exercise allows it.
+/// Replaces the setup's burr by the exercise's burr of the nearest radius, unless the exercise
+/// already allows the setup's.
 void select_allowed_burr(const Exercise& exercise, MillingSetup& setup);
 
 /// Returns the exercise's entry for a recording.

@@ -54,7 +54,7 @@ void print_times(const char* what, const TimePercentiles& times) {
 }
 
 void print_timing(const TimingSummary& timing) {
-  fmt::print("rate         {:.1f} Hz sustainable by the ticks' times; {:.1f} Hz measured over {} ticks\n",
+  fmt::print("rate         {:.1f} Hz sustainable at these tick times; {:.1f} Hz measured over {} ticks\n",
              timing.rate_hz, timing.ticks_per_s, timing.ticks);
   print_times("lateness", timing.lateness);
   fmt::print("late ticks   {} by over 1 ms ({:.3f} %), {} missed\n", timing.late_ticks,
@@ -113,7 +113,7 @@ class LiveToolSource {
     virtual_->pull_to(X_W_target_);
   }
 
-  // Warns if the maker's software does not stop.
+  // Warns if the vendor's software does not stop.
   void close() {
     if (!hardware_) return;
     if (const std::string message = hardware_->close(); !message.empty())

@@ -42,7 +42,8 @@ std::string without_leading_dashes(std::string_view word) {
   return bare;
 }
 
-// Returns the edit distance of two words; 1 if one is a prefix of the other.
+// Returns the edit distance of two words; 1 if one is a prefix of the other and has at
+// least three letters.
 std::size_t distance(const std::string& word, const std::string& known) {
   constexpr std::size_t kMaxDistance = 3;
   const std::size_t common = std::min(word.size(), known.size());

@@ -35,7 +35,7 @@ class ProgressText {
 
 /// Prints the progress of the task `what` and the time left on standard error: on a terminal in one line that
 /// is overwritten, otherwise in a new line at each tenth and at least each minute. Silent in the first
-/// second. Not thread-safe.
+/// second. Call from one thread at a time.
 void show_progress(std::string_view what, double fraction_done);
 /// Ends the task; clears its line on a terminal.
 void end_progress();

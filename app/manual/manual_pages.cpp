@@ -92,7 +92,7 @@ Invalid command line.
 constexpr std::string_view kEnvironment = R"(.SH ENVIRONMENT
 .TP
 \fBOSTEOMILL_DHD_LIBRARY\fR, \fBOSTEOMILL_HD_LIBRARY\fR
-Paths of the device makers\(aq libraries, libdhd of Force Dimension and libHD of 3D Systems, if the system does not find them by name.
+Paths of the device vendors\(aq libraries, libdhd of Force Dimension and libHD of 3D Systems, if the system does not find them by name.
 .TP
 \fBSPNAV_SOCKET\fR
 Socket of the daemon spacenavd, which a SpaceMouse needs.

@@ -61,7 +61,7 @@ kill -9 $program
 wait $program 2>/dev/null || true
 judge "haply stopped"
 
-# A maker's function never returns: `live` still ends, and names it.
+# A vendor's function never returns: `live` still ends, and names it.
 OSTEOMILL_STAND_IN_HANGS_IN=dhdGetPositionAndOrientationFrame timeout 60 "$osteomill" live ball.nrrd --device dhd --seconds 3 \
   --quiet >said 2>errors || fail "live of a device that hangs ended with $?"
 grep -q "dhdGetPositionAndOrientationFrame does not return" errors || fail "what hangs is not named"

@@ -1,4 +1,4 @@
-// Replaces libdhd in tests without a device. Has the functions that osteomill uses, under the maker's names.
+// Replaces libdhd in tests without a device. Has the functions that osteomill uses, under the vendor's names.
 
 #include "tests/support/dhd_stand_in.h"
 
@@ -117,7 +117,7 @@ int dhdSetBrakes(int on, char) {
   g_state.status[6] = on;
   return 0;
 }
-// Behaves like the maker's library with its simulated device.
+// Behaves like the vendor's library with its simulated device.
 int dhdEnableForce(unsigned char on, char) {
   if (g_state.status[3] == 0) {
     g_state.status[5] = on;

@@ -1,4 +1,4 @@
-// Replaces libHD in tests without a device. Has the functions that osteomill uses, under the maker's names.
+// Replaces libHD in tests without a device. Has the functions that osteomill uses, under the vendor's names.
 
 #include "tests/support/hd_stand_in.h"
 

@@ -400,7 +400,7 @@ double swept_mm3(const Recording& recording, double radius_mm) {
   return static_cast<double>(swept) * std::pow(kApart_mm, 3);
 }
 
-// A resting burr would widen its hole: the margin of the haptic algorithm then holds it off by up to 0.1 mm,
+// A resting burr would widen its hole: the skin of barrier-shell then holds it off by up to 0.1 mm,
 // which milling bridges.
 TEST_P(CutVolume, MatchesTheToolsSweptVolumeWithinTwoPercent) {
   const Volume bone = bone_below_zero(GetParam(), 10);

@@ -10,11 +10,11 @@ namespace osteomill {
 namespace {
 
 constexpr std::array kKinds{
-    HardwareKind{"dhd", "NUMBER", "Force Dimension and Falcon, through the maker's libdhd",
+    HardwareKind{"dhd", "NUMBER", "Force Dimension and Falcon, through the vendor's libdhd",
                  &probe_force_dimension, &open_force_dimension},
-    HardwareKind{"haply", "HOST:PORT", "Haply Inverse3, through the maker's service", &probe_haply,
+    HardwareKind{"haply", "HOST:PORT", "Haply Inverse3, through the vendor's service", &probe_haply,
                  &open_haply},
-    HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, through the maker's libHD", &probe_touch,
+    HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, through the vendor's libHD", &probe_touch,
                  &open_touch},
     HardwareKind{"udp", "HOST:PORT", "a laboratory's own device, through UDP datagrams (docs/udp-device.md)",
                  &probe_udp, &open_udp},

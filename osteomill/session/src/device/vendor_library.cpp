@@ -37,10 +37,10 @@ VendorLibrary::VendorLibrary(std::string device, const char* variable,
     const std::string reason = dlerror();
     if (!reason.starts_with(std::string(name) + ": cannot open shared object file")) why = reason;
   }
-  throw InputError(device_, why.empty() ? fmt::format("{} of the maker's software is not installed; {} can "
+  throw InputError(device_, why.empty() ? fmt::format("{} of the vendor's software is not installed; {} can "
                                                       "name its path",
                                                       *names.begin(), variable)
-                                        : "the maker's software cannot be loaded: " + why);
+                                        : "the vendor's software cannot be loaded: " + why);
 }
 
 VendorLibrary::Function VendorLibrary::operator[](const char* name) const {

@@ -76,7 +76,7 @@ std::vector<Field<M>> all_figures() {
       "turn_at_torque_step_deg", "degrees", [](auto& m) -> auto& { return m.turns.at_torque_step_deg; },
       "turn of the shaft within 50 ms about the greatest torque step");
   add("torque_follows_force", "", &M::torque_follows_force,
-      "multiple correlation of torque and force above 20 Hz");
+      "multiple correlation of the torque with the force, both above 20 Hz");
   add("contacts_mean", "", &M::contacts_mean, "sample points in contact, mean");
   add(
       "lost_after_s", "s", [](auto& m) -> auto& { return m.contact.lost_after_s; }, "when contact was lost");

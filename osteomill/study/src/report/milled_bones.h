@@ -19,9 +19,9 @@ struct MilledBones {
   std::vector<std::string> notices;
 };
 
-/// Repeats the milling of each run's first recording and returns each resulting bone as a body, with the bone
-/// before, in at most `max_bytes` of a page. Runs that continue another recording have no bone of their own.
-/// Slow.
+/// Repeats the milling of the group's first runs, at most 8, and returns each resulting bone as a body, with
+/// the bone before, in at most `max_bytes` of a page; a notice states how many were left out. Runs that
+/// continue another recording have no bone of their own. Slow.
 MilledBones milled_bones(const RunGroup& group, const ScanOf& scan_of, std::size_t max_bytes);
 
 }  // namespace osteomill

@@ -59,8 +59,8 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
     const std::string* left_out = find_setting<std::string>(recordings.front().description, kNotMatchedKey);
     return fmt::format(
         "Stiffness is matched: each algorithm's was chosen so that a flat wall is felt as {:.3g} N/mm (the "
-        "slope of the force over the depth about 0.5 N, pressed with the burr). Its rotational stiffness, "
-        "and the stiffness felt at an edge or with the shaft, is not matched.{}",
+        "slope of the force over the depth about 0.5 N, pressed with the burr). Rotational stiffness, "
+        "and the stiffness felt at an edge or with the shaft, are not matched.{}",
         *felt_N_per_mm, left_out == nullptr ? "" : " Left out of this comparison: " + *left_out + ".");
   }
   return "Stiffness is not matched: each algorithm has the stiffness of its own equations, so the hand feels "

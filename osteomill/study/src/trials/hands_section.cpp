@@ -128,14 +128,15 @@ std::vector<std::string> how_to_read(const Study& study) {
                 "median, which takes 6 (the range covers the median with a probability of {:.3g} %).",
                 n, 100 * interval.coverage)
           : fmt::format("Brackets give a confidence interval of the median between two order statistics, by "
-                        "the binomial distribution; its coverage is {:.3g} %. If a cell names fewer hands, "
-                        "its coverage is 95 % or more; with fewer than six it is their range.",
+                        "the binomial distribution; its coverage is {:.3g} %. In a cell that names fewer "
+                        "hands, the interval covers the median with 95 % or more; with fewer than six hands "
+                        "it is their range.",
                         100 * interval.coverage));
   paragraphs.push_back(fmt::format(
       "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, with "
       "Holm's correction over the comparisons of one row (not over the rows). The size of a difference is "
-      "its "
-      "median over the hands, in bold unless it is the same for a hand; one with p above {} is not settled. "
+      "its median over the hands, in bold unless it is the same for a hand; one with p above {} is not "
+      "settled. "
       "The smallest p that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
       kSignificance, n, min_p(n), min_corrected,
       min_corrected > kSignificance ? ", so that no difference can be significant here and none is shown"

@@ -28,7 +28,7 @@ namespace {
 
 constexpr int kTicksBetweenProgress = 500;
 
-// Multiple of this stride is added to a hand's seed for another tremor, so that it is not the seed of any
+// A multiple of kTremorStride is added to a hand's seed for another tremor, so that it is not the seed of any
 // other hand of the study.
 constexpr int kOtherTremors = 2;
 constexpr std::uint64_t kTremorStride = 0x9e3779b97f4a7c15;

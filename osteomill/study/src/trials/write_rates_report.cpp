@@ -195,7 +195,7 @@ Section vertices_section(const std::vector<VertexSearchRow>& rows) {
           "flat wall by half the radius; the bone's density is linear, so that only the number of vertices "
           "matters. A number suffices if, for every side, the force is at most {:g}° off the wall's normal, "
           "its size differs from the mean by at most {:g} of it, and a vertex touches the bone before the "
-          "part is {:g} of its radius deep. The least is the number from which all larger ones tried "
+          "part is {:g} of its radius deep. The least is the number from which on all tried "
           "suffice. These tolerances are round numbers; the table shows what others would give.",
           least_words(rows, "sphere", kSphereVertices), least_words(rows, "circle", kSliceVertices),
           VertexSearchRow::kMaxDirection_deg, VertexSearchRow::kMaxSizeOff, VertexSearchRow::kMaxUnseen)},

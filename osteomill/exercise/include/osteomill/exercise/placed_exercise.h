@@ -28,7 +28,8 @@ struct PlacedExercise {
   GridGeometry scan;
   /// The bone to be removed.
   VoxelSet target;
-  /// Direction out of the bone at the target: plus or minus an axis of W.
+  /// Direction out of the bone at the target: plus or minus z of W, or the
+  /// larger of x and y if the direction is closer to horizontal than 30 degrees.
   Vec3 outward_W = Vec3::UnitZ();
   /// Voxels that may be removed: the target and the margin around it.
   VoxelSet allowed;

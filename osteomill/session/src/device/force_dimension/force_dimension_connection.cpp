@@ -211,7 +211,7 @@ class ForceDimensionConnection final : public Connection {
     if (dhd_.status(status.data(), id_) < 0) return "does not report whether it is calibrated";
     if (status[kIsReset] != 0) {
       may_enable_force_ = true;
-      return "is not calibrated: calibrate it with the maker's tool (HapticInit), a Falcon by hand";
+      return "is not calibrated: calibrate it with the vendor's tool (HapticInit), a Falcon by hand";
     }
     const auto cause = static_cast<std::size_t>(status[kForceOffCause]);
     const char* const off = is_off(status) ? kForceIsOff[cause < kForceIsOff.size() ? cause : 0] : nullptr;

@@ -166,10 +166,10 @@ TEST_F(ForceDimension, OpeningKeepsForceOffAfterButtonOrBrake) {
   }
 }
 
-// Reads from the maker's real library, with a real or simulated device; sends nothing.
+// Reads from the vendor's real library, with a real or simulated device; sends nothing.
 TEST(ForceDimensionLibrary, ReadsPosesThroughTheVendorLibrary) {
   const char* const library = std::getenv("OSTEOMILL_LIBDHD");
-  if (library == nullptr) GTEST_SKIP() << "OSTEOMILL_LIBDHD does not name the maker's library";
+  if (library == nullptr) GTEST_SKIP() << "OSTEOMILL_LIBDHD does not name the vendor's library";
   setenv("OSTEOMILL_DHD_LIBRARY", library, 1);
   const auto connection = open_force_dimension("");
   unsetenv("OSTEOMILL_DHD_LIBRARY");
@@ -256,7 +256,7 @@ TEST_F(ForceDimension, ReportsAMissingOrWrongLibrary) {
   unsetenv("OSTEOMILL_DHD_LIBRARY");
   EXPECT_EQ(
       refusal(),
-      "dhd: libdhd.so.3 of the maker's software is not installed; OSTEOMILL_DHD_LIBRARY can name its path");
+      "dhd: libdhd.so.3 of the vendor's software is not installed; OSTEOMILL_DHD_LIBRARY can name its path");
   setenv("OSTEOMILL_DHD_LIBRARY", "/nowhere/libdhd.so", 1);
   EXPECT_NE(refusal().find("/nowhere/libdhd.so"), std::string::npos);
   setenv("OSTEOMILL_DHD_LIBRARY", "libm.so.6", 1);

@@ -91,7 +91,7 @@ const char* why_not_driven(const Json* status) {
   if (is_false(member(status, "ready")) || is_false(member(status, "started")))
     return "is not ready: check it in the Haply Hub";
   if (!is_true(member(status, "calibrated")))
-    return "is not calibrated: calibrate it as its maker says (inkwell)";
+    return "is not calibrated: calibrate it as its vendor says (inkwell)";
   return nullptr;
 }
 

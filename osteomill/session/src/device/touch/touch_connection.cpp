@@ -233,7 +233,7 @@ class TouchConnection final : public Connection {
       hd_.get_error();
     }
     if (calibration != kCalibrated)
-      return "is not calibrated: put its stylus into the inkwell, or calibrate it with the maker's tool";
+      return "is not calibrated: put its stylus into the inkwell, or calibrate it with the vendor's tool";
     if (!has_power_) hd_.enable(kForceOutput);
     has_power_ = true;
     return nullptr;

@@ -208,7 +208,7 @@ TEST_F(Touch, WhyThereIsNoneIsSaid) {
   EXPECT_FALSE(hardware_named("hd")->find("").is_present);
   unsetenv("OSTEOMILL_HD_LIBRARY");
   EXPECT_EQ(refusal(),
-            "hd: libHD.so of the maker's software is not installed; OSTEOMILL_HD_LIBRARY can name its path");
+            "hd: libHD.so of the vendor's software is not installed; OSTEOMILL_HD_LIBRARY can name its path");
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ constexpr auto kWaitForAnswer = 50ms;
 // After a longer silence the device may have restarted, so any sequence number is accepted.
 constexpr auto kSilence = 100ms;
 constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
-                                                   "is not calibrated: calibrate it as its maker says",
-                                                   "has its force off: switch it on as its maker says"};
+                                                   "is not calibrated: calibrate it as its vendor says",
+                                                   "has its force off: switch it on as its vendor says"};
 // Maximum number of datagrams per read, so that a flood does not block the thread.
 constexpr int kMaxDatagrams = 64;
 

@@ -12,9 +12,9 @@ namespace osteomill {
 struct StudyFinding {
   /// The rule applied to the medians over the seeds.
   Finding of_medians;
-  /// Verdict over the hands: agreement or disagreement in more than half of them if the sign test is
-  /// significant, which takes five hands; otherwise `not_settled`. The verdict of the medians if those could
-  /// not be tested; `too_little_contact` if at most half of the hands could be.
+  /// Verdict over the hands: that of the medians if these could not be tested; else `too_little_contact` if
+  /// at most half of the hands could be; else `agrees` or `does_not_agree` if more than half of the hands do
+  /// so and the sign test is significant, which takes five hands; else `not_settled`.
   Verdict verdict = Verdict::not_recorded;
   /// Number of seeds in which the rule holds, and to which it can be applied.
   std::size_t agreeing = 0;

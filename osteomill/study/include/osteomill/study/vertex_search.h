@@ -38,7 +38,7 @@ const std::vector<Field<VertexSearchRow>>& fields_of<VertexSearchRow>();
 /// number of vertices matters. Returns rows ordered by part and number. Takes seconds.
 std::vector<VertexSearchRow> search_vertices();
 
-/// Returns the smallest number of vertices for this part from which all larger ones tried suffice; 0 if none.
+/// Returns the smallest number of vertices for this part from which on all tried suffice; 0 if none.
 int least_vertices(const std::vector<VertexSearchRow>& rows, const std::string& part);
 
 }  // namespace osteomill
