@@ -25,14 +25,14 @@
 #include <sys/socket.h>
 #include <time.h>
 
-enum { QUESTION = 1, ANSWER = 2, STATE = 3, WRENCH = 4 };
+enum { REQUEST = 1, REPLY = 2, STATE = 3, WRENCH = 4 };
 
 struct head {
   char magic[4];
   uint16_t version, kind;
-  uint32_t sequence, is_taken;
+  uint32_t sequence, is_busy;
 };
-struct answer {
+struct reply {
   struct head head;
   char name[64];
   uint32_t sensed, driven;
@@ -72,16 +72,16 @@ static struct head head_of(uint16_t kind, uint32_t sequence) {
 }
 
 #ifdef OWN_DEVICE
-static void describe(struct answer *answer);
+static void describe(struct reply *reply);
 static int read_handle(double time_s, struct state *state);
 static void drive_motors(const double force_N[3], const double torque_Nmm[3]);
 #else
 /* Replace: name and capabilities of your device. */
-static void describe(struct answer *answer) {
-  strcpy(answer->name, "example device");
-  answer->sensed = answer->driven = 6;
-  answer->max_force_N = 10;
-  answer->max_torque_Nmm = 200;
+static void describe(struct reply *reply) {
+  strcpy(reply->name, "example device");
+  reply->sensed = reply->driven = 6;
+  reply->max_force_N = 10;
+  reply->max_torque_Nmm = 200;
 }
 
 /* Replace: position of the handle, in mm from the middle of its workspace; x to the operator's right, y up, z towards
@@ -143,9 +143,9 @@ int main(int count, char **words) {
   signal(SIGINT, end);
   signal(SIGTERM, end);
 
-  struct answer answer;
-  memset(&answer, 0, sizeof answer);
-  describe(&answer);
+  struct reply reply;
+  memset(&reply, 0, sizeof reply);
+  describe(&reply);
 
   struct sockaddr_in partner;
   struct wrench asked;
@@ -168,10 +168,10 @@ int main(int count, char **words) {
       if (length < (ssize_t)sizeof head) continue;
       memcpy(&head, bytes, sizeof head);
       if (memcmp(head.magic, "OMIL", 4) != 0 || head.version != 1) continue;
-      if (head.kind == QUESTION) {
-        answer.head = head_of(ANSWER, head.sequence);
-        answer.head.is_taken = next_s - heard_s < CONVERSATION_S && !is_same(&from, &partner);
-        sendto(to_all, &answer, sizeof answer, 0, (struct sockaddr *)&from, from_length);
+      if (head.kind == REQUEST) {
+        reply.head = head_of(REPLY, head.sequence);
+        reply.head.is_busy = next_s - heard_s < CONVERSATION_S && !is_same(&from, &partner);
+        sendto(to_all, &reply, sizeof reply, 0, (struct sockaddr *)&from, from_length);
       } else if (head.kind == WRENCH && length == sizeof asked) {
         struct wrench wrench;
         memcpy(&wrench, bytes, sizeof wrench);

@@ -9,10 +9,10 @@ import sys
 import time
 
 HEAD = struct.Struct("<4sHHII")
-ANSWER = struct.Struct("<64sIIdd")
+REPLY = struct.Struct("<64sIIdd")
 STATE = struct.Struct("<3d4dII")
 WRENCH = struct.Struct("<3d3d")
-QUESTION_KIND, ANSWER_KIND, STATE_KIND, WRENCH_KIND = 1, 2, 3, 4
+REQUEST_KIND, REPLY_KIND, STATE_KIND, WRENCH_KIND = 1, 2, 3, 4
 
 PERIOD_S = 1e-3
 LAPSE_S = 5e-3  # an older wrench is zero
@@ -36,8 +36,8 @@ class ExampleDevice:
         """Drives force and torque as they act on the hand, about the handle's origin, along the same axes."""
 
 
-def head(kind, sequence, is_taken=0):
-    return HEAD.pack(b"OMIL", 1, kind, sequence & 0xFFFFFFFF, is_taken)
+def head(kind, sequence, is_busy=0):
+    return HEAD.pack(b"OMIL", 1, kind, sequence & 0xFFFFFFFF, is_busy)
 
 
 def approach(sent, wanted, most):
@@ -58,7 +58,7 @@ def serve(device, port=47117):
 def converse(device, port):
     to_all = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     to_all.bind(("127.0.0.1", port))
-    answer = ANSWER.pack(device.name, device.sensed, device.driven, device.max_force_N, device.max_torque_Nmm)
+    reply = REPLY.pack(device.name, device.sensed, device.driven, device.max_force_N, device.max_torque_Nmm)
     partner, newest, asked = None, 0, ((0, 0, 0), (0, 0, 0))
     sent_N, sent_Nmm, states = [0] * 3, [0] * 3, 0
     heard_s = started_s = -math.inf
@@ -73,9 +73,9 @@ def converse(device, port):
             magic, version, kind, sequence, _ = HEAD.unpack_from(datagram)
             if magic != b"OMIL" or version != 1:
                 continue
-            if kind == QUESTION_KIND:
-                is_taken = next_s - heard_s < CONVERSATION_S and sender != partner
-                to_all.sendto(head(ANSWER_KIND, sequence, is_taken) + answer, sender)
+            if kind == REQUEST_KIND:
+                is_busy = next_s - heard_s < CONVERSATION_S and sender != partner
+                to_all.sendto(head(REPLY_KIND, sequence, is_busy) + reply, sender)
             elif kind == WRENCH_KIND and len(datagram) == HEAD.size + WRENCH.size:
                 talking = next_s - heard_s < CONVERSATION_S
                 overtaken = (sequence - newest) & 0xFFFFFFFF in range(0x80000000, 0x100000000) or sequence == newest

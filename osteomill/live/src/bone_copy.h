@@ -20,7 +20,7 @@ namespace osteomill {
 class BoneCopy {
  public:
   using NextBone = BoneFollower::NextBone;
-  /// Calls `changed` with the voxels of the copy whose densities have just changed.
+  /// Later calls `changed` with the voxels of the copy whose densities have just changed.
   BoneCopy(std::shared_ptr<Volume> bone, std::size_t undo_bytes,
            std::function<void(const VoxelBox&)> changed);
 

@@ -35,7 +35,8 @@ constexpr double kMaxUneven_voxels = 0.6;
 // Capacity: also bounds the first ticks, in which the number of pieces is not known yet.
 constexpr std::size_t kPieceCapacity = 2 * kMaxPiecesOfTick;
 constexpr unsigned kMaxShares = 64;
-// Time worth of budget that is carried over: a burr may bounce on the bone and lose contact for some ticks.
+// Largest budget carried over, as a time of pressing, s: a burr may bounce on the bone and lose contact for
+// some ticks.
 constexpr double kMaxCarry_s = 0.01;
 // Time constant of the estimate of the cut bone. If shorter, the rate follows single voxels.
 constexpr double kMeasured_s = 0.005;

@@ -66,14 +66,14 @@ void CuttingReaction::follow(const Pose& X_WT, const Vec3& burr_force_W_N, doubl
                     cuts ? removed_mm3 / (settings_.removal_rate_mm3_per_Ns * share * dt_s) : 0, dt_s);
 }
 
-void CuttingReaction::update_from_force(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N,
+void CuttingReaction::update_from_force(const Pose& X_WT, const Vec3& burr_force_W_N, double holding_N,
                                         double dt_s, const Wrench& shaft_drag) noexcept {
   if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
   Wrench now = shaft_drag;
   const double force_N = burr_force_W_N.norm();
-  if (paid_N > 0 && force_N > 0 && std::isfinite(force_N)) {
+  if (holding_N > 0 && force_N > 0 && std::isfinite(force_N)) {
     now = now + reaction(burr_force_W_N / force_N, shaft_direction(X_WT), radius_mm_,
-                         settings_.reaction_share * paid_N);
+                         settings_.reaction_share * holding_N);
   }
   const double share = dt_s / (kSmooth_s + dt_s);
   wrench_.force_N += share * (now.force_N - wrench_.force_N);

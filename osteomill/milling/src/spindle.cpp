@@ -35,7 +35,7 @@ std::span<const HandpieceType> handpiece_types() {
 }
 
 void Spindle::step(bool is_on, double torque_Nmm, double dt_s) noexcept {
-  // Slower than this fraction of the set speed counts as stopped.
+  // A coasting spindle slower than this fraction of the set speed counts as stopped.
   constexpr double kStanding = 1e-3;
   if (type_ == Handpiece::none) {
     speed_rpm_ = is_on ? set_rpm_ : 0;

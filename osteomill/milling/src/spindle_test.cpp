@@ -39,7 +39,7 @@ TEST(Spindle, NineNewtonsHalveASurgicalDrillAndStallATurbine) {
   EXPECT_EQ(settled_rpm(Spindle(Handpiece::turbine, 400000), torque_Nmm), 0);
 }
 
-// Maximum power measured on 41 turbines; independent of the stall torque and free speed in the table.
+// Maximum power measured on 41 turbines; the table was not derived from it.
 TEST(Spindle, MaximumTurbinePowerMatchesMeasurement) {
   double max_W = 0;
   for (double torque_Nmm = 0.05; torque_Nmm < 2.3; torque_Nmm += 0.05) {

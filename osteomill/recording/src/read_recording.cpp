@@ -346,13 +346,14 @@ Recording read_chain(const fs::path& path, std::vector<fs::path> later) {
   Recording whole = read_chain(before_it, std::move(later));
   if (whole.sessions.empty() || whole.description.scan_hash != recording.description.scan_hash ||
       whole.description.labels.size() != recording.description.labels.size())
-    throw InputError(path.string(),
-                     "continues " + name.string() +
-                         ", but that file is of another scan or has other labels; restore the original");
+    throw InputError(
+        path.string(),
+        "continues " + name.string() +
+            ", but that file is of another scan, has other labels, or holds no ticks; restore the original");
   if (const std::uint64_t ticks = recording.sessions.front().start.continues_after; ticks > 0) {
     if (ticks > whole.records.size())
-      throw InputError(path.string(), fmt::format("continues tick {} of {}, which has only {} ticks", ticks,
-                                                  name.string(), whole.records.size()));
+      throw InputError(path.string(), fmt::format("continues after tick {} of {}, which has only {} ticks",
+                                                  ticks, name.string(), whole.records.size()));
     keep_first_ticks(whole, ticks);
   }
   if (const auto from = branch_point(recording.description)) put_branch_point(whole.description, *from);

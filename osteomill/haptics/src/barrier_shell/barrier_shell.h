@@ -33,7 +33,7 @@ struct NewtonStep;
 /// without bound keeps two convex cores inside the tool away from the isosurface's points. Each tick takes a
 /// few Newton steps on the sum of barrier and virtual coupling energy, each certified free of penetration
 /// before it is taken. This is incremental potential contact (Li et al. 2020) for a tool on a changing
-/// volume. Structures of the volume that have a guard add a barrier each (Guards).
+/// volume. Structures of the volume that have a guard add a barrier each (NoGoBarriers).
 ///
 /// `X_WT` of a step is the simulated tool, the wrench the coupling's; `contacts` counts points in contact
 /// with a core, and guards; `burr_force_W_N` is the ball's force on the bone.

@@ -23,9 +23,10 @@ class UpdateQueue {
   /// With 1/50, 0.008 N mm remain; with 1/100, 0.005, as if all bricks were updated. At most 1/share bricks
   /// reach it.
   static constexpr float kAlwaysUpdateShare = 0.01f;
-  /// Approximate number of points that a 1 ms tick updates in supporting bricks that take turns. (Tried:
-  /// updating a brick only once its surface has sunk by 2 um, judged by bone lost per area. It halved the
-  /// time but doubled the torque steps, from 0.14 to 0.28 N mm; tooth, 3 N.)
+  /// Approximate number of points that a 1 ms tick would update in supporting bricks if all of them took
+  /// turns, and the largest number in those updated at every call. (Tried: updating a brick only once its
+  /// surface has sunk by 2 um, judged by bone lost per area. It halved the time but doubled the torque steps,
+  /// from 0.14 to 0.28 N mm; tooth, 3 N.)
   static constexpr int kSupportingPointsPerMs = 1500;
   /// Approximate number of points that a 1 ms tick builds in bricks that the tool reaches for the first time.
   static constexpr int kBuiltPointsPerMs = 2500;

@@ -134,8 +134,9 @@ bool is_on_cut_edge(const GridGeometry& geometry, const Vec3& point_W) {
   return (voxel.array() < 0).any() || (voxel.array() > last.array()).any();
 }
 
-// Returns whether a tool can enter here and stay in bone: it is free above the entry, bone fills at least 60
-// % of the burr's path over the first millimetres, and the path keeps away from the border of the volume.
+// Returns whether a tool can enter here and stay in bone: it is free above the entry, bone fills at
+// least 60 % of the burr's path over the first millimetres, and the path keeps away from the border of the
+// volume.
 bool can_stay(const Volume& volume, const MillingTool& tool, const MillingEntry& entry) {
   constexpr double kMinBoneShare = 0.6;
   constexpr int kLayers = 6, kLines = 12;

@@ -36,7 +36,7 @@ constexpr double kMaxSettleShare = 0.5;
 constexpr double kPushCorrection_per_s = 4.0;
 constexpr double kTorqueCorrection_per_s = 8.0;
 
-// Fraction of the intended force at which the hand counts as feeling it.
+// Fraction of the push to hold from which the hand counts as feeling it.
 constexpr double kFelt = 0.8;
 // Smallest force and torque that the hand feels (two encoder steps), and the time without contact after which
 // the wall counts as gone.

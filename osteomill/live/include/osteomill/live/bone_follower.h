@@ -63,7 +63,7 @@ class BoneFollower {
   std::size_t cuts() const;
   /// Returns the number of undone cuts that can be redone: 0 after any new cut.
   std::size_t undone_cuts() const;
-  /// Returns whether anything was milled or a piece removed since the beginning.
+  /// Returns whether any cut or removal of a piece is not undone.
   bool is_touched() const;
   /// Returns every brick that was ever changed, with its present densities.
   std::vector<DensityBlock> touched_bricks() const;

@@ -67,9 +67,9 @@ class HapticThread {
   /// Continues with another algorithm, tool, setting or bone, prepared beforehand. Returns the state from
   /// which the new session started.
   SessionHandover replace(std::unique_ptr<MillingSession> session);
-  /// Moves the tool to a pose free of bone, however far away. The wrench fades out over 100 ticks, in which
-  /// nothing is milled, so that the hand feels no step; then the device is moved there (Device::put_at) and
-  /// the algorithm is reset. Does nothing while `is_placing`.
+  /// Moves the tool to a pose free of bone, however far away. The wrench fades out over
+  /// GuardSettings::blend_s, in which nothing is milled, so that the hand feels no step; then the device is
+  /// moved there (Device::put_at) and the algorithm is reset. Does nothing while `is_placing`.
   void place(const Pose& X_WD);
   /// Returns whether a `place` is under way.
   bool is_placing() const { return placing_.load(std::memory_order_acquire); }

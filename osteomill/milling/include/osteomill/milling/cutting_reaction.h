@@ -51,9 +51,9 @@ class CuttingReaction {
   /// Updates the reaction from the bone removed in `dt_s` with this force on the bone. Call after each tick.
   /// Safe in the haptic tick.
   void follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) noexcept;
-  /// Updates the reaction from the part of the force that paid for removal (its tangential force is
-  /// `reaction_share` times that) and from the drag on the shaft.
-  void update_from_force(const Pose& X_WT, const Vec3& burr_force_W_N, double paid_N, double dt_s,
+  /// Updates the reaction from the part of the force that holds back the burr's rim (the rim's tangential
+  /// force is `reaction_share` times that) and from the drag on the shaft.
+  void update_from_force(const Pose& X_WT, const Vec3& burr_force_W_N, double holding_N, double dt_s,
                          const Wrench& shaft_drag = {}) noexcept;
   /// Resets to the state before the first tick.
   void reset() noexcept { wrench_ = {}; }

@@ -36,7 +36,8 @@ class Spindle {
   double stall_Nmm() const { return handpiece_types()[static_cast<std::size_t>(type_)].stall_Nmm.value; }
   void begin_from(double speed_rpm) { speed_rpm_ = speed_rpm; }
 
-  /// Advances by `dt_s` against the load torque `torque_Nmm` (not negative). The speed never falls below 0.
+  /// Advances by `dt_s` against the load torque `torque_Nmm` (not negative). Without the drive (`is_on`) the
+  /// spindle coasts down, and with `Handpiece::none` stops at once. The speed never falls below 0.
   /// Safe in the haptic tick.
   void step(bool is_on, double torque_Nmm, double dt_s) noexcept;
 

@@ -16,8 +16,8 @@ namespace osteomill {
 ///
 /// While recording NAME.h5, the file is called NAME.part.h5; `close` renames it, so that a file with the
 /// final name is always complete. The file is flushed about twice a second: a killed program leaves a
-/// NAME.part.h5, without at most the last second, that read_recording and other HDF5 programs can open (the
-/// extension stays last for them). A recorder destroyed without `close`, as during stack unwinding, leaves
+/// NAME.part.h5 that read_recording and other HDF5 programs can open (the extension stays last for them); at
+/// most its last second is missing. A recorder destroyed without `close`, as during stack unwinding, leaves
 /// the same, with all records. The next recording of the same name renames the leftover to NAME.part-1.h5, or
 /// the first free number (`leftover_note`). If another program is still writing it, the constructor throws.
 ///

@@ -92,10 +92,10 @@ std::vector<Recording> split_by_setup(Recording recording);
 
 /// Reads a recording that a Recorder wrote, or an unfinished one of a killed program (`complete` is then
 /// false). Throws InputError, naming the file, if it is not a recording of a supported version, is truncated
-/// or damaged, or has columns that are missing or of another type or length; in an unfinished recording,
-/// columns are cut to the shortest instead. The checksum of a finished recording is verified before HDF5
-/// reads it; files without one (unfinished, or rewritten by another program) are read without this check.
-/// Sizes are checked against the file size before memory is allocated.
+/// or damaged, or has columns that are missing, of another type, or of unequal lengths (in an unfinished
+/// recording, columns are cut to the shortest instead). The checksum of a finished recording is verified
+/// before HDF5 reads it; files without one (unfinished, or rewritten by another program) are read without
+/// this check. Sizes are checked against the file size before memory is allocated.
 Recording read_recording(const std::filesystem::path& path);
 
 /// Like read_recording, but also reads the recordings in its folder that it continues

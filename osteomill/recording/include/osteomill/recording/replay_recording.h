@@ -67,7 +67,8 @@ struct ResumedRecording {
   /// Number of ticks replayed, at least 1, and the last of them.
   std::size_t ticks = 0;
   TickRecord last;
-  /// Pieces removed before the current session (SessionStart::piece_drops).
+  /// Densities removed with pieces before the last tick's session, mm^3 times density, per label
+  /// (SessionStart::piece_drops).
   std::vector<double> piece_drops = {};
 };
 

@@ -17,10 +17,10 @@ inline double sent_fraction(const Vec3& asked, const Vec3& sent) noexcept {
 }
 
 /// Source of poses and sink of wrenches: hardware behind its own thread (ConnectedDevice), a simulated
-/// operator, a virtual hand, a recorded trajectory. The haptic thread calls all functions except `put_at`,
-/// `disengage` and `engage` in every tick. Implementations must not allocate, lock or log. A
-/// device that has failed permanently may throw from `read_pose` and `write_wrench`, which ends the loop that
-/// runs it.
+/// operator, a virtual hand, a recorded trajectory. The haptic thread makes all calls, `put_at` between
+/// two ticks; only `disengage` and `engage` may come from any thread. Implementations must not allocate, lock
+/// or log. A device that has failed permanently may throw from `read_pose` and `write_wrench`, which ends the
+/// loop that runs it.
 class Device {
  public:
   virtual ~Device() = default;

@@ -70,8 +70,8 @@ class MillingSession {
   /// structures of the bone have a guard that the algorithm does not support.
   MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
 
-  /// Runs one complete haptic tick: reads the device's pose, computes and sends the wrench, removes bone in
-  /// proportion to the sent force and the time, and calls Device::tick_done. If the wrench or the pose is not
+  /// Runs one complete haptic tick: reads the device's pose, computes and sends the wrench, removes as much
+  /// bone as the sent force allows, and calls Device::tick_done. If the wrench or the pose is not
   /// finite, the sent wrench falls to zero as fast as the guard allows (20 N in 5 ms; at once with
   /// GuardSettings::for_simulation), and the record's fault gives the reason. Real-time safe: no allocation,
   /// lock, log or system call. Only the device may throw; zero is then written to it and the hand is held

@@ -19,11 +19,12 @@ class FaultCount {
   void add(const TickRecord& record) noexcept;
   /// Returns the number of wrenches clamped to the device's limits.
   int limited() const;
-  /// Returns the number of ticks that sent zero because the wrench was not finite.
+  /// Returns the number of ticks in which the wrench fell to zero because the wrench was not finite.
   int not_finite() const;
-  /// Returns the number of ticks that sent zero because the device gave no pose.
+  /// Returns the number of ticks in which the wrench fell to zero because the device gave no pose.
   int without_pose() const;
-  /// Returns the number of ticks that sent zero because the pose jumped or the tick was late.
+  /// Returns the number of ticks in which the wrench fell to zero because the pose jumped or the tick was
+  /// late.
   int unsafe() const;
   /// Returns the number of ticks that sent zero because the hand was held back (WrenchGuard).
   int held_back() const;

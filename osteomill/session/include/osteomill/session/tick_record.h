@@ -15,8 +15,8 @@ struct TickRecord {
   static constexpr double kNotRecorded = -1;
 
   double time_s = 0;
-  /// Tick length used, and whether the spindle was on. Milling depends on these, the tool's pose and the
-  /// burr's force only.
+  /// Tick length used, and whether the spindle was on. Milling depends on these, the tool's pose, the
+  /// burr's force and, with a handpiece, `spindle_rpm` only.
   double dt_s = 0;
   bool spindle_on = false;
   /// The session's other inputs besides the device's pose: the fraction of the force that reached the hand

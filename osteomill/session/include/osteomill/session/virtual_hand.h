@@ -45,8 +45,8 @@ class VirtualHand final : public Device {
   Pose X_W_target_;
 };
 
-/// Returns a hand for pointing devices: the default stiffness, no tremor, and critically damped with the
-/// default handle.
+/// Returns a hand for pointing devices: the default stiffness, a push of up to 2.5 N, no tremor, and
+/// critically damped with the default handle.
 HandSettings pointing_hand();
 
 }  // namespace osteomill

@@ -149,9 +149,9 @@ struct OpenedService {
 class HaplyConnection final : public Connection {
  public:
   explicit HaplyConnection(const HostAndPort& at)
-      // Version 3.5 sends a session id and takes the force as `vector`; earlier versions as `values`.
       : service_(at),
         id_(service_.id()),
+        // Version 3.5 sends a session id and takes the force as `vector`; earlier versions as `values`.
         force_key_(service_.inventory.contains("session_id") ? "vector" : "values"),
         has_grip_(grip_of(service_.inventory) != nullptr) {
     if (service_.is_in_use())

@@ -21,7 +21,8 @@ class WebSocket {
   bool is_open() const;
   /// Returns the newest complete message received so far or within `wait`.
   std::optional<std::string> receive(std::chrono::microseconds wait);
-  /// Sends a message without blocking, replacing one that is still pending. Returns false if it is pending.
+  /// Sends a message without blocking, replacing one that is still pending. Returns false if the new
+  /// message is still pending.
   bool send(std::string text);
 
  private:

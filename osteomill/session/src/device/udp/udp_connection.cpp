@@ -24,8 +24,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kDefaultAddress = "127.0.0.1:47117";
 constexpr auto kWait = 2ms;
-constexpr int kQuestions = 10;
-constexpr auto kWaitForAnswer = 50ms;
+constexpr int kRequests = 10;
+constexpr auto kReplyTimeout = 50ms;
 // After a longer silence the device may have restarted, so any sequence number is accepted.
 constexpr auto kSilence = 100ms;
 constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
@@ -34,7 +34,7 @@ constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
 // Maximum number of datagrams per read, so that a flood does not block the thread.
 constexpr int kMaxDatagrams = 64;
 
-struct Question {
+struct Request {
   static constexpr Kind kKind = Kind::request;
   Head head;
 };
@@ -90,15 +90,15 @@ DeviceCapabilities capabilities_of(const Reply& reply, const std::string& device
 struct Partner {
   explicit Partner(const std::string& address)
       : socket("udp:" + address, resolve_address("udp", address), Socket::Kind::datagrams) {
-    for (std::uint32_t n = 0; n < kQuestions && socket.is_open(); ++n) {
-      send(socket, Question{}, n);
-      socket.wait_to_receive(kWaitForAnswer);
+    for (std::uint32_t n = 0; n < kRequests && socket.is_open(); ++n) {
+      send(socket, Request{}, n);
+      socket.wait_to_receive(kReplyTimeout);
       if (const auto reply = receive<Reply>(socket)) {
         capabilities = capabilities_of(*reply, "udp:" + address);
         is_busy = reply->head.is_busy != 0;
         if (!is_busy) return;
         // A killed program keeps the device for another moment; ask again.
-        std::this_thread::sleep_for(kWaitForAnswer);
+        std::this_thread::sleep_for(kReplyTimeout);
       }
     }
     if (is_busy) return;

@@ -202,9 +202,9 @@ TEST(UdpDevice, RefusesInvalidReplies) {
       {[](Reply& reply) { reply.name = {}; }, "reports no valid name"},
       {[](Reply& reply) { reply.name[1] = '\n'; }, "reports no valid name"},
       {[](Reply& reply) { reply.driven = 4; }, "6 degrees of freedom sensed and 4 driven"},
-      {[](Reply& reply) { reply.max_force_N = -1; }, "not numbers from 0"},
+      {[](Reply& reply) { reply.max_force_N = -1; }, "negative or not finite"},
       {[](Reply& reply) { reply.max_torque_Nmm = std::numeric_limits<double>::infinity(); },
-       "not numbers from 0"}};
+       "negative or not finite"}};
   for (const auto& [spoil, reason] : faults) {
     StubDevice stub;
     spoil(stub.reply);

@@ -20,7 +20,7 @@ struct Head {
   std::uint16_t version = kVersion;
   Kind kind{};
   std::uint32_t sequence = 0;
-  /// In an answer: 1 if another partner drives the device, otherwise 0.
+  /// In a reply: 1 if another partner drives the device, otherwise 0.
   std::uint32_t is_busy = 0;
 };
 static_assert(sizeof(Head) == 16);
