@@ -28,6 +28,10 @@ std::string last_glfw_error() {
   return text != nullptr ? text : "no reason given";
 }
 
+bool is_modifier(int key) {
+  return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER;
+}
+
 void set_fonts(double scale) {
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
   fonts.Clear();
@@ -190,14 +194,16 @@ void Window::toggle_full_screen() {
   glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
 
-// ImGui samples the keys once per frame. A key that goes down and up between two frames is down in this frame
-// and up in the next, with all later events, so that no key press is lost and the order is kept.
+// ImGui samples the keys once per frame. An event waits for the next frame, with all later ones, if its key
+// has already changed in this frame, so that no key press is lost; or if it changes a modifier after another
+// key, so that a chord counts with the modifiers it was pressed with.
 void Window::forward_keys() {
   std::vector<int> changed;
-  const auto again = [&](const KeyEvent& event) {
-    return std::find(changed.begin(), changed.end(), event.key) != changed.end();
+  const auto waits = [&](const KeyEvent& event) {
+    return std::ranges::find(changed, event.key) != changed.end() ||
+           (is_modifier(event.key) && !std::ranges::all_of(changed, is_modifier));
   };
-  for (; !key_events_.empty() && !again(key_events_.front()); key_events_.pop_front()) {
+  for (; !key_events_.empty() && !waits(key_events_.front()); key_events_.pop_front()) {
     const KeyEvent& event = key_events_.front();
     changed.push_back(event.key);
     ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.mods);

@@ -2,11 +2,11 @@
 #define OWN_DEVICE
 #include "../../examples/udp_device.c"
 
-static void describe(struct answer *answer) {
-  strcpy(answer->name, "sinking device");
-  answer->sensed = answer->driven = 6;
-  answer->max_force_N = 10;
-  answer->max_torque_Nmm = 200;
+static void describe(struct reply *reply) {
+  strcpy(reply->name, "sinking device");
+  reply->sensed = reply->driven = 6;
+  reply->max_force_N = 10;
+  reply->max_torque_Nmm = 200;
 }
 
 static int read_handle(double time_s, struct state *state) {

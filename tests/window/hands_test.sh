@@ -40,7 +40,7 @@ send beyond keydown s sleep 2 keyup s $pull
 send hovered $(sed 's/ 40 0/ -40 0/g' <<<"$pull") click 4 sleep 0.2
 send escaped key Escape
 send retaken key --delay 0 t
-send dialogue keydown ctrl sleep 0.1 key --delay 50 o sleep 0.1 keyup ctrl
+send dialogue key --delay 0 ctrl+o
 send closed key Escape sleep 0.3
 send unfocused windowfocus "$elsewhere"
 wait "$program"

@@ -18,8 +18,6 @@ until window=$(xdotool search --name balls.nrrd 2>/dev/null | tail -1) && [ -n "
 # Waits until the window awaits the file $1; real events follow, and time for some frames.
 when() { until grep -q "^$1\(: \|$\)" said || ! kill -0 "$program"; do sleep 0.05; done; }
 send() { when "$1"; xdotool "${@:2}"; sleep 1; touch "$1"; }
-# A key needs more frames: a change of a key waits for the next one.
-press() { when "$1"; xdotool key "$2"; sleep 2; touch "$1"; }
 click() { when "$1"; send "$1" mousemove --window "$window" $(sed -n "s/^$2\.place of $3=//p" said) sleep 0.3 click 1; }
 # Prints the pixel at the large ball's centre; the view from above has the patient's left on the left.
 ball() {
@@ -30,10 +28,11 @@ ball() {
 }
 send chosen mousemove --window "$window" $(ball "$@") sleep 0.3 click 3
 click kept chosen "Keep only this piece"
-press undone ctrl+z
-press all-back ctrl+z
-press redone ctrl+y
-press milled-again ctrl+shift+z
+send undone key --delay 0 ctrl+z
+# The modifier is released in the frame of the press.
+send all-back keydown ctrl sleep 0.2 keydown --delay 0 z keyup --delay 0 ctrl keyup --delay 0 z
+send redone key --delay 0 ctrl+y
+send milled-again key --delay 0 ctrl+shift+z
 wait "$program"
 END
 

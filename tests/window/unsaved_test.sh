@@ -93,7 +93,7 @@ hides nothing "Open it"
 # If autosaves cannot be written, a message reports it, and all else works.
 : >no-folder
 XDG_STATE_HOME=$folder/no-folder window <<<"$mill ;; state no-folder ;; close" || fail "exit code $?"
-value no-folder message | grep -q "^What is milled is not kept" || fail "no message reports that there is no autosave"
+value no-folder message | grep -q "cannot be autosaved" || fail "no message reports that there is no autosave"
 
 for label in Save Discard Cancel "Open it" "Delete it" Later; do
   grep -qx "worked $label" controls || fail "'$label' was never chosen"
