@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "osteomill/exercise/region_voxels.h"
 #include "osteomill/visual/bone_picture.h"
 #include "osteomill/visual/clip_face.h"
 #include "osteomill/volume/bone_densities.h"
@@ -42,7 +41,7 @@ VoxelBox box_of(const VoxelSet& voxels) {
 
 Image exercise_picture(const PlacedExercise& placed, const Volume& scan, const PixelSize& size) {
   constexpr double kAround = 1.5, kAbove_rad = 0.7, kAside_rad = 0.35, kFieldOfView_rad = 0.3;
-  const auto corners = corners_W(placed.scan, box_of(bone_within(placed.target, scan)));
+  const auto corners = corners_W(placed.scan, box_of(placed.target));
   const Vec3 middle_W = 0.5 * (corners.front() + corners.back());
   const double radius_mm = kAround * 0.5 * (corners.back() - corners.front()).norm();
   const Vec3& outward_W = placed.outward_W;

@@ -135,7 +135,7 @@ TEST_F(ReportTest, ReportsWhyAnAlgorithmWasNotMatched) {
   }
   const std::string html = bytes_of(write_comparison_report(runs, out_));
   EXPECT_NE(html.find("a flat wall is felt as 1.5 N/mm"), std::string::npos);
-  EXPECT_NE(html.find("is not matched. Left out of this comparison: another leaps.</p>"), std::string::npos);
+  EXPECT_NE(html.find("are not matched. Left out of this comparison: another leaps.</p>"), std::string::npos);
 }
 
 // A report of a session in the window describes what the person did, and does not mention trials.
