@@ -124,7 +124,8 @@ void StartPage::draw_exercises(std::optional<StartChoice>& choice) {
   ImGui::TextUnformatted("Exercises");
   const float between_px = 2 * ImGui::GetStyle().ItemSpacing.x;
   const float columns = (ImGui::GetContentRegionAvail().x + between_px) / (ui::px(kMinEntry_px) + between_px);
-  if (!ImGui::BeginTable("##exercises", std::max(1, static_cast<int>(columns)))) return;
+  const int most = std::max(1, static_cast<int>(entries_.size()));
+  if (!ImGui::BeginTable("##exercises", std::clamp(static_cast<int>(columns), 1, most))) return;
   for (const Entry& entry : entries_) {
     ImGui::TableNextColumn();
     if (draw_entry(entry, std::min(ui::px(kMaxEntry_px), ImGui::GetContentRegionAvail().x - between_px)))
