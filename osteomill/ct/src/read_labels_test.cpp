@@ -233,7 +233,7 @@ TEST_F(ReadLabels, RefusesAnInvalidLabelMapInOneLine) {
   EXPECT_TRUE(contains(refusal_of({write("labels.txt", "1"), {}, {}}), "is not a label map"));
   EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "1 a 0 0 0 255\n2 b 0 0 900 255\n"), {}}),
                        "t.ctbl: line 2 is neither"));
-  EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "# nothing\n"), {}}), "t.ctbl: has no labels"));
+  EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "# nothing\n"), {}}), "t.ctbl: holds no labels"));
 }
 
 TEST_F(ReadLabels, RefusesMoreThan255Labels) {

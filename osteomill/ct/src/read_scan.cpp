@@ -150,7 +150,8 @@ Scan read_folder(const fs::path& folder, const ReadOptions& options) {
                      "holds no scan: no DICOM slices and no NRRD, MetaImage, NIfTI, PNG or TIFF files");
   }
   if (volumes.size() > 1) {
-    throw InputError(folder.string(), fmt::format("holds {} scans; choose one of them: {}", volumes.size(),
+    const std::size_t count = volumes.size();
+    throw InputError(folder.string(), fmt::format("holds {} scans; choose one of them: {}", count,
                                                   names_in(folder, std::move(volumes))));
   }
   return read_volume_file(volumes.front(), *volume_format_of(volumes.front()), options);
