@@ -98,8 +98,8 @@ with h5py.File(sys.argv[1]) as f:
     assert len(v["time_s"]) > 5 and len(v["time_s"]) <= 31 * seconds + 2, (len(v["time_s"]), seconds)
 CHECK
 }
-work 1280x800 570
-work 1024x600 570
+work 1280x800 750
+work 1024x600 600
 
 # A window closed before the end asks whether to measure; if not, it names the recording.
 closing() {
