@@ -135,9 +135,9 @@ void Simulator::finish_picture() {
 void Simulator::draw_start_page() {
   std::optional<StartChoice> choice = start_page_->draw(stage_.window.size());
   if (const auto dropped = stage_.window.take_dropped(); !dropped.empty())
-    choice = StartChoice{dropped.back(), start_page_->trainee()};
+    choice = StartChoice{dropped.back()};
   if (!choice) return;
-  if (!choice->trainee.empty()) options_.exercise.trainee = choice->trainee;
+  options_.exercise.trainee = start_page_->trainee();
   stage_.view.open_requested = choice->open;
   if (choice->open == OpenKind::none) begin_file(choice->path);
 }
@@ -186,7 +186,7 @@ void Simulator::draw_opening() {
 void Simulator::open_first() {
   if (!options_.from.given() && !options_.exercise.given() && options_.scan.scan.empty() &&
       !options_.scan.isovalue) {
-    start_page_.emplace();
+    start_page_.emplace(options_.exercise.trainee);
   } else {
     begin_opening({options_.scan, options_.exercise, options_.from});
   }
@@ -379,7 +379,7 @@ void Simulator::show_start_page() {
       stage_.bone.clear();
       stage_.voice.set({}, {});
       stage_.window.set_title("osteomill");
-      start_page_.emplace();
+      start_page_.emplace(options_.exercise.trainee);
     });
   });
 }

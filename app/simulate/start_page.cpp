@@ -80,7 +80,8 @@ void note_recent_scan(const std::string& scan) {
   }
 }
 
-StartPage::StartPage() : recent_(recent_scans()) {
+StartPage::StartPage(const std::string& trainee) : recent_(recent_scans()) {
+  trainee.copy(name_.data(), name_.size() - 1);
   std::vector<fs::path> files;
   std::error_code unreadable;
   for (const auto& entry : fs::directory_iterator(exercises_folder(), unreadable))
@@ -129,21 +130,19 @@ void StartPage::draw_exercises(std::optional<StartChoice>& choice) {
   for (const Entry& entry : entries_) {
     ImGui::TableNextColumn();
     if (draw_entry(entry, std::min(ui::px(kMaxEntry_px), ImGui::GetContentRegionAvail().x - between_px)))
-      choice = StartChoice{entry.file, trainee()};
+      choice = StartChoice{entry.file};
   }
   ImGui::EndTable();
 }
 
 void StartPage::draw_scans(std::optional<StartChoice>& choice) {
   ImGui::TextUnformatted("Scans");
-  if (const OpenKind open = draw_open_buttons(); open != OpenKind::none)
-    choice = StartChoice{"", trainee(), open};
+  if (const OpenKind open = draw_open_buttons(); open != OpenKind::none) choice = StartChoice{"", open};
   ImGui::SameLine();
   if (ui::button("Built-in tooth", "Opens the tooth included with the program"))
-    choice = StartChoice{"builtin:tooth", trainee()};
+    choice = StartChoice{"builtin:tooth"};
   for (const std::string& scan : recent_)
-    if (ui::button(scan.c_str(), "Opens this scan, which was opened recently"))
-      choice = StartChoice{scan, trainee()};
+    if (ui::button(scan.c_str(), "Opens this scan, which was opened recently")) choice = StartChoice{scan};
 }
 
 std::optional<StartChoice> StartPage::draw(const PixelSize& size) {

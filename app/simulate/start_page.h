@@ -14,24 +14,23 @@
 
 namespace osteomill::app {
 
-/// The user's choice on the start page: a scan, recording or exercise, or to choose one in a dialog; and the
-/// name to record with an exercise.
+/// The user's choice on the start page: a scan, recording or exercise, or to choose one in a dialog.
 struct StartChoice {
   std::string path;
-  std::string trainee;
   OpenKind open = OpenKind::none;
 };
 
 /// The page shown if neither a scan nor an exercise was named.
 class StartPage {
  public:
-  /// Reads the included exercises and their pictures. The window's OpenGL context must be current.
-  StartPage();
+  /// Reads the included exercises and their pictures. `trainee` is the name shown at first. The window's
+  /// OpenGL context must be current.
+  explicit StartPage(const std::string& trainee);
 
   /// Draws the page. Returns the user's choice; std::nullopt in most frames.
   std::optional<StartChoice> draw(const PixelSize& size);
 
-  /// Returns the name that the user has entered; empty if none.
+  /// Returns the name shown, which an exercise records; may be empty.
   std::string trainee() const { return name_.data(); }
 
  private:
